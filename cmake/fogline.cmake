@@ -1,0 +1,27 @@
+# fogline_add_service(NAME): the algorithm services/NAME/*.cc as library fogline_NAME, and its
+# process NAME_main.cc as program fogline-NAME. Every service folder has this shape.
+function(fogline_add_service name)
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cc")
+  list(FILTER sources EXCLUDE REGEX "_main\\.cc$")
+  add_library(fogline_${name} STATIC ${sources})
+  target_include_directories(fogline_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario ${ARGN})
+  add_executable(fogline-${name} ${name}/${name}_main.cc)
+  target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
+endfunction()
+
+# fogline_add_tests(NAME DIR LIBS...): every DIR/**/*_test.cc in one program, one ctest per TEST.
+# Tests are named after their folder: "unit/radar.RadarTest.Name".
+function(fogline_add_tests name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cc")
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${name}_tests ${sources})
+  target_include_directories(${name}_tests PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_compile_definitions(${name}_tests PRIVATE
+    FOGLINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGLINE_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name})
+endfunction()

@@ -1,0 +1,235 @@
+// Sections of a scenario that say who drives and how: ACC, human driver, arbitrator.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "scenario/field.h"
+
+namespace fogline {
+
+/// MPC-based ACC, of the host and of a following car alike.
+struct AccSection {
+  double headway_s = 1.5;
+  double standstill_m = 3.0;
+  double engine_time_constant_s = 0.46;
+  double engine_gain = 1.0;
+  std::int64_t horizon_steps = 30;
+  double weight_distance = 1.0;
+  double weight_speed = 1.0;
+  double weight_acceleration = 0.1;
+  double weight_control = 1.0;
+  double weight_control_change = 1.0;
+  double min_acceleration_mps2 = -3.0;
+  double max_acceleration_mps2 = 2.0;
+  double max_jerk_mps3 = 5.0;
+  double max_speed_mps = 40.0;
+  double min_gap_m = 2.0;
+  double min_gap_weight = 1000.0;
+  std::int64_t max_iterations = 100;
+  double fallback_deceleration_mps2 = 2.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Number("headway_s", self.headway_s,
+                 {.min = 0,
+                  .max = 10,
+                  .unit = "s",
+                  .doc = "T_hw of d_r = T_hw v + d_0.",
+                  .source = "ISO 15622 offers 1.5 to 2.2 s"});
+    visit.Number("standstill_m", self.standstill_m,
+                 {.min = 0, .max = 50, .unit = "m", .doc = "d_0 of d_r = T_hw v + d_0."});
+    visit.Number("engine_time_constant_s", self.engine_time_constant_s,
+                 {.min = 0.01,
+                  .max = 10,
+                  .unit = "s",
+                  .doc = "T_e.",
+                  .source = "Takahama & Akasaka 2018, by public ports: 0.460 s"});
+    visit.Number("engine_gain", self.engine_gain,
+                 {.min = 0.01,
+                  .max = 10,
+                  .unit = "",
+                  .doc = "K_e, steady-state gain.",
+                  .source = "1: the command is the steady acceleration; ports of Takahama: 0.732"});
+    visit.Integer("horizon_steps", self.horizon_steps,
+                  {.min = 1,
+                   .max = 60,
+                   .unit = "steps",
+                   .doc = "Prediction and control horizon.",
+                   .source = "30 steps of 0.1 s: MathWorks ACC block"});
+    visit.Number("weight_distance", self.weight_distance,
+                 {.min = 0, .max = 1e6, .unit = "1/m2", .doc = "Cost of delta_d squared."});
+    visit.Number("weight_speed", self.weight_speed,
+                 {.min = 0, .max = 1e6, .unit = "s2/m2", .doc = "Cost of delta_v squared."});
+    visit.Number("weight_acceleration", self.weight_acceleration,
+                 {.min = 0, .max = 1e6, .unit = "s4/m2", .doc = "Cost of a squared."});
+    visit.Number("weight_control", self.weight_control,
+                 {.min = 1e-6, .max = 1e6, .unit = "s4/m2", .doc = "Cost of u squared."});
+    visit.Number(
+        "weight_control_change", self.weight_control_change,
+        {.min = 0, .max = 1e6, .unit = "s4/m2", .doc = "Cost of a step's change of u squared."});
+    visit.Number("min_acceleration_mps2", self.min_acceleration_mps2,
+                 {.min = -10,
+                  .max = -0.1,
+                  .unit = "m/s2",
+                  .doc = "Strongest braking that u may command, as steady acceleration.",
+                  .source = "ISO 15622: at most 3.5 m/s2 above 20 m/s"});
+    visit.Number("max_acceleration_mps2", self.max_acceleration_mps2,
+                 {.min = 0.1,
+                  .max = 10,
+                  .unit = "m/s2",
+                  .doc = "Strongest acceleration that u may command, as steady acceleration.",
+                  .source = "ISO 15622: at most 2.0 m/s2 above 20 m/s"});
+    visit.Number("max_jerk_mps3", self.max_jerk_mps3,
+                 {.min = 0.1,
+                  .max = 100,
+                  .unit = "m/s3",
+                  .doc = "Fastest change of u, as steady acceleration per second."});
+    visit.Number("max_speed_mps", self.max_speed_mps,
+                 {.min = 1, .max = 70, .unit = "m/s", .doc = "Speed that the plan never exceeds."});
+    visit.Number("min_gap_m", self.min_gap_m,
+                 {.min = 0,
+                  .max = 50,
+                  .unit = "m",
+                  .doc = "Soft lower limit of the planned gap; less costs min_gap_weight."});
+    visit.Number("min_gap_weight", self.min_gap_weight,
+                 {.min = 0.001,
+                  .max = 1e6,
+                  .unit = "1/m2",
+                  .doc = "Cost of the largest shortfall below min_gap_m, squared."});
+    visit.Integer(
+        "max_iterations", self.max_iterations,
+        {.min = 1, .max = 10'000, .unit = "", .doc = "Iteration limit of the QP solver."});
+    visit.Number(
+        "fallback_deceleration_mps2", self.fallback_deceleration_mps2,
+        {.min = 0,
+         .max = 10,
+         .unit = "m/s2",
+         .doc = "Braking when there is no track or no optimum, approached at max_jerk_mps3."});
+  }
+};
+
+/// Human driver: Intelligent Driver Model (Treiber, Hennecke & Helbing 2000).
+struct DriverSection {
+  double max_acceleration_mps2 = 0.73;
+  double comfortable_deceleration_mps2 = 1.67;
+  double desired_speed_mps = 33.33;
+  double headway_s = 1.5;
+  double standstill_m = 2.0;
+  double exponent = 4.0;
+  double readiness = 1.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Number("max_acceleration_mps2", self.max_acceleration_mps2,
+                 {.min = 0.05,
+                  .max = 10,
+                  .unit = "m/s2",
+                  .doc = "a_max.",
+                  .source = "Treiber et al. 2000: 0.73"});
+    visit.Number("comfortable_deceleration_mps2", self.comfortable_deceleration_mps2,
+                 {.min = 0.05,
+                  .max = 10,
+                  .unit = "m/s2",
+                  .doc = "b.",
+                  .source = "Treiber et al. 2000: 1.67"});
+    visit.Number("desired_speed_mps", self.desired_speed_mps,
+                 {.min = 1,
+                  .max = 70,
+                  .unit = "m/s",
+                  .doc = "v_0.",
+                  .source = "Treiber et al. 2000: 120 km/h"});
+    visit.Number(
+        "headway_s", self.headway_s,
+        {.min = 0,
+         .max = 10,
+         .unit = "s",
+         .doc = "T_hw.",
+         .source = "Treiber et al. 2000: 1.6; chosen so that the equilibrium gap meets the ACC's"});
+    visit.Number(
+        "standstill_m", self.standstill_m,
+        {.min = 0, .max = 50, .unit = "m", .doc = "s_0.", .source = "Treiber et al. 2000: 2 m"});
+    visit.Number(
+        "exponent", self.exponent,
+        {.min = 1, .max = 10, .unit = "", .doc = "delta.", .source = "Treiber et al. 2000: 4"});
+    visit.Number("readiness", self.readiness,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "Reported readiness.",
+                  .source = "1: the paper's driver is always ready"});
+  }
+};
+
+enum class Policy { kTraded, kAutomation };
+template <>
+struct ChoiceNames<Policy> {
+  static constexpr std::array<std::string_view, 2> kNames{"traded", "automation"};
+  static constexpr std::array<std::string_view, 2> kDocs{
+      "the human drives while DoC >= threshold", "lambda_A = 1 throughout: no traded control"};
+};
+
+enum class ConflictReading { kMeanOfAbsolute, kAbsoluteOfMean };
+template <>
+struct ChoiceNames<ConflictReading> {
+  static constexpr std::array<std::string_view, 2> kNames{"mean_of_absolute", "absolute_of_mean"};
+  static constexpr std::array<std::string_view, 2> kDocs{"z = mean of |radar - LiDAR|",
+                                                         "z = |mean of (radar - LiDAR)|"};
+};
+
+enum class MissingLidar { kHold, kSkip, kConflict };
+template <>
+struct ChoiceNames<MissingLidar> {
+  static constexpr std::array<std::string_view, 3> kNames{"hold", "skip", "conflict"};
+  static constexpr std::array<std::string_view, 3> kDocs{
+      "repeats the last difference", "adds nothing to the window (silence looks like agreement)",
+      "counts as a difference of missing_conflict_m"};
+};
+
+/// Arbitrator of Sourav & Cheng 2024: DoC = 1 / (1 + exp(-slope (z - centre))).
+struct ArbitratorSection {
+  Policy policy = Policy::kTraded;
+  double threshold = 0.5;
+  double doc_slope_per_m = 10.0;
+  double doc_centre_m = 1.0;
+  ConflictReading conflict = ConflictReading::kMeanOfAbsolute;
+  std::int64_t window_steps = 8;
+  MissingLidar missing_lidar = MissingLidar::kHold;
+  double missing_conflict_m = 10.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Choice("policy", self.policy, "Who may drive.");
+    visit.Number("threshold", self.threshold,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "DoC_th: the automation drives below it.",
+                  .source = "Sourav & Cheng 2024: 0.2, 0.5, 0.8"});
+    visit.Number("doc_slope_per_m", self.doc_slope_per_m,
+                 {.min = 0.01,
+                  .max = 1000,
+                  .unit = "1/m",
+                  .doc = "Slope of the DoC.",
+                  .source = "Sourav & Cheng 2024: 10"});
+    visit.Number("doc_centre_m", self.doc_centre_m,
+                 {.min = 0,
+                  .max = 100,
+                  .unit = "m",
+                  .doc = "Conflict z at which DoC is 1/2.",
+                  .source = "Sourav & Cheng 2024: 1"});
+    visit.Choice("conflict", self.conflict, "How z is read (the paper leaves it open).");
+    visit.Integer("window_steps", self.window_steps,
+                  {.min = 1,
+                   .max = 1000,
+                   .unit = "steps",
+                   .doc = "Window that z is averaged over.",
+                   .source = "calibrated; the paper prints none"});
+    visit.Choice("missing_lidar", self.missing_lidar,
+                 "What a step without radar or LiDAR value counts as.");
+    visit.Number("missing_conflict_m", self.missing_conflict_m,
+                 {.min = 0, .max = 1000, .unit = "m", .doc = "For missing_lidar conflict."});
+  }
+};
+
+}  // namespace fogline

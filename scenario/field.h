@@ -1,0 +1,50 @@
+// How a section of a scenario describes its own fields: one `Fields` function in each section
+// visits every field with its name, range, unit, meaning and source. The loader, the JSON schema,
+// the effective scenario and the parameter tables are made from these visits and from nothing else.
+//
+//   struct RadarSection {
+//     double bias_m = 0.0;
+//     template <class Self, class Visitor>
+//     static void Fields(Self& self, Visitor& visit) {
+//       visit.Number("bias_m", self.bias_m, {.min = -5, .max = 5, .unit = "m", .doc = "..."});
+//     }
+//   };
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace fogline {
+
+/// A real number: closed range, unit ("" if none), meaning, where the default comes from.
+struct NumberSpec {
+  double min;
+  double max;
+  std::string_view unit;
+  std::string_view doc;
+  std::string_view source = "";
+};
+
+/// An integer; in the file 3 and 3.0 are the same.
+struct IntegerSpec {
+  std::int64_t min;
+  std::int64_t max;
+  std::string_view unit;
+  std::string_view doc;
+  std::string_view source = "";
+};
+
+/// A list: how many items it may have.
+struct ListSpec {
+  std::int64_t min_items;
+  std::int64_t max_items;
+  std::string_view doc;
+};
+
+/// Names of an enumeration's values in their order, as they stand in the file. Specialise for each
+/// enumeration: `static constexpr std::array kNames{...}` and, same size, `kDocs`.
+template <class Enum>
+struct ChoiceNames;
+
+}  // namespace fogline

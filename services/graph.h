@@ -1,0 +1,215 @@
+// The table of Fogline: every role and every channel, once. The nodes' wiring, the recorder, the
+// digest, the monitors, the tests and the README's tables are made from it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "fogline/accel_command_t.hpp"
+#include "fogline/arbitration_t.hpp"
+#include "fogline/driver_command_t.hpp"
+#include "fogline/ego_t.hpp"
+#include "fogline/follower_command_t.hpp"
+#include "fogline/lidar_t.hpp"
+#include "fogline/radar_t.hpp"
+#include "fogline/resend_t.hpp"
+#include "fogline/run_t.hpp"
+#include "fogline/status_t.hpp"
+#include "fogline/track_t.hpp"
+#include "fogline/truth_t.hpp"
+
+namespace fogline {
+
+enum class Role : std::uint8_t {
+  kWorld,
+  kRadar,
+  kLidar,
+  kFusion,
+  kAcc,
+  kDriver,
+  kArbitrator,
+  kFollower,
+  kRecorder,
+  kRunner,  // `fogline run`: starts and ends a run, takes no part in its steps
+};
+
+/// A set of roles.
+class RoleSet {
+ public:
+  constexpr RoleSet(std::initializer_list<Role> roles) {
+    for (const Role role : roles) bits_ |= Bit(role);
+  }
+  constexpr bool Has(Role role) const { return (bits_ & Bit(role)) != 0; }
+
+ private:
+  static constexpr std::uint32_t Bit(Role role) { return 1U << static_cast<unsigned>(role); }
+  std::uint32_t bits_ = 0;
+};
+
+struct RoleInfo {
+  Role role;
+  std::string_view name;
+  std::string_view purpose;
+};
+
+/// Every role that is a process of its own, in the order of evaluation within a step.
+inline constexpr std::array kRoles{
+    RoleInfo{Role::kWorld, "world", "moves the three cars and is the clock of the run"},
+    RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly touches it"},
+    RoleInfo{Role::kLidar, "lidar", "measures range; fog deceives it"},
+    RoleInfo{Role::kFusion, "fusion", "extended Kalman filter over both sensors"},
+    RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
+    RoleInfo{Role::kDriver, "driver", "the human agent: Intelligent Driver Model"},
+    RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
+    RoleInfo{Role::kFollower, "follower", "drives the car behind the host: the same ACC"},
+    RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
+};
+
+/// All of `kRoles`, and the runner.
+inline constexpr RoleSet kEveryone{
+    Role::kWorld,  Role::kRadar,      Role::kLidar,    Role::kFusion,   Role::kAcc,
+    Role::kDriver, Role::kArbitrator, Role::kFollower, Role::kRecorder, Role::kRunner};
+
+/// How often a channel carries a message.
+enum class Pace : std::uint8_t {
+  kStep,     // exactly one message in every step, by its producer
+  kControl,  // as needed, outside the sequence of steps
+};
+
+/// One channel. Every channel has a message type of its own, so a type names its channel.
+template <class M>
+struct Channel {
+  using Message = M;
+  std::string_view name;
+  Pace pace;
+  Role from;
+  RoleSet to;  // who works on it; the recorder takes every kStep channel besides
+  std::string_view what;
+};
+
+/// Every channel. The kStep channels stand in an order in which a step can be evaluated.
+inline constexpr std::tuple kGraph{
+    Channel<run_t>{"RUN", Pace::kControl, Role::kRunner, kEveryone,
+                   "phase of the run; the scenario, in parts"},
+    Channel<truth_t>{"TRUTH",
+                     Pace::kStep,
+                     Role::kWorld,
+                     {Role::kRadar, Role::kLidar, Role::kDriver, Role::kFollower},
+                     "ground truth: positions, speeds, accelerations, gaps, fog"},
+    Channel<ego_t>{"HOST_EGO",
+                   Pace::kStep,
+                   Role::kWorld,
+                   {Role::kFusion, Role::kAcc, Role::kArbitrator},
+                   "the host's own odometry: speed, acceleration"},
+    Channel<radar_t>{"RADAR",
+                     Pace::kStep,
+                     Role::kRadar,
+                     {Role::kFusion, Role::kArbitrator},
+                     "range, range rate, standard deviations, validity"},
+    Channel<lidar_t>{"LIDAR",
+                     Pace::kStep,
+                     Role::kLidar,
+                     {Role::kFusion, Role::kArbitrator},
+                     "range, standard deviation, intensity, validity"},
+    Channel<track_t>{"TRACK",
+                     Pace::kStep,
+                     Role::kFusion,
+                     {Role::kAcc, Role::kArbitrator},
+                     "fused state, covariance, innovations"},
+    Channel<accel_command_t>{"ACC_COMMAND",
+                             Pace::kStep,
+                             Role::kAcc,
+                             {Role::kArbitrator},
+                             "acceleration a_A of the automation agent"},
+    Channel<driver_command_t>{"DRIVER_COMMAND",
+                              Pace::kStep,
+                              Role::kDriver,
+                              {Role::kArbitrator},
+                              "acceleration a_H of the human driver, readiness"},
+    Channel<arbitration_t>{"HOST_COMMAND",
+                           Pace::kStep,
+                           Role::kArbitrator,
+                           {Role::kWorld},
+                           "the host's acceleration, authorities, Degree of Conflict"},
+    Channel<follower_command_t>{"FOLLOWER_COMMAND",
+                                Pace::kStep,
+                                Role::kFollower,
+                                {Role::kWorld},
+                                "acceleration and safe distance of each following car"},
+    Channel<status_t>{"STATUS",
+                      Pace::kControl,
+                      Role::kRunner,
+                      {Role::kRunner, Role::kWorld},
+                      "state, step and counters of every role"},
+    Channel<resend_t>{"RESEND", Pace::kControl, Role::kRunner, kEveryone,
+                      "asks a producer to publish a step again"},
+};
+
+inline constexpr std::size_t kNumChannels = std::tuple_size_v<decltype(kGraph)>;
+
+/// A channel without its type, for code that works on all of them.
+struct ChannelInfo {
+  std::string_view name;
+  Pace pace;
+  Role from;
+  RoleSet to;
+  std::string_view what;
+
+  /// The recorder logs every kStep channel, and RUN, so that a log explains itself.
+  constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
+};
+
+/// `kGraph` without types, same order.
+inline constexpr auto kChannels = std::apply(
+    [](const auto&... channel) {
+      return std::array{
+          ChannelInfo{channel.name, channel.pace, channel.from, channel.to, channel.what}...};
+    },
+    kGraph);
+
+/// Position of message type M's channel in `kGraph`.
+template <class M, std::size_t I = 0>
+constexpr std::size_t IndexOf() {
+  static_assert(I < kNumChannels, "this type has no channel in kGraph");
+  if constexpr (std::is_same_v<typename std::tuple_element_t<I, decltype(kGraph)>::Message, M>) {
+    return I;
+  } else {
+    return IndexOf<M, I + 1>();
+  }
+}
+
+/// The channel of message type M.
+template <class M>
+constexpr const ChannelInfo& ChannelOf() {
+  return kChannels[IndexOf<M>()];
+}
+
+/// Calls `visit.template operator()<Message>(index)` for every kStep channel, in order.
+template <class Visit>
+constexpr void ForEachStepChannel(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (
+        [&] {
+          using M = typename std::tuple_element_t<I, decltype(kGraph)>::Message;
+          if constexpr (kChannels[I].pace == Pace::kStep) visit.template operator()<M>(I);
+        }(),
+        ...);
+  }
+  (std::make_index_sequence<kNumChannels>{});
+}
+
+/// Name of a role, as on the command line and in STATUS.
+constexpr std::string_view NameOf(Role role) {
+  for (const RoleInfo& info : kRoles) {
+    if (info.role == role) return info.name;
+  }
+  return "runner";
+}
+
+}  // namespace fogline

@@ -1,0 +1,57 @@
+// Counter-based random numbers: any number of any step can be drawn alone, in any order, by any
+// process, and comes out the same (Philox4x32-10, Salmon et al. 2011, by Random123).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include <Random123/philox.h>
+
+namespace fogline {
+
+/// Who draws. A stream's number is part of its random numbers: never reuse or renumber one.
+enum class Stream : std::uint32_t {
+  kRadar = 1,
+  kLidar = 2,
+  kLidarBeam = 3,
+};
+
+/// The random numbers of one stream under one seed.
+class Random {
+ public:
+  Random(std::int64_t seed, Stream stream)
+      : seed_(static_cast<std::uint64_t>(seed)), stream_(static_cast<std::uint32_t>(stream)) {}
+
+  /// Two independent numbers, uniform in (0, 1), of draw `index` in step `step`.
+  std::array<double, 2> Uniform2(std::int64_t step, std::uint32_t index) const {
+    const auto s = static_cast<std::uint64_t>(step);
+    const r123::Philox4x32::ctr_type counter{
+        {static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(s >> 32), stream_, index}};
+    const r123::Philox4x32::key_type key{
+        {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)}};
+    const r123::Philox4x32::ctr_type r = r123::Philox4x32{}(counter, key);
+    return {ToUnit(r[0], r[1]), ToUnit(r[2], r[3])};
+  }
+
+  /// Two independent standard normal numbers (Box & Muller 1958) of draw `index` in step `step`.
+  std::array<double, 2> Normal2(std::int64_t step, std::uint32_t index) const {
+    const auto [u, v] = Uniform2(step, index);
+    const double radius = std::sqrt(-2.0 * std::log(u));
+    const double angle = 2.0 * std::numbers::pi * v;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+  }
+
+ private:
+  // The centre of one of 2^52 equal cells of (0, 1): exact, never 0 or 1.
+  static double ToUnit(std::uint32_t high, std::uint32_t low) {
+    const std::uint64_t cell = (static_cast<std::uint64_t>(high) << 20) ^ (low >> 12);
+    return (static_cast<double>(cell) + 0.5) * 0x1p-52;
+  }
+
+  std::uint64_t seed_;
+  std::uint32_t stream_;
+};
+
+}  // namespace fogline

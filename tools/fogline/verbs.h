@@ -1,0 +1,25 @@
+// The verbs of `fogline`. Each verb has a file of its own with one function, which adds the verb to
+// the command line and, when the verb is chosen, sets `action`; main() runs the action then.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace fogline {
+
+/// What a chosen verb does; returns the exit code.
+using Action = std::function<int()>;
+
+/// Exit codes of every verb.
+enum ExitCode : int {
+  kDone = 0,
+  kCheckFailed = 1,
+  kBadInput = 2,
+  kRunFailed = 3,
+  kInterrupted = 130
+};
+
+void AddCheck(CLI::App& app, Action& action);
+
+}  // namespace fogline
