@@ -17,7 +17,15 @@ function(lcm_add_types target dir)
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"
     VERBATIM)
-  add_custom_target(${target}_headers DEPENDS ${headers})
+  set(fields "${out}/cpp/fogline/fields.hpp")
+  add_custom_command(
+    OUTPUT "${fields}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUT=${fields}" "-DLCM_FILES=${lcm_files}"
+            -P "${PROJECT_SOURCE_DIR}/cmake/message_fields.cmake"
+    DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/message_fields.cmake"
+    COMMENT "Generating field visitors of the message types"
+    VERBATIM)
+  add_custom_target(${target}_headers DEPENDS ${headers} "${fields}")
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
   target_include_directories(${target} SYSTEM INTERFACE "${out}/cpp")

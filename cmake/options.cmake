@@ -20,7 +20,8 @@ endif()
 # no vectorised Eigen (it adds in another order), so debug, release and -march=native agree.
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
-add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+                    -Wno-missing-field-initializers)
 
 set(FOGLINE_SANITIZE "" CACHE STRING "Sanitizers for everything, such as address,undefined")
 if(FOGLINE_SANITIZE)

@@ -1,0 +1,115 @@
+#include "services/recorder/event_log.h"
+
+#include <fcntl.h>
+#include <lcm/eventlog.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
+constexpr std::size_t kEventHeader = 28;
+constexpr std::size_t kMaxChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+
+std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | bytes[offset + i];
+  return value;
+}
+
+}  // namespace
+
+EventLogWriter::EventLogWriter(const std::filesystem::path& file)
+    : file_(file), log_(lcm_eventlog_create(file.c_str(), "w")) {
+  if (log_ == nullptr) {
+    throw InputError(
+        fmt::format("{}: error: cannot write the log: {}", file.string(), std::strerror(errno)));
+  }
+}
+
+EventLogWriter::~EventLogWriter() { lcm_eventlog_destroy(log_); }
+
+void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes data) {
+  channel_ = channel;
+  lcm_eventlog_event_t event{};
+  event.timestamp = utime;
+  event.channellen = static_cast<std::int32_t>(channel_.size());
+  event.channel = channel_.data();
+  event.datalen = static_cast<std::int32_t>(data.size());
+  event.data = const_cast<std::uint8_t*>(data.data());  // read only; LCM's C struct has no const
+  if (lcm_eventlog_write_event(log_, &event) != 0) {
+    throw std::runtime_error(
+        fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
+  }
+}
+
+void EventLogWriter::Flush() {
+  if (std::fflush(log_->f) != 0) {
+    throw std::runtime_error(
+        fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
+  }
+}
+
+EventLogReader::EventLogReader(const std::filesystem::path& file) : file_(file) {
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat info {};
+  if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    const std::string why = fd >= 0 ? "not a regular file" : std::strerror(errno);
+    if (fd >= 0) close(fd);
+    throw InputError(fmt::format("{}: error: cannot read the log: {}", file.string(), why));
+  }
+  const auto size = static_cast<std::size_t>(info.st_size);
+  void* mapped = size == 0 ? nullptr : mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
+  close(fd);
+  if (mapped == MAP_FAILED) {
+    throw InputError(
+        fmt::format("{}: error: cannot map the log: {}", file.string(), std::strerror(errno)));
+  }
+  if (mapped != nullptr) madvise(mapped, size, MADV_SEQUENTIAL);
+  content_ = {static_cast<const std::uint8_t*>(mapped), size};
+  if (size > 0 && (size < 4 || ReadUint32(content_, 0) != kSyncWord)) {
+    munmap(mapped, size);
+    throw InputError(fmt::format("{}: error: not an LCM event log", file.string()));
+  }
+}
+
+EventLogReader::~EventLogReader() {
+  if (!content_.empty()) {
+    munmap(const_cast<std::uint8_t*>(content_.data()), content_.size());
+  }
+}
+
+std::optional<Event> EventLogReader::Next() {
+  const Bytes rest = content_.subspan(offset_);
+  if (rest.empty() || !torn_.empty()) return std::nullopt;
+  const auto tear = [&](std::string_view what) {
+    torn_ = fmt::format("{}: {} after event {} (byte {}); {} bytes behind it are ignored",
+                        file_.string(), what, events_ - 1, offset_, rest.size());
+    return std::nullopt;
+  };
+  if (rest.size() < kEventHeader) return tear("cut off");
+  if (ReadUint32(rest, 0) != kSyncWord) return tear("no event");
+  const std::size_t channel_size = ReadUint32(rest, 20);
+  const std::size_t data_size = ReadUint32(rest, 24);
+  if (channel_size == 0 || channel_size > kMaxChannel) return tear("impossible channel name");
+  if (channel_size + data_size > rest.size() - kEventHeader) return tear("cut off");
+  const auto* channel = reinterpret_cast<const char*>(rest.data() + kEventHeader);
+  offset_ += kEventHeader + channel_size + data_size;
+  ++events_;
+  return Event{.number = ReadInt64(rest, 4),
+               .utime = ReadInt64(rest, 12),
+               .channel = {channel, channel_size},
+               .data = rest.subspan(kEventHeader + channel_size, data_size)};
+}
+
+}  // namespace fogline

@@ -1,0 +1,76 @@
+// LCM event logs: written by LCM's own library, read by mapping the file. A log of Fogline is a
+// standard LCM event log whose event times are simulated times.
+//
+// Format (LCM, eventlog.h), all big endian: sync word 0xEDA1DA01, int64 event number, int64
+// timestamp in us, int32 channel length, int32 data length, channel, data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "services/runtime/wire.h"
+
+struct _lcm_eventlog_t;
+
+namespace fogline {
+
+/// Appends events to a new file.
+class EventLogWriter {
+ public:
+  /// Opens the file for writing; an existing one is replaced. @throws InputError if it cannot
+  explicit EventLogWriter(const std::filesystem::path& file);
+  ~EventLogWriter();
+  EventLogWriter(const EventLogWriter&) = delete;
+  EventLogWriter& operator=(const EventLogWriter&) = delete;
+
+  /// @throws std::runtime_error, such as when the disk is full
+  void Write(std::string_view channel, std::int64_t utime, Bytes data);
+  /// Hands everything written so far to the operating system: it survives a kill -9 of this
+  /// process.
+  /// @throws std::runtime_error
+  void Flush();
+
+ private:
+  std::filesystem::path file_;
+  _lcm_eventlog_t* log_;
+  std::string channel_;
+};
+
+/// One event; views into the mapped file.
+struct Event {
+  std::int64_t number;
+  std::int64_t utime;
+  std::string_view channel;
+  Bytes data;
+};
+
+/// Reads a log from front to back without copying. A torn tail (a last event that is incomplete, as
+/// a kill or a full disk leaves it) ends the log and is named by torn().
+class EventLogReader {
+ public:
+  /// @throws InputError if the file cannot be read or does not begin like an event log
+  explicit EventLogReader(const std::filesystem::path& file);
+  ~EventLogReader();
+  EventLogReader(const EventLogReader&) = delete;
+  EventLogReader& operator=(const EventLogReader&) = delete;
+
+  /// The next event, or nothing at the end or at a torn tail.
+  std::optional<Event> Next();
+  /// What is wrong with the end of the file, "" if nothing: known once Next() has come to it.
+  const std::string& torn() const { return torn_; }
+  /// Bytes of the complete events read so far.
+  std::size_t good_bytes() const { return offset_; }
+
+ private:
+  std::filesystem::path file_;
+  Bytes content_;
+  std::size_t offset_ = 0;
+  std::int64_t events_ = 0;
+  std::string torn_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,89 @@
+#include "services/recorder/recorder.h"
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+// Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
+constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
+
+/// "" if the bytes are one sound message of the channel's type, else what is wrong.
+std::string Examine(std::size_t channel, Bytes bytes) {
+  std::string wrong = "no per-step channel";
+  ForEachStepChannel([&]<class M>(std::size_t i) {
+    if (i != channel) return;
+    thread_local M message{};
+    wrong = Decode(bytes, message) ? FirstNonFiniteField(message) : "wrong type or size";
+  });
+  return wrong;
+}
+
+}  // namespace
+
+Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file)
+    : Node(bus, Role::kRecorder, run_id) {
+  log_.emplace(file);
+}
+
+void Recorder::Configure(const Scenario& /*scenario*/) {
+  std::vector<std::uint8_t> buffer;
+  for (std::size_t i = 0; i < parts().parts().size(); ++i) {
+    run_t run{};
+    run.header = {.run_id = run_id(), .step = static_cast<std::int64_t>(i), .utime = 0};
+    run.phase = run_t::PREPARE;
+    run.pace = 0;
+    run.scenario_hash = parts().hash();
+    run.type_fingerprint = TypeFingerprint();
+    run.num_parts = static_cast<std::int32_t>(parts().parts().size());
+    run.text = parts().parts()[i];
+    Encode(run, buffer);
+    log_->Write(ChannelOf<run_t>().name, 0, buffer);
+  }
+  log_->Flush();
+}
+
+std::string Recorder::Accept(std::size_t input, std::int64_t step, Bytes bytes) {
+  const std::size_t channel = inputs()[input].channel;
+  if (std::string wrong = Examine(channel, bytes); !wrong.empty()) return wrong;
+  if (channel == IndexOf<truth_t>() && Decode(bytes, truth_) && truth_.last) final_ = step;
+  return "";
+}
+
+void Recorder::Write(std::int64_t step) {
+  for (const Input& input : inputs()) {
+    if (!input.ring.Has(step)) continue;
+    const Bytes bytes = input.ring.Get(step);
+    constexpr std::size_t kTimeOffset = kStepOffset + 8;
+    log_->Write(kChannels[input.channel].name, ReadInt64(bytes, kTimeOffset), bytes);
+  }
+}
+
+void Recorder::Compute(std::int64_t step) {
+  Write(step);
+  const bool last = step == final_;
+  if (last || (step + 1) % kAcknowledgeEvery == 0) {
+    log_->Flush();
+    status().header.step = step;
+    PublishStatus();
+  }
+}
+
+void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
+  Expect(step);
+  if (next() > step) {
+    log_->Flush();
+    PublishStatus();
+  }
+}
+
+void Recorder::OnLeave() {
+  // A run that ends before its last step leaves incomplete steps; what is there is kept.
+  if (!log_) return;
+  std::int64_t newest = -1;
+  for (const Input& input : inputs()) newest = std::max(newest, input.ring.newest());
+  for (std::int64_t step = next(); step <= newest; ++step) Write(step);
+  log_.reset();
+}
+
+}  // namespace fogline

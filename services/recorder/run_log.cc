@@ -1,0 +1,130 @@
+#include "services/recorder/run_log.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "services/runtime/scenario_parts.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::size_t ChannelsPerStep() {
+  std::size_t count = 0;
+  for (const ChannelInfo& channel : kChannels) count += channel.pace == Pace::kStep ? 1 : 0;
+  return count;
+}
+
+/// Puts the events of a log together to steps.
+class Assembler {
+ public:
+  Assembler(RunLog& run, const StepVisitor& visit) : run_(run), visit_(visit) {}
+
+  void Take(const Event& event) {
+    const std::size_t channel = Find(event.channel);
+    if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
+    if (channel == IndexOf<run_t>()) return TakeRun(event.data);
+    if (kChannels[channel].pace != Pace::kStep) return;
+    if (parts_.empty() || ReadInt64(event.data, kRunIdOffset) != run_.run_id) {
+      ++foreign_;
+      return;
+    }
+    const std::int64_t step = ReadInt64(event.data, kStepOffset);
+    if (step < run_.steps) return;  // a repetition
+    Pending& pending = pending_[step];
+    if (!pending.messages[channel].empty()) return;
+    pending.messages[channel] = event.data;
+    ++pending.count;
+    while (!pending_.empty() && pending_.begin()->first == run_.steps &&
+           pending_.begin()->second.count == ChannelsPerStep()) {
+      Deliver(pending_.begin()->second.messages);
+      pending_.erase(pending_.begin());
+    }
+  }
+
+  void Finish(const std::filesystem::path& file, const std::string& torn) {
+    if (!parts_.Complete()) {
+      throw InputError(
+          fmt::format("{}: error: the log has no complete scenario of a run", file.string()));
+    }
+    if (!parts_.HashHolds()) {
+      throw InputError(
+          fmt::format("{}: error: the scenario in the log does not match its hash", file.string()));
+    }
+    run_.scenario_text = parts_.Text();
+    run_.scenario_hash = parts_.hash();
+    run_.scenario = ParseScenario(run_.scenario_text, file.string());
+    run_.complete = last_ && pending_.empty();
+    run_.note = torn;
+    const auto note = [this](const std::string& text) {
+      run_.note += run_.note.empty() ? text : "; " + text;
+    };
+    if (!last_) note(fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps));
+    if (!pending_.empty()) {
+      note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
+    }
+    if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+ private:
+  struct Pending {
+    StepMessages messages{};
+    std::size_t count = 0;
+  };
+
+  std::size_t Find(std::string_view name) {
+    // The recorder writes channels in the order of the table: the next one is the best guess.
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      const std::size_t guess = (guess_ + i) % kNumChannels;
+      if (kChannels[guess].name != name) continue;
+      guess_ = guess + 1;
+      return guess;
+    }
+    return kNumChannels;
+  }
+
+  void TakeRun(Bytes data) {
+    run_t run{};
+    if (!Decode(data, run)) return;
+    if (parts_.empty()) run_.run_id = run.header.run_id;
+    if (run.header.run_id == run_.run_id) parts_.Add(run);
+  }
+
+  void Deliver(const StepMessages& messages) {
+    if (Decode(messages[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
+    visit_(run_.steps, messages);
+    ++run_.steps;
+  }
+
+  static std::string Lacking(const StepMessages& messages) {
+    std::string names;
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      if (kChannels[i].pace != Pace::kStep || !messages[i].empty()) continue;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", kChannels[i].name);
+    }
+    return names;
+  }
+
+  RunLog& run_;
+  const StepVisitor& visit_;
+  ScenarioParts parts_;
+  std::map<std::int64_t, Pending> pending_;
+  std::size_t guess_ = 0;
+  std::int64_t foreign_ = 0;
+  truth_t truth_{};
+  bool last_ = false;
+};
+
+}  // namespace
+
+RunLog ReadRunLog(const std::filesystem::path& file, const StepVisitor& visit) {
+  RunLog run;
+  EventLogReader reader(file);
+  Assembler assembler(run, visit);
+  while (const auto event = reader.Next()) assembler.Take(*event);
+  assembler.Finish(file, reader.torn());
+  return run;
+}
+
+}  // namespace fogline

@@ -1,0 +1,19 @@
+// Wall-clock time for waiting and repair. Nothing that a run computes may depend on it.
+#pragma once
+
+#include <chrono>
+
+namespace fogline {
+
+using Clock = std::chrono::steady_clock;
+using Duration = Clock::duration;
+using TimePoint = Clock::time_point;
+using std::chrono::duration_cast;
+using std::chrono::milliseconds;
+
+/// Whole milliseconds of a duration.
+inline std::int64_t Milliseconds(Duration duration) {
+  return duration_cast<milliseconds>(duration).count();
+}
+
+}  // namespace fogline

@@ -1,0 +1,35 @@
+// The digest of a run: equal digests mean equal runs, bit by bit.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "services/runtime/wire.h"
+
+namespace fogline {
+
+/// BLAKE2b-256 over the payloads of all kStep channels in the order of the graph table, step by
+/// step, with the run id left out: it names a run, it does not describe one.
+class Digest {
+ public:
+  Digest();
+  ~Digest();
+  Digest(Digest&&) noexcept;
+  Digest& operator=(Digest&&) noexcept;
+
+  /// Adds one encoded message (at least kHeaderEnd bytes).
+  void Add(Bytes message);
+
+  /// 64 hexadecimal digits, of everything added so far.
+  std::string Hex() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// BLAKE2b-256 of a text, 64 hexadecimal digits.
+std::string HashOf(std::string_view text);
+
+}  // namespace fogline

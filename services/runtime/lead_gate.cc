@@ -1,0 +1,68 @@
+#include "services/runtime/lead_gate.h"
+
+#include <algorithm>
+
+namespace fogline {
+namespace {
+
+constexpr Duration kFirstPatience = milliseconds(20);
+constexpr Duration kMaxPatience = milliseconds(500);
+
+}  // namespace
+
+LeadGate::LeadGate(Bus& bus) {
+  bus.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) {
+    status_t status{};
+    if (!Decode(bytes, status) || status.header.run_id != run_id_) return;
+    if (status.role == NameOf(Role::kRecorder)) {
+      recorded_ = std::max(recorded_, status.header.step);
+    }
+  });
+}
+
+void LeadGate::Configure(const Scenario& scenario, std::int64_t run_id) {
+  step_s_ = scenario.step_s;
+  run_id_ = run_id;
+}
+
+void LeadGate::OnGo(const run_t& run, TimePoint now) {
+  if (started_) return;
+  started_ = true;
+  pace_ = std::max(0.0, run.pace);
+  start_ = now;
+}
+
+TimePoint LeadGate::Due(std::int64_t step) const {
+  if (pace_ == 0) return start_;
+  const std::chrono::duration<double> since(static_cast<double>(step) * step_s_ / pace_);
+  return start_ + duration_cast<Duration>(since);
+}
+
+bool LeadGate::Open(std::int64_t step, TimePoint now) const {
+  return started_ && !(final_ && step > *final_) && recorded_ >= Needed(step) && now >= Due(step);
+}
+
+std::optional<std::int64_t> LeadGate::WantsRecorded(std::int64_t next, TimePoint now) {
+  if (!started_ || recorded_ >= Needed(next)) {
+    ask_at_.reset();
+    return std::nullopt;
+  }
+  if (!ask_at_) {
+    patience_ = kFirstPatience;
+    ask_at_ = now + patience_;
+  }
+  if (now < *ask_at_) return std::nullopt;
+  patience_ = std::min(2 * patience_, kMaxPatience);
+  ask_at_ = now + patience_;
+  return Needed(next);
+}
+
+TimePoint LeadGate::NextPoll(std::int64_t next, TimePoint now) const {
+  if (!started_) return now + kMaxPatience;
+  TimePoint at = now + kMaxPatience;
+  if (ask_at_) at = std::min(at, *ask_at_);
+  if (const TimePoint due = Due(next); due > now) at = std::min(at, due);
+  return at;
+}
+
+}  // namespace fogline

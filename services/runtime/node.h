@@ -1,0 +1,143 @@
+// One role's part in a run: joining, lockstep, repair and status. What the role computes is added
+// by StepNode (any Algorithm) and by the recorder; this class knows bytes, steps and channels only.
+//
+// Lockstep. A node keeps a ring of messages per input and computes step k exactly once, when all
+// its inputs for step k are there, in whatever order they came. It encodes its outputs once and
+// keeps the bytes. Nothing is ever sent twice on suspicion: who misses an input asks for it
+// (RESEND), and who is asked for what he cannot compute yet asks further up. So any loss below 100
+// % only costs time.
+//
+// Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "services/graph.h"
+#include "services/runtime/bus.h"
+#include "services/runtime/clock.h"
+#include "services/runtime/scenario_parts.h"
+#include "services/runtime/step_ring.h"
+
+namespace fogline {
+
+class Node {
+ public:
+  /// @param run_id take part in this run only; without it, in the first that is announced
+  Node(Bus& bus, Role role, std::optional<std::int64_t> run_id);
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Does what time demands (repair, status). Call it after every Bus::Wait().
+  /// @return when it wants to be called again at the latest
+  TimePoint Poll(TimePoint now);
+
+  /// True once the runner has said STOP, or the role has failed and said so.
+  bool left() const { return left_; }
+  /// Why the role failed, "" if it did not.
+  const std::string& error() const { return status_.error; }
+  Role role() const { return role_; }
+
+  /// Ends the part in the run for a reason from outside (a signal): what is there is kept.
+  void Leave();
+
+ protected:
+  /// One channel that the node reads.
+  struct Input {
+    std::size_t channel;  // in kChannels
+    StepRing ring;
+    TimePoint heard{};
+  };
+  /// One channel that the node writes.
+  struct Output {
+    std::size_t channel;
+    StepRing ring;
+  };
+
+  /// The scenario is here: make the algorithm. @throws std::exception with what is wrong
+  virtual void Configure(const Scenario& scenario) = 0;
+  /// Decodes an input that is new into the place for its step; "" or what is wrong with it.
+  virtual std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) = 0;
+  /// Computes a step; all inputs are there. Calls Emit() for every output.
+  virtual void Compute(std::int64_t step) = 0;
+  /// Whether the step may be computed now although its inputs are there.
+  virtual bool MayCompute(std::int64_t /*step*/, TimePoint /*now*/) { return true; }
+  /// Phase of the run other than PREPARE and STOP.
+  virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
+  /// More to do in Poll(); returns when to be called again.
+  virtual TimePoint PollMore(TimePoint now) { return now + kHeartbeat; }
+  /// Called once when the node leaves.
+  virtual void OnLeave() {}
+  /// Someone asks for a STATUS that shows at least this step.
+  virtual void OnStatusAsked(std::int64_t /*step*/, TimePoint /*now*/) {}
+
+  /// Publishes the output of a step on one of the role's channels (its place in kChannels) and
+  /// keeps it.
+  /// @throws std::runtime_error if it is too large
+  void Emit(std::size_t channel, std::int64_t step, Bytes bytes);
+  /// Ends the node's part in the run with an error.
+  void Fail(std::string error);
+  void SetState(std::int8_t state);
+  void PublishStatus();
+  void Ask(std::string_view channel, std::int64_t step);
+  /// Computes every step that can be computed.
+  void Advance(TimePoint now);
+  /// Says that the next step is known to be under way.
+  void Expect(std::int64_t step) { expected_ = std::max(expected_, step); }
+
+  Bus& bus() { return bus_; }
+  std::vector<Input>& inputs() { return inputs_; }
+  std::int64_t next() const { return next_; }
+  std::int64_t run_id() const { return *run_id_; }
+  const ScenarioParts& parts() const { return parts_; }
+  std::int8_t state() const { return status_.state; }
+  bool Running() const {
+    return status_.state == status_t::READY || status_.state == status_t::RUNNING;
+  }
+  status_t& status() { return status_; }
+
+  /// The world reads the commands of step k - 1 to make step k: its lead is 1. Everybody else's is
+  /// 0.
+  std::int64_t lead_ = 0;
+
+  static constexpr Duration kHeartbeat = milliseconds(200);
+
+ private:
+  void OnRun(Bytes bytes);
+  void OnInput(std::size_t index, Bytes bytes);
+  void OnResend(Bytes bytes);
+  void Join();
+  bool InputsReady(std::int64_t step) const;
+  /// First input that the next step waits for, or nullptr.
+  const Input* FirstMissing() const;
+  TimePoint Repair(TimePoint now);
+  void AskForMissing(TimePoint now);
+
+  Bus& bus_;
+  const Role role_;
+  std::optional<std::int64_t> run_id_;
+  bool bound_;  // to the run of run_id_: by option, or since a run was announced
+  ScenarioParts parts_;
+  std::vector<Input> inputs_;
+  std::vector<Output> outputs_;
+  std::int64_t next_ = 0;       // step to compute next
+  std::int64_t expected_ = -1;  // highest step that is known to be under way
+  bool left_ = false;
+  status_t status_{};
+  std::vector<std::uint8_t> buffer_;
+
+  // Repair: since when the next step is known to be incomplete, when to ask, how long to wait then.
+  std::optional<TimePoint> waiting_since_;
+  TimePoint ask_at_{};
+  TimePoint asked_{};
+  Duration patience_{};
+  TimePoint computed_at_{};
+  Duration step_time_{};  // smoothed
+  TimePoint status_at_{};
+};
+
+}  // namespace fogline

@@ -1,0 +1,81 @@
+// A scenario on its way over LCM: in parts that fit one datagram each, whole again at the other
+// end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/runtime/digest.h"
+
+namespace fogline {
+
+/// Bytes of scenario text in one RUN message; the rest of kMaxStepMessageBytes is for its other
+/// fields.
+inline constexpr std::size_t kPartBytes = 1200;
+
+/// The parts of a text, in order; at least one.
+inline std::vector<std::string> SplitScenario(std::string_view text) {
+  std::vector<std::string> parts;
+  do {
+    parts.emplace_back(text.substr(0, kPartBytes));
+    text.remove_prefix(parts.back().size());
+  } while (!text.empty());
+  return parts;
+}
+
+/// Collects the parts of one run's scenario, in any order and with repetitions.
+class ScenarioParts {
+ public:
+  /// The most parts that a sender may announce: 240 MB of text.
+  static constexpr std::int32_t kMaxParts = 200'000;
+
+  /// Takes a part of a run_t; what contradicts an earlier part is ignored.
+  void Add(const run_t& run) {
+    if (run.num_parts < 1 || run.num_parts > kMaxParts) return;
+    if (parts_.empty()) {
+      parts_.resize(static_cast<std::size_t>(run.num_parts));
+      missing_ = parts_.size();
+      hash_ = run.scenario_hash;
+    }
+    if (static_cast<std::size_t>(run.num_parts) != parts_.size() || run.scenario_hash != hash_)
+      return;
+    if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return;
+    std::string& part = parts_[static_cast<std::size_t>(run.header.step)];
+    if (!part.empty()) return;
+    part = run.text;
+    --missing_;
+  }
+
+  bool empty() const { return parts_.empty(); }
+  bool Complete() const { return !parts_.empty() && missing_ == 0; }
+
+  /// Number of the first part that is missing; 0 when nothing has come yet.
+  std::int64_t FirstMissing() const {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (parts_[i].empty()) return static_cast<std::int64_t>(i);
+    }
+    return 0;
+  }
+
+  const std::string& hash() const { return hash_; }
+  const std::vector<std::string>& parts() const { return parts_; }
+
+  /// The whole text. @pre Complete()
+  std::string Text() const {
+    std::string text;
+    for (const std::string& part : parts_) text += part;
+    return text;
+  }
+
+  /// Whether the text is the one that the sender meant. @pre Complete()
+  bool HashHolds() const { return HashOf(Text()) == hash_; }
+
+ private:
+  std::vector<std::string> parts_;
+  std::size_t missing_ = 0;
+  std::string hash_;
+};
+
+}  // namespace fogline

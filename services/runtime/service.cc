@@ -1,0 +1,87 @@
+#include "services/runtime/service.h"
+
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void WatchSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = 1; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int TakePart(Bus& bus, Node& node) {
+  while (!node.left()) {
+    if (interrupted != 0) {
+      node.Leave();
+      return kInterrupted;
+    }
+    const TimePoint now = Clock::now();
+    bus.Wait(node.Poll(now) - now);
+  }
+  if (node.error().empty()) return kStopped;
+  fmt::print(stderr, "fogline-{}: error: {}\n", NameOf(node.role()), node.error());
+  return kFailed;
+}
+
+}  // namespace
+
+int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
+               const std::function<void(CLI::App&)>& extend) {
+  const std::string name = fmt::format("fogline-{}", NameOf(role));
+  std::string_view purpose;
+  for (const RoleInfo& info : kRoles) {
+    if (info.role == role) purpose = info.purpose;
+  }
+  CLI::App app{fmt::format("Fogline's {}: {}.\n"
+                           "Joins the next run that is announced on the LCM network, takes part in "
+                           "it, and leaves when the runner says so.",
+                           NameOf(role), purpose),
+               name};
+  app.set_version_flag("--version", FOGLINE_VERSION);
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  app.add_option("--lcm-url", url, "LCM network to join")
+      ->envname("LCM_DEFAULT_URL")
+      ->capture_default_str();
+  std::optional<std::int64_t> run_id;
+  app.add_option("--run-id", run_id, "Join only the run with this id");
+  if (extend) extend(app);
+  app.footer(
+      fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
+                  "\n\nExample: two shells of one machine\n"
+                  "  {0} --lcm-url 'udpm://239.255.76.67:7700?ttl=0'\n"
+                  "  fogline run scenario/paper.json --external {1} \\\n"
+                  "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'",
+                  name, NameOf(role)));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kStopped : kBadUsage;
+  }
+  WatchSignals();
+  try {
+    Bus bus(url);
+    const std::unique_ptr<Node> node = make(bus, run_id);
+    return TakePart(bus, *node);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}: {}\n", name, error.what());
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,137 @@
+// An algorithm as a node: its typed inputs and outputs around the bytes of Node.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "services/runtime/algorithm.h"
+#include "services/runtime/lead_gate.h"
+#include "services/runtime/node.h"
+
+namespace fogline {
+
+template <class Algorithm>
+class StepNode final : public Node {
+ public:
+  using Traits = AlgorithmTraits<Algorithm>;
+
+  StepNode(Bus& bus, std::optional<std::int64_t> run_id) : Node(bus, Traits::kRole, run_id) {
+    if constexpr (Traits::kStarts) {
+      lead_ = 1;
+      gate_.emplace(bus);
+    }
+  }
+
+ private:
+  template <class Messages>
+  struct Rings;
+  template <class... M>
+  struct Rings<std::tuple<M...>> {
+    using Type = std::tuple<std::array<M, kRingSteps>...>;
+  };
+  using InputRings = typename Rings<typename Traits::Inputs>::Type;
+
+  void Configure(const Scenario& scenario) override {
+    algorithm_ = std::make_unique<Algorithm>(scenario);
+    if constexpr (Traits::kStarts) gate_->Configure(scenario, run_id());
+  }
+
+  std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) override {
+    std::string wrong = "no such input";
+    WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
+      using M = std::tuple_element_t<I, typename Traits::Inputs>;
+      if (inputs()[input].channel != IndexOf<M>()) return;
+      M& place = std::get<I>(rings_)[RingSlot(step)];
+      if (!Decode(bytes, place)) {
+        wrong = "wrong type or size";
+      } else {
+        wrong = FirstNonFiniteField(place);
+      }
+    });
+    return wrong;
+  }
+
+  void Compute(std::int64_t step) override {
+    if constexpr (Traits::kStarts) {
+      if (step == 0) return Publish(step, algorithm_->Start(run_id()));
+    }
+    const std::size_t slot = RingSlot(step - lead_);
+    Publish(step, std::apply([&](const auto&... ring)
+                                 -> decltype(auto) { return algorithm_->Step(ring[slot]...); },
+                             rings_));
+  }
+
+  bool MayCompute(std::int64_t step, TimePoint now) override {
+    if constexpr (Traits::kStarts) return gate_->Open(step, now);
+    return true;
+  }
+  void OnGo(const run_t& run, TimePoint now) override {
+    if constexpr (Traits::kStarts) {
+      gate_->OnGo(run, now);
+      Expect(next());
+      Advance(now);
+    }
+  }
+  TimePoint PollMore(TimePoint now) override {
+    if constexpr (Traits::kStarts) {
+      if (Running() && gate_->Finished(next())) {
+        if (AllInputsOf(next() - 1)) SetState(status_t::DONE);
+      } else if (Running() && gate_->started()) {
+        Expect(next());
+      }
+      if (const auto step = gate_->WantsRecorded(next(), now)) {
+        Ask(ChannelOf<status_t>().name, *step);
+      }
+      return gate_->NextPoll(next(), now);
+    }
+    return now + kHeartbeat;
+  }
+  bool AllInputsOf(std::int64_t step) {
+    for (const Input& input : inputs()) {
+      if (!input.ring.Has(step)) return false;
+    }
+    return true;
+  }
+
+  void Publish(std::int64_t step, const typename Traits::Output& output) {
+    if constexpr (std::is_same_v<std::tuple<typename Traits::Output>, typename Traits::Outputs>) {
+      PublishOne(step, output);
+    } else {
+      WithIndex<std::tuple_size_v<typename Traits::Outputs>>(
+          [&]<std::size_t I> { PublishOne(step, std::get<I>(output)); });
+    }
+    if constexpr (Traits::kStarts) {
+      if (std::get<truth_t>(output).last) gate_->SetFinal(step);
+    }
+  }
+
+  template <class M>
+  void PublishOne(std::int64_t step, const M& message) {
+    if (const std::string_view field = FirstNonFiniteField(message); !field.empty()) {
+      throw std::runtime_error(fmt::format("step {}: {} of {} is not a finite number", step, field,
+                                           ChannelOf<M>().name));
+    }
+    Encode(message, encoded_);
+    Emit(IndexOf<M>(), step, encoded_);
+  }
+
+  template <std::size_t N, class F>
+  static void WithIndex(F&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<I>(), ...); }
+    (std::make_index_sequence<N>{});
+  }
+
+  std::unique_ptr<Algorithm> algorithm_;
+  InputRings rings_;
+  std::vector<std::uint8_t> encoded_;
+  std::optional<LeadGate> gate_;  // of the role that begins the steps
+};
+
+}  // namespace fogline

@@ -1,0 +1,69 @@
+// The last steps of one channel as encoded bytes, by step.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "services/runtime/wire.h"
+
+namespace fogline {
+
+/// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder,
+/// so whatever somebody may still ask for is in the ring of its producer.
+inline constexpr std::int64_t kRingSteps = 64;
+inline constexpr std::int64_t kMaxAhead = 32;
+
+/// Where a step lies in any ring.
+inline constexpr std::size_t RingSlot(std::int64_t step) {
+  return static_cast<std::size_t>(step % kRingSteps);
+}
+
+/// Ring of messages. Buffers are reused: no allocation once they have grown.
+class StepRing {
+ public:
+  /// What to do with a message that arrives.
+  enum class Verdict {
+    kNew,          // Store() it
+    kDuplicate,    // known already, or so old that nobody needs it
+    kConflict,     // the same step with other bytes: two producers, or a producer that is not a
+                   // function
+    kOutOfWindow,  // so far ahead that it cannot belong to a run in step
+  };
+
+  /// @param needed the next step that the reader of this ring works on
+  Verdict Classify(std::int64_t step, Bytes bytes, std::int64_t needed) const {
+    const Slot& slot = slots_[RingSlot(step)];
+    if (slot.step == step) {
+      return std::ranges::equal(slot.bytes, bytes) ? Verdict::kDuplicate : Verdict::kConflict;
+    }
+    if (slot.step > step || step < needed) return Verdict::kDuplicate;
+    return step < needed + kRingSteps ? Verdict::kNew : Verdict::kOutOfWindow;
+  }
+
+  void Store(std::int64_t step, Bytes bytes) {
+    Slot& slot = slots_[RingSlot(step)];
+    slot.step = step;
+    slot.bytes.assign(bytes.begin(), bytes.end());
+    newest_ = std::max(newest_, step);
+  }
+
+  bool Has(std::int64_t step) const { return slots_[RingSlot(step)].step == step; }
+
+  /// Bytes of a step that the ring has.
+  Bytes Get(std::int64_t step) const { return slots_[RingSlot(step)].bytes; }
+
+  /// Highest step stored, -1 if none.
+  std::int64_t newest() const { return newest_; }
+
+ private:
+  struct Slot {
+    std::int64_t step = -1;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::array<Slot, kRingSteps> slots_;
+  std::int64_t newest_ = -1;
+};
+
+}  // namespace fogline

@@ -1,0 +1,82 @@
+// Messages as bytes: encoding, checked decoding, the parts of every message's header.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "fogline/fields.hpp"
+#include "services/graph.h"
+
+namespace fogline {
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// The most that a per-step message may take, so that it travels in one Ethernet frame
+/// unfragmented.
+inline constexpr std::size_t kMaxStepMessageBytes = 1400;
+
+/// Every message begins with its type's fingerprint (8 bytes) and header_t: run_id, step, utime.
+inline constexpr std::size_t kRunIdOffset = 8;
+inline constexpr std::size_t kStepOffset = 16;
+inline constexpr std::size_t kHeaderEnd = 32;
+
+/// Big-endian integer at an offset; the caller has checked the size.
+inline std::int64_t ReadInt64(Bytes bytes, std::size_t offset) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, bytes.data() + offset, sizeof(value));
+  if constexpr (std::endian::native == std::endian::little) value = __builtin_bswap64(value);
+  return static_cast<std::int64_t>(value);
+}
+
+/// Encodes a message into `buffer`, which keeps its capacity.
+template <class M>
+void Encode(const M& message, std::vector<std::uint8_t>& buffer) {
+  buffer.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
+}
+
+/// Decodes a whole message; false if the bytes are not exactly one message of this type.
+template <class M>
+[[nodiscard]] bool Decode(Bytes bytes, M& message) {
+  return bytes.size() >= kHeaderEnd &&
+         message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) ==
+             static_cast<int>(bytes.size());
+}
+
+/// Name of the first field with a value that is not finite, "" if there is none.
+template <class M>
+std::string_view FirstNonFiniteField(const M& message) {
+  std::string_view found;
+  VisitFields(message, [&found](std::string_view name, const auto& value) {
+    using V = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<V, double>) {
+      if (found.empty() && !std::isfinite(value)) found = name;
+    } else if constexpr (std::is_same_v<V, std::span<const double>>) {
+      for (const double element : value) {
+        if (found.empty() && !std::isfinite(element)) found = name;
+      }
+    }
+  });
+  return found;
+}
+
+/// One number that two builds share only if all their message types agree.
+inline std::int64_t TypeFingerprint() {
+  std::uint64_t hash = 0;
+  std::apply(
+      [&hash](const auto&... channel) {
+        ((hash = std::rotl(hash, 5) ^
+                 static_cast<std::uint64_t>(std::decay_t<decltype(channel)>::Message::getHash())),
+         ...);
+      },
+      kGraph);
+  return static_cast<std::int64_t>(hash);
+}
+
+}  // namespace fogline
