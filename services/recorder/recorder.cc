@@ -29,14 +29,7 @@ Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::file
 void Recorder::Configure(const Scenario& /*scenario*/) {
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
-    run_t run{};
-    run.header = {.run_id = run_id(), .step = static_cast<std::int64_t>(i), .utime = 0};
-    run.phase = run_t::PREPARE;
-    run.pace = 0;
-    run.scenario_hash = parts().hash();
-    run.type_fingerprint = TypeFingerprint();
-    run.num_parts = static_cast<std::int32_t>(parts().parts().size());
-    run.text = parts().parts()[i];
+    const run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
     Encode(run, buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }

@@ -1,6 +1,6 @@
 #include "services/recorder/run_log.h"
 
-#include <algorithm>
+#include <map>
 
 #include <fmt/core.h>
 
@@ -16,10 +16,42 @@ constexpr std::size_t ChannelsPerStep() {
   return count;
 }
 
+}  // namespace
+
 /// Puts the events of a log together to steps.
-class Assembler {
+class RunLogReader::Assembler {
  public:
-  Assembler(RunLog& run, const StepVisitor& visit) : run_(run), visit_(visit) {}
+  explicit Assembler(const std::filesystem::path& file) : file_(file), reader_(file) {}
+
+  const StepMessages* Next() {
+    while (!Ready()) {
+      const auto event = reader_.Next();
+      if (!event) {
+        if (!finished_) Finish();
+        return nullptr;
+      }
+      Take(*event);
+    }
+    current_ = pending_.begin()->second.messages;
+    pending_.erase(pending_.begin());
+    if (Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
+    ++run_.steps;
+    return &current_;
+  }
+
+  const RunLog& run() const { return run_; }
+
+ private:
+  struct Pending {
+    StepMessages messages{};
+    std::size_t count = 0;
+  };
+
+  /// The next step is complete.
+  bool Ready() const {
+    return !pending_.empty() && pending_.begin()->first == run_.steps &&
+           pending_.begin()->second.count == ChannelsPerStep();
+  }
 
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
@@ -36,27 +68,23 @@ class Assembler {
     if (!pending.messages[channel].empty()) return;
     pending.messages[channel] = event.data;
     ++pending.count;
-    while (!pending_.empty() && pending_.begin()->first == run_.steps &&
-           pending_.begin()->second.count == ChannelsPerStep()) {
-      Deliver(pending_.begin()->second.messages);
-      pending_.erase(pending_.begin());
-    }
   }
 
-  void Finish(const std::filesystem::path& file, const std::string& torn) {
+  void Finish() {
+    finished_ = true;
     if (!parts_.Complete()) {
       throw InputError(
-          fmt::format("{}: error: the log has no complete scenario of a run", file.string()));
+          fmt::format("{}: error: the log has no complete scenario of a run", file_.string()));
     }
     if (!parts_.HashHolds()) {
       throw InputError(
-          fmt::format("{}: error: the scenario in the log does not match its hash", file.string()));
+          fmt::format("{}: error: the scenario in the log does not match its hash", file_.string()));
     }
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();
-    run_.scenario = ParseScenario(run_.scenario_text, file.string());
+    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
     run_.complete = last_ && pending_.empty();
-    run_.note = torn;
+    run_.note = reader_.torn();
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
     };
@@ -66,12 +94,6 @@ class Assembler {
     }
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
   }
-
- private:
-  struct Pending {
-    StepMessages messages{};
-    std::size_t count = 0;
-  };
 
   std::size_t Find(std::string_view name) {
     // The recorder writes channels in the order of the table: the next one is the best guess.
@@ -91,12 +113,6 @@ class Assembler {
     if (run.header.run_id == run_.run_id) parts_.Add(run);
   }
 
-  void Deliver(const StepMessages& messages) {
-    if (Decode(messages[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
-    visit_(run_.steps, messages);
-    ++run_.steps;
-  }
-
   static std::string Lacking(const StepMessages& messages) {
     std::string names;
     for (std::size_t i = 0; i < kNumChannels; ++i) {
@@ -106,25 +122,23 @@ class Assembler {
     return names;
   }
 
-  RunLog& run_;
-  const StepVisitor& visit_;
+  std::filesystem::path file_;
+  EventLogReader reader_;
+  RunLog run_;
   ScenarioParts parts_;
   std::map<std::int64_t, Pending> pending_;
+  StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
   truth_t truth_{};
   bool last_ = false;
+  bool finished_ = false;
 };
 
-}  // namespace
-
-RunLog ReadRunLog(const std::filesystem::path& file, const StepVisitor& visit) {
-  RunLog run;
-  EventLogReader reader(file);
-  Assembler assembler(run, visit);
-  while (const auto event = reader.Next()) assembler.Take(*event);
-  assembler.Finish(file, reader.torn());
-  return run;
-}
+RunLogReader::RunLogReader(const std::filesystem::path& file)
+    : assembler_(std::make_unique<Assembler>(file)) {}
+RunLogReader::~RunLogReader() = default;
+const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
+const RunLog& RunLogReader::run() const { return assembler_->run(); }
 
 }  // namespace fogline

@@ -4,8 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
+#include <memory>
 #include <string>
 
 #include "scenario/scenario.h"
@@ -22,17 +21,29 @@ struct RunLog {
   Scenario scenario;
   std::string scenario_text;
   std::string scenario_hash;
-  std::int64_t steps = 0;  // complete ones, handed to the visitor
+  std::int64_t steps = 0;  // complete ones
   bool complete = false;   // the last step says that it is the last, and none is missing
   std::string note;        // why it is not complete, or what was ignored; "" if nothing
 };
 
-/// Called with every complete step, in order, from 0. The bytes are valid during the call.
-using StepVisitor = std::function<void(std::int64_t step, const StepMessages&)>;
+/// Reads the run of a log that the recorder or lcm-logger wrote, step by step, in whatever order its
+/// events stand; within bounded memory when they are in order.
+class RunLogReader {
+ public:
+  /// @throws InputError when the file cannot be read or is no event log
+  explicit RunLogReader(const std::filesystem::path& file);
+  ~RunLogReader();
 
-/// Reads the run of a log that the recorder or lcm-logger wrote, in whatever order its events
-/// stand, within bounded memory for logs in order.
-/// @throws InputError when the file cannot be read, is no event log or has no scenario of a run
-RunLog ReadRunLog(const std::filesystem::path& file, const StepVisitor& visit);
+  /// The next complete step, from 0 on; the bytes live as long as the reader. nullptr at the end.
+  /// @throws InputError at the end, when the log has no scenario of a run
+  const StepMessages* Next();
+
+  /// About the whole log, once Next() has come to its end.
+  const RunLog& run() const;
+
+ private:
+  class Assembler;
+  std::unique_ptr<Assembler> assembler_;
+};
 
 }  // namespace fogline

@@ -145,14 +145,7 @@ void Conductor::OnResend(Bytes bytes) {
 }
 
 void Conductor::Announce(std::int8_t phase, std::size_t part) {
-  run_t run{};
-  run.header = {.run_id = options_.run_id, .step = static_cast<std::int64_t>(part), .utime = 0};
-  run.phase = phase;
-  run.pace = options_.pace;
-  run.scenario_hash = hash_;
-  run.type_fingerprint = TypeFingerprint();
-  run.num_parts = static_cast<std::int32_t>(parts_.size());
-  run.text = parts_[part];
+  const run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
   Encode(run, buffer_);
   bus_.Publish(ChannelOf<run_t>().name, buffer_);
 }

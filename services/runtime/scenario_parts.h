@@ -25,6 +25,22 @@ inline std::vector<std::string> SplitScenario(std::string_view text) {
   return parts;
 }
 
+/// The RUN message that carries part `part` of a scenario.
+inline run_t MakeRunPart(std::int64_t run_id, std::int8_t phase, double pace,
+                         const std::string& hash, const std::vector<std::string>& parts,
+                         std::size_t part) {
+  run_t run{};
+  run.header.run_id = run_id;
+  run.header.step = static_cast<std::int64_t>(part);
+  run.phase = phase;
+  run.pace = pace;
+  run.scenario_hash = hash;
+  run.type_fingerprint = TypeFingerprint();
+  run.num_parts = static_cast<std::int32_t>(parts.size());
+  run.text = parts[part];
+  return run;
+}
+
 /// Collects the parts of one run's scenario, in any order and with repetitions.
 class ScenarioParts {
  public:

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "tools/fogline/interrupt.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -19,7 +20,9 @@ int Main(int argc, char** argv) {
       "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 failure at run time, "
       "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.");
   Action action;
-  AddCheck(app, action);
+  for (const auto add : {AddRun, AddTable, AddMetrics, AddReport, AddDigest, AddDiff, AddCheck}) {
+    add(app, action);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -30,6 +33,9 @@ int Main(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
+  } catch (const Interrupted& interrupted) {
+    fmt::print(stderr, "fogline: {}\n", interrupted.what());
+    return kInterrupted;
   } catch (const std::exception& error) {
     fmt::print(stderr, "fogline: error: {}\n", error.what());
     return kRunFailed;

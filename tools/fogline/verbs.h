@@ -20,6 +20,12 @@ enum ExitCode : int {
   kInterrupted = 130
 };
 
+void AddRun(CLI::App& app, Action& action);
+void AddTable(CLI::App& app, Action& action);
+void AddMetrics(CLI::App& app, Action& action);
+void AddReport(CLI::App& app, Action& action);
+void AddDigest(CLI::App& app, Action& action);
+void AddDiff(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 
 }  // namespace fogline

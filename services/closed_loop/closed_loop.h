@@ -1,0 +1,71 @@
+// The whole experiment in one process without messages: the same Step functions in the order of the
+// graph table. For sweeps, calibration and tests; what it computes is what the distributed run
+// does.
+#pragma once
+
+#include "scenario/scenario.h"
+#include "services/acc/acc.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/measures/sample.h"
+#include "services/radar/radar.h"
+#include "services/world/world.h"
+
+namespace fogline {
+
+/// The messages of one step; they belong to the algorithms and are valid until the next step.
+struct StepView {
+  const truth_t& truth;
+  const ego_t& ego;
+  const radar_t& radar;
+  const lidar_t& lidar;
+  const track_t& track;
+  const accel_command_t& acc;
+  const driver_command_t& driver;
+  const arbitration_t& host;
+  const follower_command_t& follower;
+
+  Sample ToSample() const {
+    return MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
+  }
+};
+
+class ClosedLoop {
+ public:
+  explicit ClosedLoop(const Scenario& scenario);
+
+  /// Computes the steps from 0 to the last, calling `visit(const StepView&)` after each. Call it
+  /// once.
+  template <class Visit>
+  void Run(std::int64_t run_id, Visit&& visit) {
+    const auto* made = &world_.Start(run_id);
+    while (true) {
+      const auto& [truth, ego] = *made;
+      const radar_t& radar = radar_.Step(truth);
+      const lidar_t& lidar = lidar_.Step(truth);
+      const track_t& track = fusion_.Step(ego, radar, lidar);
+      const accel_command_t& acc = acc_.Step(ego, track);
+      const driver_command_t& driver = driver_.Step(truth);
+      const arbitration_t& host = arbitrator_.Step(ego, radar, lidar, track, acc, driver);
+      const follower_command_t& follower = follower_.Step(truth);
+      visit(StepView{truth, ego, radar, lidar, track, acc, driver, host, follower});
+      if (truth.last) return;
+      made = &world_.Step(host, follower);
+    }
+  }
+
+ private:
+  World world_;
+  Radar radar_;
+  Lidar lidar_;
+  Fusion fusion_;
+  Acc acc_;
+  Driver driver_;
+  Arbitrator arbitrator_;
+  Follower follower_;
+};
+
+}  // namespace fogline

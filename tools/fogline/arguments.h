@@ -1,0 +1,55 @@
+// Arguments that several verbs share.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "scenario/loader.h"
+#include "tools/fogline/experiment.h"
+
+namespace fogline {
+
+/// SCENARIO, --set and --seed.
+class ScenarioArguments {
+ public:
+  explicit ScenarioArguments(CLI::App& verb, bool with_seed = true) {
+    verb.add_option("SCENARIO", file_, "Scenario file")->required();
+    verb.add_option("--set", overrides_, "Override a field: /arbitrator/threshold=0.8 (repeatable)")
+        ->allow_extra_args(false);
+    if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
+  }
+
+  /// @throws InputError
+  Scenario Load() const {
+    std::vector<std::string> overrides = overrides_;
+    if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
+    return LoadScenario(file_, overrides);
+  }
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::vector<std::string> overrides_;
+  std::string seed_;  // checked where all fields are
+};
+
+/// A log file to write: refuses one that exists unless `force`; makes its folder.
+/// @throws InputError
+void PrepareLog(const std::filesystem::path& log, bool force);
+
+/// "logs/STEM-1.lcm", or the first number that is free.
+std::filesystem::path FreshLog(const std::filesystem::path& scenario_file);
+
+/// --json output: `text` and a newline on stdout.
+void PrintJson(const std::string& text);
+
+/// {"name": value, ...} of a run's measures, to stand in a larger JSON text.
+std::string MeasuresJson(const RunMeasures& measures);
+
+/// The measures of a run as lines "name  value unit".
+std::string MeasuresText(const RunMeasures& measures);
+
+}  // namespace fogline

@@ -1,0 +1,188 @@
+#include "tools/fogline/bus_run.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "services/acc/acc.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/radar/radar.h"
+#include "services/recorder/recorder.h"
+#include "services/runtime/conductor.h"
+#include "services/runtime/step_node.h"
+#include "services/world/world.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/process_group.h"
+#include "tools/fogline/progress.h"
+
+namespace fogline {
+namespace {
+
+// How long a role may take to be ready, and to leave when it is told to.
+constexpr Duration kJoinLimit = milliseconds(10'000);
+constexpr Duration kLeaveLimit = milliseconds(1500);
+// How often the runner looks after its processes while no message comes.
+constexpr Duration kLookEvery = milliseconds(20);
+// STOP is said this often to roles that run elsewhere: their leaving cannot be seen.
+constexpr int kStopRepeats = 5;
+
+ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
+  return {.run_id = DrawRunId(),
+          .scenario_text = PrintScenario(scenario),
+          .pace = options.pace,
+          .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
+          .stall_limit = options.stall_limit};
+}
+
+// ---- memq --------------------------------------------------------------------------------------
+
+template <class Algorithm>
+std::unique_ptr<Node> MakeNode(Bus& bus, std::int64_t run_id) {
+  return std::make_unique<StepNode<Algorithm>>(bus, run_id);
+}
+
+void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scenario& scenario,
+                 const std::filesystem::path& log) {
+  std::vector<std::unique_ptr<Node>> nodes;
+  for (const auto make :
+       {MakeNode<World>, MakeNode<Radar>, MakeNode<Lidar>, MakeNode<Fusion>, MakeNode<Acc>,
+        MakeNode<Driver>, MakeNode<Arbitrator>, MakeNode<Follower>}) {
+    nodes.push_back(make(bus, run_id));
+  }
+  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log));
+  Progress progress("step", scenario.steps);
+  while (conductor.phase() == Conductor::Phase::kJoining ||
+         conductor.phase() == Conductor::Phase::kRunning) {
+    const TimePoint now = Clock::now();
+    TimePoint next = conductor.Poll(now);
+    for (const auto& node : nodes) next = std::min(next, node->Poll(now));
+    // Messages first: while there are any, nobody needs to look at the clock.
+    if (bus.Wait(next - Clock::now())) bus.Drain();
+    progress.Show(conductor.step());
+    if (WasInterrupted()) break;
+  }
+  conductor.Stop();
+  bus.Drain();
+}
+
+// ---- processes ---------------------------------------------------------------------------------
+
+std::filesystem::path ProgramOf(Role role) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
+         fmt::format("fogline-{}", NameOf(role));
+}
+
+void StartProcesses(ProcessGroup& group, const std::string& url, std::int64_t run_id,
+                    const ExperimentOptions& options, const std::filesystem::path& log) {
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(options.external, info.role) != options.external.end()) continue;
+    std::vector<std::string> arguments{"--lcm-url", url, "--run-id", std::to_string(run_id)};
+    if (info.role == Role::kRecorder) arguments.insert(arguments.end(), {"--log", log.string()});
+    group.Start(info.role, ProgramOf(info.role), arguments);
+  }
+}
+
+/// One line that says who died, then what it had to say.
+std::string Obituary(const ProcessGroup::Exit& exit, const Conductor& conductor) {
+  std::string text = fmt::format("{} (pid {}) {} at step {}", NameOf(exit.role), exit.pid, exit.how,
+                                 conductor.step());
+  for (const std::string& line : exit.lines) {
+    text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
+  }
+  return text;
+}
+
+/// Says STOP until every process has left; those that do not are killed.
+void EndProcesses(Bus& bus, Conductor& conductor, ProcessGroup& group,
+                  const ExperimentOptions& options) {
+  const TimePoint began = Clock::now();
+  int said = 0;
+  while ((!group.empty() && Clock::now() - began < kLeaveLimit) ||
+         (said < kStopRepeats && !options.external.empty())) {
+    conductor.Stop();
+    ++said;
+    const TimePoint pause = Clock::now() + kLookEvery;
+    while (bus.Wait(pause - Clock::now())) {
+    }
+    group.Collect();
+  }
+}
+
+void RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scenario& scenario,
+                    const ExperimentOptions& options, const std::filesystem::path& log) {
+  ProcessGroup group;
+  StartProcesses(group, bus.url(), run_id, options, log);
+  if (options.announce) {
+    fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
+    if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
+    if (!options.external.empty()) fmt::print(stderr, "waiting for {}\n", conductor.NotReady());
+  }
+  Progress progress("step", scenario.steps);
+  while (conductor.phase() == Conductor::Phase::kJoining ||
+         conductor.phase() == Conductor::Phase::kRunning) {
+    const TimePoint now = Clock::now();
+    const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
+    if (bus.Wait(next - now)) bus.Drain();
+    for (const ProcessGroup::Exit& exit : group.Collect()) {
+      conductor.Fail(Obituary(exit, conductor));
+    }
+    progress.Show(conductor.step());
+    if (WasInterrupted()) break;
+  }
+  EndProcesses(bus, conductor, group, options);
+}
+
+std::string UrlOf(const std::string& transport) {
+  if (transport == "memq") return "memq://";
+  if (transport == "udpm") return FreshMulticastUrl();
+  if (transport.find("://") != std::string::npos) return transport;
+  throw InputError(
+      fmt::format("error: --transport {}: neither direct, memq, udpm nor an LCM URL such as "
+                  "\"udpm://239.255.76.67:7667?ttl=0\"",
+                  transport));
+}
+
+}  // namespace
+
+std::int64_t DrawRunId() {
+  std::uint64_t id = 0;
+  randombytes_buf(&id, sizeof(id));
+  return static_cast<std::int64_t>(id >> 2) + 1;  // positive, so that it reads well
+}
+
+BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+                const std::filesystem::path& log) {
+  Bus bus(UrlOf(options.transport));
+  const ConductorOptions conducting = MakeConductorOptions(scenario, options);
+  Conductor conductor(bus, conducting);
+  const TimePoint began = Clock::now();
+  if (bus.url().starts_with("memq")) {
+    RunInMemory(bus, conductor, conducting.run_id, scenario, log);
+  } else {
+    RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
+  }
+  const std::string kept =
+      options.log.empty() ? "" : fmt::format("the log so far: {}", options.log.string());
+  if (conductor.phase() == Conductor::Phase::kFailed) {
+    throw std::runtime_error(conductor.error() + (kept.empty() ? "" : "\n  " + kept));
+  }
+  if (conductor.phase() != Conductor::Phase::kDone) {
+    throw Interrupted(fmt::format("interrupted at step {}{}{}", conductor.step(),
+                                  kept.empty() ? "" : "; ", kept));
+  }
+  return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
+          .repairs = conductor.Total(&status_t::repairs_asked)};
+}
+
+}  // namespace fogline

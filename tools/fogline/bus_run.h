@@ -1,0 +1,23 @@
+// A run over LCM: every role a node, in one process (memq) or as a process of its own (any URL).
+#pragma once
+
+#include <filesystem>
+
+#include "tools/fogline/experiment.h"
+
+namespace fogline {
+
+struct BusRun {
+  double wall_s = 0;
+  std::int64_t repairs = 0;
+};
+
+/// A run id that no other run has.
+std::int64_t DrawRunId();
+
+/// Runs a scenario to its end and leaves its log.
+/// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
+BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+                const std::filesystem::path& log);
+
+}  // namespace fogline

@@ -1,0 +1,56 @@
+// fogline digest: the digest of a run from its log.
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/recorder/run_log.h"
+#include "services/runtime/digest.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+struct DigestArguments {
+  std::vector<std::filesystem::path> logs;
+  bool json = false;
+};
+
+int RunDigest(const DigestArguments& arguments) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  bool complete = true;
+  for (const std::filesystem::path& log : arguments.logs) {
+    RunLogReader reader(log);
+    Digest digest;
+    while (const StepMessages* messages = reader.Next()) {
+      for (const Bytes message : *messages) {
+        if (!message.empty()) digest.Add(message);
+      }
+    }
+    const RunLog& run = reader.run();
+    complete = complete && run.complete;
+    if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", log.string(), run.note);
+    rows.push_back({{"log", log.string()},
+                    {"digest", digest.Hex()},
+                    {"steps", run.steps},
+                    {"complete", run.complete}});
+    if (!arguments.json) fmt::print("{}  {}\n", digest.Hex(), log.string());
+  }
+  if (arguments.json) PrintJson(rows.dump(2));
+  return complete ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void AddDigest(CLI::App& app, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("digest", "Print the digest of logs: equal digests, equal runs");
+  const auto arguments = std::make_shared<DigestArguments>();
+  verb->add_option("LOG", arguments->logs, "Event logs")->required();
+  verb->add_flag("--json", arguments->json, "Print as JSON");
+  verb->footer("Exit code 1 when a log is not complete.\n\nExample:\n  fogline digest logs/*.lcm");
+  verb->callback([&action, arguments] { action = [arguments] { return RunDigest(*arguments); }; });
+}
+
+}  // namespace fogline

@@ -1,0 +1,57 @@
+// One run of a scenario, on any transport: the same steps, the same digest.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "services/graph.h"
+#include "services/measures/measures.h"
+#include "services/measures/sample.h"
+#include "services/runtime/clock.h"
+
+namespace fogline {
+
+struct ExperimentOptions {
+  /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
+  /// for each role, a multicast port of its own), or an LCM URL (a process for each role there).
+  std::string transport = "udpm";
+  /// Event log to write. Empty: a temporary one, or with direct none at all.
+  std::filesystem::path log;
+  double pace = 0;             // simulated seconds per second; 0: as fast as it goes
+  std::vector<Role> external;  // roles that somebody else starts
+  Duration stall_limit = milliseconds(4000);
+  bool announce = false;  // say on stderr where the run is and which processes take part
+};
+
+struct ExperimentResult {
+  std::int64_t seed = 0;
+  std::string transport;
+  std::int64_t steps = 0;
+  std::string digest;
+  double wall_s = 0;
+  std::int64_t repairs = 0;   // requests to publish something again
+  std::filesystem::path log;  // empty if there is none
+  RunMeasures measures;
+  std::vector<Sample> samples;
+};
+
+/// Runs a scenario to its end and reads the result from its log.
+/// @throws InputError for a transport or log that cannot be, Interrupted after Ctrl-C,
+///     std::runtime_error with one line that names the culprit when the run fails; a log stays
+///     readable
+ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
+
+/// A run as its log tells it. @throws InputError
+struct LoggedRun {
+  ExperimentResult result;
+  Scenario scenario;
+  std::string scenario_text;
+  bool complete = false;
+  std::string note;
+};
+LoggedRun ReadLoggedRun(const std::filesystem::path& log);
+
+}  // namespace fogline

@@ -1,0 +1,58 @@
+// fogline metrics: the measures of runs, from their logs alone.
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/pairing.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+struct MetricsArguments {
+  std::vector<std::filesystem::path> logs;
+  bool json = false;
+};
+
+int RunMetrics(const MetricsArguments& arguments) {
+  std::vector<LoggedRun> runs;
+  for (const std::filesystem::path& log : arguments.logs) runs.push_back(ReadLoggedRun(log));
+  const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const LoggedRun& run = runs[i];
+    if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", run.result.log.string(), run.note);
+    if (arguments.json) {
+      nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
+                                 {"seed", run.result.seed},        {"steps", run.result.steps},
+                                 {"complete", run.complete},       {"digest", run.result.digest}};
+      row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
+      row["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(run.result.measures));
+      rows.push_back(std::move(row));
+      continue;
+    }
+    fmt::print("{}: {}, seed {}\n", run.result.log.string(), run.scenario.title, run.result.seed);
+    if (improvements[i]) fmt::print("  {:<32}{:>12.4f} %\n", "si_pct", *improvements[i]);
+    fmt::print("{}", MeasuresText(run.result.measures));
+  }
+  if (arguments.json) PrintJson(rows.dump(2));
+  return kDone;
+}
+
+}  // namespace
+
+void AddMetrics(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("metrics", "Measure runs from their logs alone");
+  const auto arguments = std::make_shared<MetricsArguments>();
+  verb->add_option("LOG", arguments->logs, "Event logs")->required();
+  verb->add_flag("--json", arguments->json, "Print as JSON");
+  verb->footer(
+      "The safety improvement SI appears for runs whose pair without traded control (policy\n"
+      "automation) is among the logs.\n\nExamples:\n  fogline metrics logs/paper-1.lcm\n"
+      "  fogline metrics logs/paper-table/*.lcm --json");
+  verb->callback([&action, arguments] { action = [arguments] { return RunMetrics(*arguments); }; });
+}
+
+}  // namespace fogline

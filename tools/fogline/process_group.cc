@@ -1,0 +1,129 @@
+#include "tools/fogline/process_group.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+// Lines kept of what each process prints.
+constexpr std::size_t kKeptLines = 10;
+
+/// In the child, between fork and exec: only async-signal-safe calls.
+[[noreturn]] void Become(const char* program, char* const* arguments, int output, pid_t parent) {
+  // Killed when the runner dies, however it dies; out of reach of the terminal's Ctrl-C, which the
+  // runner turns into an orderly end.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  setpgid(0, 0);
+  const int null = open("/dev/null", O_RDONLY);
+  dup2(null, STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  execv(program, arguments);
+  constexpr char kText[] = "cannot be started\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText, sizeof(kText) - 1);
+  _exit(127);
+}
+
+std::string HowItEnded(int status) {
+  if (WIFSIGNALED(status)) {
+    return fmt::format("was killed by signal {} ({})", WTERMSIG(status),
+                       strsignal(WTERMSIG(status)));
+  }
+  return fmt::format("exited with code {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+ProcessGroup::~ProcessGroup() {
+  Signal(SIGKILL);
+  for (const Process& process : processes_) {
+    waitpid(process.pid, nullptr, 0);
+    close(process.output);
+  }
+}
+
+void ProcessGroup::Start(Role role, const std::filesystem::path& program,
+                         const std::vector<std::string>& arguments) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+  }
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  const std::string path = program.string();
+  std::vector<char*> argv{const_cast<char*>(path.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) Become(path.c_str(), argv.data(), ends[1], parent);
+  close(ends[1]);
+  if (pid < 0) {
+    close(ends[0]);
+    throw std::runtime_error(fmt::format("cannot start {}: {}", path, std::strerror(errno)));
+  }
+  processes_.push_back({.role = role, .pid = pid, .output = ends[0], .partial = {}, .lines = {}});
+}
+
+std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
+  std::vector<Exit> exits;
+  for (auto process = processes_.begin(); process != processes_.end();) {
+    ReadOutput(*process);
+    int status = 0;
+    if (waitpid(process->pid, &status, WNOHANG) != process->pid) {
+      ++process;
+      continue;
+    }
+    ReadOutput(*process);
+    if (!process->partial.empty()) process->lines.push_back(process->partial);
+    close(process->output);
+    exits.push_back({.role = process->role,
+                     .pid = process->pid,
+                     .how = HowItEnded(status),
+                     .clean = WIFEXITED(status) && WEXITSTATUS(status) == 0,
+                     .lines = {process->lines.begin(), process->lines.end()}});
+    process = processes_.erase(process);
+  }
+  return exits;
+}
+
+std::string ProcessGroup::Describe() const {
+  std::string text;
+  for (const Process& process : processes_) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", NameOf(process.role), process.pid);
+  }
+  return text;
+}
+
+void ProcessGroup::Signal(int signal) {
+  for (const Process& process : processes_) kill(process.pid, signal);
+}
+
+void ProcessGroup::ReadOutput(Process& process) {
+  std::array<char, 4096> buffer{};
+  while (true) {
+    const ssize_t size = read(process.output, buffer.data(), buffer.size());
+    if (size <= 0) return;
+    process.partial.append(buffer.data(), static_cast<std::size_t>(size));
+    std::size_t end = 0;
+    while ((end = process.partial.find('\n')) != std::string::npos) {
+      process.lines.push_back(process.partial.substr(0, end));
+      process.partial.erase(0, end + 1);
+      if (process.lines.size() > kKeptLines) process.lines.pop_front();
+    }
+  }
+}
+
+}  // namespace fogline

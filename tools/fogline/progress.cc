@@ -1,0 +1,48 @@
+#include "tools/fogline/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+constexpr Duration kShowAfter = milliseconds(2000);
+constexpr Duration kShowEvery = milliseconds(100);
+constexpr int kBarWidth = 30;
+
+}  // namespace
+
+Progress::Progress(std::string what, std::int64_t total)
+    : what_(std::move(what)),
+      total_(std::max<std::int64_t>(1, total)),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      began_(Clock::now()),
+      next_(began_ + kShowAfter) {}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::Show(std::int64_t done) {
+  if (!terminal_) return;
+  const TimePoint now = Clock::now();
+  if (now < next_) return;
+  next_ = now + kShowEvery;
+  shown_ = true;
+  const double share =
+      std::clamp(static_cast<double>(done) / static_cast<double>(total_), 0.0, 1.0);
+  const double spent = std::chrono::duration<double>(now - began_).count();
+  const auto filled = static_cast<int>(share * kBarWidth);
+  fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {:3.0f} %  {} {}/{}  {:.0f}/s", "", filled, "",
+             kBarWidth - filled, 100 * share, what_, done, total_,
+             static_cast<double>(done) / spent);
+  if (share > 0) fmt::print(stderr, "  {:.0f} s left", spent * (1 - share) / share);
+  std::fflush(stderr);
+}
+
+}  // namespace fogline

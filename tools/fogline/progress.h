@@ -1,0 +1,32 @@
+// A progress bar on stderr, for a person at a terminal, for work that takes longer than two
+// seconds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "services/runtime/clock.h"
+
+namespace fogline {
+
+class Progress {
+ public:
+  /// @param what what is counted, such as "step"; @param total how many there are
+  Progress(std::string what, std::int64_t total);
+  /// Erases the bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Show(std::int64_t done);
+
+ private:
+  std::string what_;
+  std::int64_t total_;
+  bool terminal_;
+  bool shown_ = false;
+  TimePoint began_;
+  TimePoint next_;
+};
+
+}  // namespace fogline

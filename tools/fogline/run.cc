@@ -1,0 +1,127 @@
+// fogline run: one run of a scenario.
+#include <cstdio>
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/experiment.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+constexpr const char* kExamples =
+    R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
+otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
+its log, and gives exit code 130.
+
+Examples:
+  fogline run scenario/paper.json
+  fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
+  fogline run scenario/paper.json --pace 1       in real speed, to watch with lcm-spy
+  fogline run scenario/paper.json --transport memq --json
+  fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
+
+struct RunArguments {
+  explicit RunArguments(CLI::App& verb) : scenario(verb) {
+    verb.add_option("--transport", options.transport,
+                    "direct: one process, no messages; memq: one process, LCM in memory; udpm: one "
+                    "process per role on a multicast port of its own; or an LCM URL")
+        ->capture_default_str();
+    verb.add_option("--lcm-url", url, "The same as --transport URL");
+    verb.add_option("--log", options.log, "Event log to write");
+    verb.add_flag("--force", force, "Replace the log if it exists");
+    verb.add_option("--pace", options.pace,
+                    "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    verb.add_option("--external", external, "Wait for this role, started elsewhere (repeatable)")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(RoleNames()));
+    verb.add_option("--stall-timeout", stall_s,
+                    "End the run when no step completes for so long, in s")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    verb.add_flag("--json", json, "Print the result as JSON");
+    verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
+    verb.footer(kExamples);
+  }
+
+  static std::vector<std::string> RoleNames() {
+    std::vector<std::string> names;
+    for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+    return names;
+  }
+
+  ScenarioArguments scenario;
+  ExperimentOptions options;
+  std::string url;
+  std::vector<std::string> external;
+  double stall_s = 4.0;
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult& result) {
+  nlohmann::ordered_json json;
+  json["scenario"] = scenario.string();
+  json["seed"] = result.seed;
+  json["transport"] = result.transport;
+  json["steps"] = result.steps;
+  json["digest"] = result.digest;
+  json["wall_s"] = result.wall_s;
+  json["log"] = result.log.empty() ? nlohmann::ordered_json(nullptr) : result.log.string();
+  json["repairs"] = result.repairs;
+  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
+  return json.dump(2);
+}
+
+int Run(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
+  if (!arguments.url.empty()) options.transport = arguments.url;
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(arguments.external, info.name) != arguments.external.end()) {
+      options.external.push_back(info.role);
+    }
+  }
+  const bool direct = options.transport == "direct";
+  if (!options.external.empty() && (direct || options.transport.starts_with("memq"))) {
+    throw InputError(fmt::format(
+        "error: --external {}: nobody can join a run with --transport {}, which is one process",
+        arguments.external.front(), options.transport));
+  }
+  options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
+  options.announce = !arguments.quiet;
+  const Scenario scenario = arguments.scenario.Load();
+  if (!options.log.empty()) {
+    PrepareLog(options.log, arguments.force);
+  } else if (!direct) {
+    options.log = FreshLog(arguments.scenario.file());
+  }
+  WatchInterrupts();
+  const ExperimentResult result = RunExperiment(scenario, options);
+  if (arguments.json) {
+    PrintJson(ToJson(arguments.scenario.file(), result));
+    return kDone;
+  }
+  fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
+             result.steps, result.wall_s, result.transport, result.repairs);
+  fmt::print("digest {}\n", result.digest);
+  if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
+  fmt::print("{}", MeasuresText(result.measures));
+  return kDone;
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("run", "Run a scenario, one process for each role");
+  const auto arguments = std::make_shared<RunArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace fogline
