@@ -1,0 +1,141 @@
+#include "tests/support/command.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace fogline::test {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+// How often a condition outside this process is looked at.
+constexpr std::chrono::milliseconds kLookEvery(5);
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::filesystem::path ProgramDirectory() {
+  return std::filesystem::path(FOGLINE_BINARY_DIR) / "bin";
+}
+std::filesystem::path SourceDirectory() { return FOGLINE_SOURCE_DIR; }
+std::string Program(const std::string& name) { return (ProgramDirectory() / name).string(); }
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "fogline-test-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+  path_ = name;
+}
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+Background::Background(const std::vector<std::string>& command) {
+  std::string name = (std::filesystem::temp_directory_path() / "fogline-out-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+  directory_ = name;
+  std::vector<char*> argv;
+  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const std::string out = (directory_ / "out").string();
+  const std::string err = (directory_ / "err").string();
+  pid_ = fork();
+  if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    setpgid(0, 0);
+    if (chdir(FOGLINE_SOURCE_DIR) != 0) _exit(127);
+    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    execvp(argv[0], argv.data());
+    _exit(127);
+  }
+  if (pid_ < 0) throw std::runtime_error("cannot start " + command.front());
+}
+
+Background::~Background() {
+  if (!ended_) {
+    kill(-pid_, SIGKILL);
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(directory_, ignored);
+}
+
+void Background::Signal(int signal) const { kill(pid_, signal); }
+
+int Background::Wait(std::chrono::seconds limit) {
+  const auto end = SteadyClock::now() + limit;
+  while (!ended_) {
+    int status = 0;
+    if (waitpid(pid_, &status, WNOHANG) == pid_) {
+      ended_ = true;
+      status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    } else if (SteadyClock::now() > end) {
+      kill(-pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+      ended_ = true;
+    } else {
+      std::this_thread::sleep_for(kLookEvery);
+    }
+  }
+  return status_;
+}
+
+std::string Background::Out() const { return Content(directory_ / "out"); }
+std::string Background::Err() const { return Content(directory_ / "err"); }
+
+bool Background::WaitForErr(const std::string& text, std::chrono::seconds limit) {
+  return WaitFor(directory_ / "err", text, limit);
+}
+bool Background::WaitForOut(const std::string& text, std::chrono::seconds limit) {
+  return WaitFor(directory_ / "out", text, limit);
+}
+
+bool Background::WaitFor(const std::filesystem::path& file, const std::string& text,
+                         std::chrono::seconds limit) {
+  const auto end = SteadyClock::now() + limit;
+  while (Content(file).find(text) == std::string::npos) {
+    if (SteadyClock::now() > end || !IsAlive(pid_)) return false;
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return true;
+}
+
+Outcome RunCommand(const std::vector<std::string>& command, std::chrono::seconds limit) {
+  Background process(command);
+  const int code = process.Wait(limit);
+  return {code, process.Out(), process.Err()};
+}
+
+bool IsAlive(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  if (!std::getline(stat, line)) return false;
+  // "pid (name) S ...": the state stands behind the last parenthesis.
+  const std::size_t end = line.rfind(')');
+  return end != std::string::npos && end + 2 < line.size() && line[end + 2] != 'Z';
+}
+
+pid_t PidOf(const std::string& err, const std::string& role) {
+  const std::size_t line = err.find("processes: ");
+  const std::size_t at = err.find(" " + role + " ", line == std::string::npos ? 0 : line);
+  return at == std::string::npos ? 0 : std::atoi(err.c_str() + at + role.size() + 2);
+}
+
+}  // namespace fogline::test

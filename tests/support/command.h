@@ -1,0 +1,79 @@
+// Real programs in tests: run to the end, or in the background until the test ends.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fogline::test {
+
+/// Folder of the built programs, and of the sources.
+std::filesystem::path ProgramDirectory();
+std::filesystem::path SourceDirectory();
+/// A program of this build by name, such as "fogline".
+std::string Program(const std::string& name);
+
+/// A program that runs; it and its output are gone with this object.
+class Background {
+ public:
+  /// Starts it in its own process group, in the source folder, with stdout and stderr into files.
+  explicit Background(const std::vector<std::string>& command);
+  ~Background();
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void Signal(int signal) const;
+  /// Waits for the end: exit code, or 128 + signal; -1 after the time limit (it is then killed).
+  int Wait(std::chrono::seconds limit = std::chrono::seconds(60));
+  std::string Out() const;
+  std::string Err() const;
+  /// Waits until stderr (or stdout) contains `text`; false after the time limit or when it has
+  /// ended.
+  bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
+  bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
+
+ private:
+  bool WaitFor(const std::filesystem::path& file, const std::string& text,
+               std::chrono::seconds limit);
+
+  std::filesystem::path directory_;
+  pid_t pid_ = -1;
+  int status_ = -1;
+  bool ended_ = false;
+};
+
+struct Outcome {
+  int code;
+  std::string out;
+  std::string err;
+};
+
+/// Runs a program to its end.
+Outcome RunCommand(const std::vector<std::string>& command,
+                   std::chrono::seconds limit = std::chrono::seconds(120));
+
+/// Whether a process with this id exists (a zombie does not count).
+bool IsAlive(pid_t pid);
+
+/// Numbers after "NAME " in "processes: world 4711, radar 4712": 0 if it is not there.
+pid_t PidOf(const std::string& err, const std::string& role);
+
+/// An empty folder that is removed with this object.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::string File(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace fogline::test

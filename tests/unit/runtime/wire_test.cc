@@ -1,0 +1,84 @@
+#include "services/runtime/wire.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "services/runtime/digest.h"
+
+namespace fogline {
+namespace {
+
+ego_t SomeEgo() {
+  ego_t ego{};
+  ego.header.run_id = 77;
+  ego.header.step = 12;
+  ego.header.utime = 1'200'000;
+  ego.speed_mps = 20.5;
+  ego.acceleration_mps2 = -0.25;
+  return ego;
+}
+
+TEST(WireTest, ReadsTheHeaderWhereEveryMessageHasIt) {
+  std::vector<std::uint8_t> bytes;
+  Encode(SomeEgo(), bytes);
+  EXPECT_EQ(ReadInt64(bytes, 0), ego_t::getHash());
+  EXPECT_EQ(ReadInt64(bytes, kRunIdOffset), 77);
+  EXPECT_EQ(ReadInt64(bytes, kStepOffset), 12);
+  EXPECT_EQ(ReadInt64(bytes, kStepOffset + 8), 1'200'000);
+}
+
+TEST(WireTest, DecodesOnlyExactlyOneMessageOfTheType) {
+  std::vector<std::uint8_t> bytes;
+  Encode(SomeEgo(), bytes);
+  ego_t ego{};
+  EXPECT_TRUE(Decode(bytes, ego));
+  EXPECT_EQ(ego.speed_mps, 20.5);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_FALSE(Decode(Bytes(bytes).first(size), ego)) << size << " bytes";
+  }
+  radar_t radar{};
+  EXPECT_FALSE(Decode(bytes, radar));
+  bytes.push_back(0);
+  EXPECT_FALSE(Decode(bytes, ego));
+}
+
+TEST(WireTest, FindsValuesThatAreNotFinite) {
+  ego_t ego = SomeEgo();
+  EXPECT_EQ(FirstNonFiniteField(ego), "");
+  ego.acceleration_mps2 = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(FirstNonFiniteField(ego), "acceleration_mps2");
+  truth_t truth{};
+  truth.num_followers = 1;
+  truth.follower_position_m = {0};
+  truth.follower_speed_mps = {0};
+  truth.follower_acceleration_mps2 = {0};
+  truth.follower_gap_m = {std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(FirstNonFiniteField(truth), "follower_gap_m");
+  track_t track{};
+  track.covariance[2][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(FirstNonFiniteField(track), "covariance");
+}
+
+TEST(DigestTest, LeavesTheRunIdOutAndNothingElse) {
+  std::vector<std::uint8_t> bytes;
+  const auto digest_of = [&bytes](const ego_t& ego) {
+    Encode(ego, bytes);
+    Digest digest;
+    digest.Add(bytes);
+    return digest.Hex();
+  };
+  const std::string digest = digest_of(SomeEgo());
+  ego_t other = SomeEgo();
+  other.header.run_id = 78;
+  EXPECT_EQ(digest_of(other), digest);
+  other.header.step = 13;
+  EXPECT_NE(digest_of(other), digest);
+  other = SomeEgo();
+  other.speed_mps = std::nextafter(other.speed_mps, 100);
+  EXPECT_NE(digest_of(other), digest);
+  EXPECT_EQ(digest.size(), 64U);
+}
+
+}  // namespace
+}  // namespace fogline
