@@ -1,0 +1,111 @@
+// What happens to a run when a process, the runner or the user ends it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "services/graph.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+/// A run in real speed that is well under way.
+class PacedRun {
+ public:
+  PacedRun()
+      : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--log",
+              folder_.File("run.lcm")}) {
+    EXPECT_TRUE(run_.WaitForErr("processes: "));
+    // Under way: the recorder has put the first steps on disk (it does so every few steps).
+    const auto end = SteadyClock::now() + std::chrono::seconds(20);
+    while (StepsOnDisk() < 1 && SteadyClock::now() < end) {
+    }
+    EXPECT_GE(StepsOnDisk(), 1);
+  }
+
+  std::vector<pid_t> Pids() const {
+    std::vector<pid_t> pids;
+    for (const RoleInfo& info : kRoles) pids.push_back(Pid(std::string(info.name)));
+    return pids;
+  }
+  pid_t Pid(const std::string& role) const { return PidOf(run_.Err(), role); }
+  Background& run() { return run_; }
+
+  /// Complete steps in the log as it is now.
+  int StepsOnDisk() const {
+    const Outcome digest =
+        RunCommand({Program("fogline"), "digest", "--json", folder_.File("run.lcm")});
+    const std::size_t at = digest.out.find("\"steps\": ");
+    return at == std::string::npos ? 0 : std::atoi(digest.out.c_str() + at + 9);
+  }
+
+ private:
+  ScratchFolder folder_;
+  Background run_;
+};
+
+class KilledRoleTest : public testing::TestWithParam<RoleInfo> {};
+
+TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAndNoProcess) {
+  const std::string role(GetParam().name);
+  // GIVEN a run that is well under way
+  PacedRun paced;
+  const std::vector<pid_t> pids = paced.Pids();
+  for (const pid_t pid : pids) ASSERT_GT(pid, 0);
+  // WHEN one of its processes is killed
+  kill(paced.Pid(role), SIGKILL);
+  const auto killed = SteadyClock::now();
+  // THEN the run ends with code 3 within 5 s
+  EXPECT_EQ(paced.run().Wait(), 3);
+  EXPECT_LT(SteadyClock::now() - killed, std::chrono::seconds(5));
+  // AND one line names the process
+  const std::string err = paced.run().Err();
+  EXPECT_NE(err.find("error: " + role + " (pid "), std::string::npos) << err;
+  EXPECT_NE(err.find("was killed by signal 9"), std::string::npos) << err;
+  // AND nothing runs on, and the log is readable
+  for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
+  EXPECT_GE(paced.StepsOnDisk(), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryRole, KilledRoleTest, testing::ValuesIn(kRoles),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(FaultTest, NamesAProcessThatHangs) {
+  PacedRun paced;
+  const std::vector<pid_t> pids = paced.Pids();
+  kill(paced.Pid("fusion"), SIGSTOP);
+  EXPECT_EQ(paced.run().Wait(), 3);
+  const std::string err = paced.run().Err();
+  EXPECT_NE(err.find("waits for TRACK from fusion (last heard: step "), std::string::npos) << err;
+  for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
+}
+
+TEST(FaultTest, EndsCleanlyOnCtrlCWithCode130) {
+  PacedRun paced;
+  const std::vector<pid_t> pids = paced.Pids();
+  paced.run().Signal(SIGINT);
+  EXPECT_EQ(paced.run().Wait(), 130);
+  EXPECT_NE(paced.run().Err().find("interrupted at step "), std::string::npos);
+  for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
+  EXPECT_GE(paced.StepsOnDisk(), 1);
+}
+
+TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
+  PacedRun paced;
+  const std::vector<pid_t> pids = paced.Pids();
+  paced.run().Signal(SIGKILL);
+  EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
+  const auto end = SteadyClock::now() + std::chrono::seconds(5);
+  for (const pid_t pid : pids) {
+    while (IsAlive(pid) && SteadyClock::now() < end) {
+    }
+    EXPECT_FALSE(IsAlive(pid)) << pid;
+  }
+  EXPECT_GE(paced.StepsOnDisk(), 1);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,144 @@
+// `fogline run` as a person uses it: real processes, real LCM, real logs.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+/// Runs paper.json (shortened where the whole length proves nothing more) and returns the JSON
+/// result.
+nlohmann::json RunPaper(const std::string& log, const std::vector<std::string>& more) {
+  std::vector<std::string> command{
+      Program("fogline"), "run", "scenario/paper.json", "--json", "--quiet", "--log", log};
+  command.insert(command.end(), more.begin(), more.end());
+  const Outcome outcome = RunCommand(command);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+TEST(RunTest, GivesTheSameDigestOnEveryTransportAndEveryTime) {
+  const ScratchFolder folder;
+  const auto direct = RunPaper(folder.File("direct.lcm"), {"--transport", "direct"});
+  const auto memq = RunPaper(folder.File("memq.lcm"), {"--transport", "memq"});
+  const auto udpm = RunPaper(folder.File("udpm.lcm"), {"--transport", "udpm"});
+  const auto again = RunPaper(folder.File("again.lcm"), {"--transport", "udpm"});
+  EXPECT_EQ(direct["steps"], 500);
+  EXPECT_EQ(udpm["steps"], 500);
+  EXPECT_EQ(udpm["digest"].get<std::string>().size(), 64U);
+  EXPECT_EQ(memq["digest"], direct["digest"]);
+  EXPECT_EQ(udpm["digest"], direct["digest"]);
+  EXPECT_EQ(again["digest"], direct["digest"]);
+  EXPECT_EQ(udpm["metrics"], direct["metrics"]);
+}
+
+TEST(RunTest, NamesTheFirstStepAndFieldInWhichRunsOfTwoSeedsDiffer) {
+  const ScratchFolder folder;
+  const auto one = RunPaper(folder.File("one.lcm"), {"--transport", "memq", "--seed", "1"});
+  const auto two = RunPaper(folder.File("two.lcm"), {"--transport", "memq", "--seed", "2"});
+  EXPECT_NE(one["digest"], two["digest"]);
+  // The first random number of a run is the radar's at step 0.
+  const Outcome diff =
+      RunCommand({Program("fogline"), "diff", folder.File("one.lcm"), folder.File("two.lcm")});
+  EXPECT_EQ(diff.code, 1);
+  EXPECT_EQ(diff.out.find("step 0: RADAR range_m: "), 0U) << diff.out;
+  const Outcome same =
+      RunCommand({Program("fogline"), "diff", folder.File("one.lcm"), folder.File("one.lcm")});
+  EXPECT_EQ(same.code, 0);
+  EXPECT_EQ(same.out, "equal: 500 steps\n");
+}
+
+TEST(RunTest, MeasuresALogAsItMeasuredTheRun) {
+  const ScratchFolder folder;
+  const auto run = RunPaper(folder.File("run.lcm"), {"--transport", "udpm"});
+  const Outcome metrics =
+      RunCommand({Program("fogline"), "metrics", folder.File("run.lcm"), "--json"});
+  ASSERT_EQ(metrics.code, 0) << metrics.err;
+  const auto measured = nlohmann::json::parse(metrics.out);
+  EXPECT_EQ(measured[0]["metrics"], run["metrics"]);
+  EXPECT_EQ(measured[0]["digest"], run["digest"]);
+  EXPECT_EQ(measured[0]["complete"], true);
+}
+
+TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {
+  // GIVEN two logs of the same run; WHEN their run ids (8 bytes of every payload) are left out
+  const ScratchFolder folder;
+  RunPaper(folder.File("memq.lcm"), {"--transport", "memq"});
+  RunPaper(folder.File("udpm.lcm"), {"--transport", "udpm"});
+  RunPaper(folder.File("direct.lcm"), {"--transport", "direct"});
+  const auto size = [&](const char* name) { return std::filesystem::file_size(folder.File(name)); };
+  // THEN they have the same events in the same order
+  EXPECT_EQ(size("memq.lcm"), size("udpm.lcm"));
+  EXPECT_EQ(size("memq.lcm"), size("direct.lcm"));
+  const Outcome diff =
+      RunCommand({Program("fogline"), "diff", folder.File("memq.lcm"), folder.File("udpm.lcm")});
+  EXPECT_EQ(diff.code, 0) << diff.out;
+}
+
+TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
+  const ScratchFolder folder;
+  // GIVEN a leader that stops dead and an ACC that may not brake
+  const auto run =
+      RunPaper(folder.File("crash.lcm"),
+               {"--transport", "udpm", "--set", "/lead/profile=emergency_brake", "--set",
+                "/arbitrator/policy=automation", "--set", "/acc/min_acceleration_mps2=-0.1"});
+  EXPECT_EQ(run["metrics"]["collision"], 1);
+  EXPECT_GT(run["metrics"]["collision_time_s"], 10.0);
+  EXPECT_LT(run["steps"], 500);
+  const Outcome digest = RunCommand({Program("fogline"), "digest", folder.File("crash.lcm")});
+  EXPECT_EQ(digest.code, 0) << "the log of a run that ends early is complete: " << digest.err;
+}
+
+TEST(RunTest, DoesNotOverwriteALogUnlessForced) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  std::ofstream(log) << "precious";
+  const std::vector<std::string> command{
+      Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log", log};
+  Outcome outcome = RunCommand(command);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, log + ": error: --log: the file exists; --force replaces it\n");
+  EXPECT_EQ(std::filesystem::file_size(log), 8U);
+  std::vector<std::string> forced = command;
+  forced.emplace_back("--force");
+  EXPECT_EQ(RunCommand(forced).code, 0);
+  EXPECT_GT(std::filesystem::file_size(log), 8U);
+}
+
+TEST(RunTest, RefusesBadArgumentsWithExitCode2AndOneClearLine) {
+  const std::string fogline = Program("fogline");
+  const auto error = [&](std::vector<std::string> more) {
+    std::vector<std::string> command{fogline, "run", "scenario/paper.json", "--quiet"};
+    command.insert(command.end(), more.begin(), more.end());
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(error({"--transport", "smoke"}).find("--transport smoke"), std::string::npos);
+  EXPECT_NE(error({"--external", "nobody"}).find("nobody"), std::string::npos);
+  EXPECT_NE(error({"--external", "driver", "--transport", "memq"}).find("one process"),
+            std::string::npos);
+  EXPECT_NE(error({"--pace", "-1"}).find("--pace"), std::string::npos);
+  EXPECT_NE(error({"--seed", "x"}).find("/seed"), std::string::npos);
+  EXPECT_NE(error({"--set", "/arbitrator/threshold=2"}).find("/arbitrator/threshold"),
+            std::string::npos);
+  EXPECT_EQ(RunCommand({fogline, "run", "no/such.json"}).code, 2);
+  EXPECT_EQ(RunCommand({fogline, "metrics", "scenario/paper.json"}).code, 2);
+  EXPECT_EQ(RunCommand({fogline, "rum"}).code, 2);
+}
+
+TEST(RunTest, ExplainsItself) {
+  for (const char* verb : {"run", "table", "metrics", "digest", "diff", "report", "check"}) {
+    const Outcome help = RunCommand({Program("fogline"), verb, "--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;
+  }
+  EXPECT_EQ(RunCommand({Program("fogline"), "--help"}).code, 0);
+  EXPECT_EQ(RunCommand({Program("fogline-fusion"), "--help"}).code, 0);
+}
+
+}  // namespace
+}  // namespace fogline::test
