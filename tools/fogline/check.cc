@@ -85,7 +85,7 @@ void AddCheck(CLI::App& app, Action& action) {
       ->type_name("/POINTER=VALUE");
   verb->add_flag("--print", options->print, "Print the scenario with all its defaults");
   verb->add_flag("--schema", options->schema, "Print the JSON schema of scenarios");
-  verb->add_option("--explain", options->explain, "Print a field's meaning, range, default, source")
+  verb->add_option("--explain", options->explain, "Print a field's meaning, range, default")
       ->type_name("/POINTER");
   verb->add_flag("--json", options->json, "Print mistakes as a JSON list");
   verb->footer(
