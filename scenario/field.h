@@ -42,6 +42,19 @@ struct ListSpec {
   std::string_view doc;
 };
 
+/// Longest text in a scenario file, in characters (Unicode code points). No character of a text is
+/// a control character (C0, DEL, C1), so a text can be shown on any terminal.
+inline constexpr std::int64_t kMaxTextLength = 4096;
+
+/// When the choice `choice` is `value`, the section `section` must be there with at least one of
+/// `fields` (texts or lists) that is not empty.
+struct NeedSpec {
+  std::string_view choice;
+  std::string_view value;
+  std::string_view section;
+  std::array<std::string_view, 2> fields;
+};
+
 /// Names of an enumeration's values in their order, as they stand in the file. Specialise for each
 /// enumeration: `static constexpr std::array kNames{...}` and, same size, `kDocs`.
 template <class Enum>

@@ -1,24 +1,25 @@
-// Scenario files: reading with every mistake reported at once, overriding, and writing.
+// Scenario files: reading with every mistake reported at once, overriding, writing, explaining.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenario/scenario.h"
 
 namespace fogline {
 
-/// One mistake in a scenario file.
+/// One mistake in a scenario.
 struct Mistake {
-  int line = 0;  // 1-based; 0 when the mistake has no place in the file (an override)
-  int column = 0;
+  std::string file;     // where it is: the file's name, or an override such as "--set /seed=x"
+  int line = 0;         // 1-based; 0 for an override and for a file that cannot be read
+  int column = 0;       // 1-based, in characters
   std::string pointer;  // JSON pointer of the field, such as /arbitrator/threshold
-  std::string rule;     // stable name of the broken rule, such as "range" or "unknown-key"
-  std::string message;
+  std::string rule;     // stable name of the broken rule, such as "range" (scenario/README.md)
+  std::string message;  // what is wrong, what is allowed, what may be meant
 };
 
 /// Bad input of a user: a program prints what() and exits with code 2.
@@ -27,8 +28,9 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A scenario file that breaks rules; what() has a line for each mistake (20 at most), in the order
-/// of the file, as `file:line:column: error: /pointer: message`.
+/// A scenario that breaks rules. what() has one line for each mistake (20 at most), in the order of
+/// the file, as `file:line:column: error: /pointer: message`, then the overrides', then their
+/// number. mistakes() has at least one and 1000 at most.
 class ScenarioError : public InputError {
  public:
   ScenarioError(const std::string& text, std::vector<Mistake> mistakes)
@@ -39,23 +41,31 @@ class ScenarioError : public InputError {
   std::vector<Mistake> mistakes_;
 };
 
-/// Reads a scenario file, applies `overrides` ("/arbitrator/threshold=0.8", as of --set), and
-/// resolves a recorded leader's CSV file (relative to the scenario's folder) into
-/// lead.recorded.speeds_mps.
-/// @throws ScenarioError, InputError (file missing or unreadable, bad override, bad CSV)
+/// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as of --set) before
+/// it checks anything. Where the leader is recorded and lead.recorded.speeds_mps is empty, reads
+/// the CSV file (relative to the scenario's folder) and fills it with the speeds at steps 0 to
+/// steps - 1, interpolated linearly.
+/// @throws ScenarioError
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// The same for text in memory; `name` stands for the file in messages. Resolves no CSV file.
-/// @throws ScenarioError, InputError
+/// The same for text in memory; `name` stands for the file in messages. Never reads another file.
+/// @throws ScenarioError
 Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",
                        const std::vector<std::string>& overrides = {});
 
-/// The effective scenario: JSON with every default written out. Equal scenarios give equal text,
-/// and ParseScenario(PrintScenario(s)) gives s back, bit by bit.
+/// The effective scenario: JSON with every default written out, and a line feed at the end. Equal
+/// scenarios give equal text, and ParseScenario(PrintScenario(s)) gives s back, bit by bit.
+/// @pre every value of `scenario` is within the range of its field
 std::string PrintScenario(const Scenario& scenario);
 
-/// JSON schema (draft-07) of scenario files, made from the same field descriptions.
+/// JSON schema (draft-07) of scenario files, made from the same field descriptions. It accepts
+/// exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
+
+/// What a field or section is, for a person: meaning, type, unit, range, default, source. "/" or ""
+/// is the whole scenario; a list's item is /published/0 or /published/*.
+/// @throws InputError (no such field)
+std::string ExplainField(std::string_view pointer);
 
 }  // namespace fogline

@@ -114,8 +114,12 @@ struct EmergencyBrakeSection {
   }
 };
 
-/// A recorded speed. The runner reads the file, resamples it to the steps and sends `speeds_mps`
-/// instead, so that no other machine needs the file.
+/// Most speeds that a recorded leader may have: 27 hours of 0.1 s steps.
+inline constexpr std::int64_t kMaxRecordedSpeeds = 1'000'000;
+
+/// A recorded speed. LoadScenario reads the file and fills `speeds_mps` with its speed at each
+/// step, so that no other machine needs the file. Where `speeds_mps` is given, `file` is only a
+/// note of its origin and is not read.
 struct RecordedSection {
   std::string file;
   std::string time_column = "Time";
@@ -126,7 +130,8 @@ struct RecordedSection {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Text("file", self.file,
-               "CSV file with a header line, relative to the scenario's folder.");
+               "CSV file with a header line, relative to the scenario's folder; only a note where "
+               "speeds_mps is given.");
     visit.Text("time_column", self.time_column, "Name of the column with the time in s.");
     visit.Text("speed_column", self.speed_column, "Name of the column with the speed in m/s.");
     visit.Number(
@@ -136,8 +141,8 @@ struct RecordedSection {
                   {.min = 0,
                    .max = 70,
                    .unit = "m/s",
-                   .doc = "Speed at each step, instead of a file; the last one holds on."},
-                  {.min_items = 0, .max_items = 1'000'000, .doc = ""});
+                   .doc = "Speed at steps 0, 1, 2 ..., instead of a file; the last one holds on."},
+                  {.min_items = 0, .max_items = kMaxRecordedSpeeds, .doc = ""});
   }
 };
 
@@ -163,6 +168,10 @@ struct LeadSection {
     visit.Section("sinusoid", self.sinusoid, "For profile sinusoid.");
     visit.Section("emergency_brake", self.emergency_brake, "For profile emergency_brake.");
     visit.Section("recorded", self.recorded, "For profile recorded.");
+    visit.Needs({.choice = "profile",
+                 .value = "recorded",
+                 .section = "recorded",
+                 .fields = {"file", "speeds_mps"}});
   }
 };
 

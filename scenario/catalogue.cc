@@ -1,0 +1,152 @@
+#include "scenario/catalogue.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "scenario/scenario.h"
+#include "scenario/wording.h"
+
+namespace fogline {
+namespace {
+
+// Visits a default scenario and notes each field.
+class CatalogueBuilder {
+ public:
+  CatalogueBuilder(std::vector<FieldInfo>& infos, std::string pointer)
+      : infos_(infos), pointer_(std::move(pointer)) {}
+
+  void Number(std::string_view name, const double& value, const NumberSpec& spec) {
+    Add(name, Allowed(spec), WithUnit(NumberText(value), spec.unit), spec.doc).source = spec.source;
+  }
+  void Integer(std::string_view name, const std::int64_t& value, const IntegerSpec& spec) {
+    Add(name, Allowed(spec), WithUnit(std::to_string(value), spec.unit), spec.doc).source =
+        spec.source;
+  }
+  void Flag(std::string_view name, const bool& value, std::string_view doc) {
+    Add(name, "true or false", value ? "true" : "false", doc);
+  }
+  void Text(std::string_view name, const std::string& value, std::string_view doc) {
+    Add(name, AllowedText(), Quote(value), doc);
+  }
+  template <class Enum>
+  void Choice(std::string_view name, const Enum& value, std::string_view doc) {
+    const std::span<const std::string_view> names = ChoiceNames<Enum>::kNames;
+    FieldInfo& info = Add(name, Names(names), Quote(names[static_cast<std::size_t>(value)]), doc);
+    info.choices = names;
+    info.choice_docs = ChoiceNames<Enum>::kDocs;
+  }
+  void Numbers(std::string_view name, const std::vector<double>&, const NumberSpec& spec,
+               const ListSpec& list) {
+    Add(name, "a list of numbers, " + Count(list), "[]", spec.doc).source = spec.source;
+    CatalogueBuilder(infos_, Pointer(name)).Add("*", Allowed(spec), "", spec.doc);
+  }
+  template <class T>
+  void Section(std::string_view name, const T& section, std::string_view doc) {
+    Add(name, "an object", "", doc).is_section = true;
+    CatalogueBuilder inner(infos_, Pointer(name));
+    T::Fields(section, inner);
+  }
+  template <class T>
+  void List(std::string_view name, const std::vector<T>&, const ListSpec& list) {
+    Add(name, "a list of objects, " + Count(list), "[]", list.doc);
+    CatalogueBuilder(infos_, Pointer(name)).Section("*", T{}, "An item of the list.");
+  }
+  void Needs(const NeedSpec& spec) {
+    const auto info = std::find_if(infos_.begin(), infos_.end(), [&](const FieldInfo& candidate) {
+      return candidate.pointer == Pointer(spec.section);
+    });
+    info->doc += fmt::format(" Needed with {} or {} where {} is {}.", spec.fields[0],
+                             spec.fields[1], spec.choice, Quote(spec.value));
+  }
+
+ private:
+  std::string Pointer(std::string_view name) const { return fmt::format("{}/{}", pointer_, name); }
+
+  FieldInfo& Add(std::string_view name, std::string allowed, std::string default_text,
+                 std::string_view doc) {
+    return infos_.emplace_back(FieldInfo{.pointer = Pointer(name),
+                                         .is_section = false,
+                                         .allowed = std::move(allowed),
+                                         .default_text = std::move(default_text),
+                                         .doc = std::string(doc),
+                                         .source = "",
+                                         .choices = {},
+                                         .choice_docs = {}});
+  }
+
+  std::vector<FieldInfo>& infos_;
+  std::string pointer_;
+};
+
+std::vector<FieldInfo> BuildCatalogue() {
+  std::vector<FieldInfo> infos{{.pointer = "/",
+                                .is_section = true,
+                                .allowed = "an object",
+                                .default_text = "",
+                                .doc = "A scenario.",
+                                .source = "",
+                                .choices = {},
+                                .choice_docs = {}}};
+  CatalogueBuilder builder(infos, "");
+  const Scenario defaults;
+  Scenario::Fields(defaults, builder);
+  return infos;
+}
+
+// Each segment of digits becomes *.
+std::string WithoutIndices(std::string_view pointer) {
+  std::string out;
+  while (!pointer.empty()) {
+    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
+    const std::string_view segment = pointer.substr(0, end);
+    const bool index = segment.size() > 1 && segment[0] == '/' &&
+                       segment.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    out += index ? "/*" : segment;
+    pointer.remove_prefix(end);
+  }
+  return out;
+}
+
+std::string_view LastSegment(std::string_view pointer) {
+  return pointer.substr(std::min(pointer.rfind('/'), pointer.size()));
+}
+
+}  // namespace
+
+const std::vector<FieldInfo>& Catalogue() {
+  static const std::vector<FieldInfo> catalogue = BuildCatalogue();
+  return catalogue;
+}
+
+const FieldInfo* FindField(std::string_view pointer) {
+  const std::string wanted = pointer.empty() ? "/" : WithoutIndices(pointer);
+  const auto& catalogue = Catalogue();
+  const auto it = std::find_if(catalogue.begin(), catalogue.end(),
+                               [&](const FieldInfo& info) { return info.pointer == wanted; });
+  return it == catalogue.end() ? nullptr : &*it;
+}
+
+std::string NearestKnownPointer(std::string_view pointer) {
+  while (!pointer.empty() && FindField(pointer) == nullptr) {
+    pointer = pointer.substr(0, std::min(pointer.rfind('/'), pointer.size() - 1));
+  }
+  return pointer.empty() ? "/" : std::string(pointer);
+}
+
+std::optional<std::string_view> SuggestPointer(std::string_view pointer) {
+  std::vector<std::string_view> pointers;
+  for (const FieldInfo& info : Catalogue()) pointers.emplace_back(info.pointer);
+  if (const auto alike = Nearest(WithoutIndices(pointer), pointers)) return alike;
+  const std::string_view name = LastSegment(pointer);
+  const auto same = std::find_if(pointers.begin(), pointers.end(), [name](std::string_view known) {
+    return name.size() > 1 && LastSegment(known) == name &&
+           known.find('*') == std::string_view::npos;
+  });
+  if (same == pointers.end()) return std::nullopt;
+  return *same;
+}
+
+}  // namespace fogline

@@ -1,0 +1,31 @@
+// Two columns of numbers out of a CSV file: commas, a header line, no quotes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fogline {
+
+/// A number and the byte at which its cell begins.
+struct CsvNumber {
+  double value;
+  std::uint32_t offset;
+};
+
+/// The header line's names, without the spaces around them.
+std::vector<std::string_view> CsvHeader(std::string_view text);
+
+/// Called for each cell that is not a finite number, and for each row that lacks a cell.
+using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>;
+
+/// The numbers of each of `columns` (indices into the header), top to bottom. Takes LF and CRLF, a
+/// byte order mark, spaces around cells, and empty lines at the end.
+std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
+                                                   const std::vector<std::size_t>& columns,
+                                                   const CsvRefuse& refuse);
+
+}  // namespace fogline

@@ -1,0 +1,179 @@
+#include "scenario/wording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+namespace fogline {
+namespace {
+
+// Longest excerpt of a user's text in a message, in bytes.
+constexpr std::size_t kMaxExcerpt = 100;
+
+// Longer words get no suggestion: the distance costs the product of the lengths.
+constexpr std::size_t kMaxCompared = 64;
+
+// A suggestion may differ in one character out of three, and in one of a very short word. The
+// beginning of a name (a unit left out, say) counts as one edit from three characters on.
+constexpr std::size_t kCharactersPerEdit = 3;
+
+// Bytes of the control character (C0, DEL, C1 in UTF-8) that `text` begins with; 0 if none.
+std::size_t ControlCharacterSize(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
+  if (byte(0) == 0xc2 && text.size() > 1 && byte(1) >= 0x80 && byte(1) < 0xa0) return 2;
+  return 0;
+}
+
+std::string EscapeControls(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t size = ControlCharacterSize(text);
+    if (size == 0) {
+      out += text[0];
+      text.remove_prefix(1);
+    } else {
+      // Both forms of a control character end in the byte that is its code point.
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(text[size - 1]));
+      text.remove_prefix(size);
+    }
+  }
+  return out;
+}
+
+std::string Shorten(std::string_view text) {
+  if (text.size() <= kMaxExcerpt) return std::string(text);
+  std::size_t end = kMaxExcerpt;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) >> 6U) == 2) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
+}  // namespace
+
+std::string NumberText(double value) {
+  if (value == 0.0 && std::signbit(value)) return "-0.0";
+  return fmt::format("{}", value);
+}
+
+std::string Quote(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    if (c == '"' || c == '\\') escaped += '\\';
+    escaped += c;
+  }
+  return '"' + EscapeControls(escaped) + '"';
+}
+
+std::string QuoteShort(std::string_view text) { return Quote(Shorten(text)); }
+
+std::string Shown(std::string_view text) { return EscapeControls(Shorten(text)); }
+
+std::string WithUnit(std::string_view text, std::string_view unit) {
+  return unit.empty() ? std::string(text) : fmt::format("{} {}", text, unit);
+}
+
+std::string Range(const NumberSpec& spec) {
+  return WithUnit(fmt::format("[{}, {}]", NumberText(spec.min), NumberText(spec.max)), spec.unit);
+}
+
+std::string Range(const IntegerSpec& spec) {
+  return WithUnit(fmt::format("[{}, {}]", spec.min, spec.max), spec.unit);
+}
+
+std::string Allowed(const NumberSpec& spec) { return "a number in " + Range(spec); }
+
+std::string Allowed(const IntegerSpec& spec) {
+  return spec.min == spec.max ? WithUnit(std::to_string(spec.min), spec.unit)
+                              : "an integer in " + Range(spec);
+}
+
+std::string AllowedText() {
+  return fmt::format("a text of at most {} characters, none a control character", kMaxTextLength);
+}
+
+std::string Count(const ListSpec& spec) {
+  return fmt::format("{} to {} items", spec.min_items, spec.max_items);
+}
+
+std::string Names(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) {
+    if (!text.empty()) text += ", ";
+    text += Quote(name);
+  }
+  return text;
+}
+
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  // Rows of the distances between prefixes: row i - 2, i - 1 and i of a against every one of b.
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> previous(b.size() + 1);
+  std::vector<std::size_t> current(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) current[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::swap(before, previous);
+    std::swap(previous, current);
+    current[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitution = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      current[j] = std::min({previous[j] + 1, current[j - 1] + 1, substitution});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        current[j] = std::min(current[j], before[j - 2] + 1);
+      }
+    }
+  }
+  return current[b.size()];
+}
+
+std::optional<std::string_view> Nearest(std::string_view word,
+                                        std::span<const std::string_view> candidates) {
+  if (word.size() > kMaxCompared) return std::nullopt;
+  std::optional<std::string_view> nearest;
+  std::size_t least = std::max<std::size_t>(1, word.size() / kCharactersPerEdit) + 1;
+  for (const std::string_view candidate : candidates) {
+    const bool begins = word.size() >= kCharactersPerEdit && candidate.starts_with(word);
+    const std::size_t distance = begins && candidate != word ? 1 : EditDistance(word, candidate);
+    if (distance >= least || distance >= candidate.size()) continue;
+    least = distance;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string DidYouMean(std::optional<std::string_view> suggestion) {
+  return suggestion ? fmt::format("; did you mean {}?", Quote(*suggestion)) : std::string();
+}
+
+std::size_t CountCharacters(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6U) != 2; }));
+}
+
+bool HasControlCharacter(std::string_view text) {
+  for (; !text.empty(); text.remove_prefix(1)) {
+    if (ControlCharacterSize(text) > 0) return true;
+  }
+  return false;
+}
+
+bool IsUtf8(std::string_view text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+std::size_t SkipByteOrderMark(std::string_view text) {
+  return text.starts_with("\xef\xbb\xbf") ? 3 : 0;
+}
+
+}  // namespace fogline

@@ -1,0 +1,65 @@
+// Words of messages about scenarios: what a field allows, what stands there, what may be meant.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "scenario/field.h"
+
+namespace fogline {
+
+/// The shortest text that reads back as the same number, sign of zero included.
+std::string NumberText(double value);
+
+/// As a JSON string: in double quotes, control characters escaped.
+std::string Quote(std::string_view text);
+
+/// For a message: as Quote, but long texts are cut.
+std::string QuoteShort(std::string_view text);
+
+/// For a message: without quotes, control characters escaped, long texts cut.
+std::string Shown(std::string_view text);
+
+/// `text` and its unit, if there is one.
+std::string WithUnit(std::string_view text, std::string_view unit);
+
+/// The range of a number with its unit, such as "[0, 70] m/s".
+std::string Range(const NumberSpec& spec);
+std::string Range(const IntegerSpec& spec);
+
+/// What a field allows, such as "a number in [0, 70] m/s".
+std::string Allowed(const NumberSpec& spec);
+std::string Allowed(const IntegerSpec& spec);
+std::string AllowedText();
+
+/// How many items a list may have, such as "0 to 100 items".
+std::string Count(const ListSpec& spec);
+
+/// The names in double quotes: `"box", "half_sine", "triangle"`.
+std::string Names(std::span<const std::string_view> names);
+
+/// Fewest insertions, deletions, substitutions and swaps of neighbours that turn one word into the
+/// other (optimal string alignment: Damerau-Levenshtein without repeated edits of one place).
+std::size_t EditDistance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `word`, the first of equals, if it is near enough to be meant.
+std::optional<std::string_view> Nearest(std::string_view word,
+                                        std::span<const std::string_view> candidates);
+
+/// `; did you mean "x"?`, or nothing.
+std::string DidYouMean(std::optional<std::string_view> suggestion);
+
+/// Number of characters (code points) of valid UTF-8.
+std::size_t CountCharacters(std::string_view text);
+
+bool HasControlCharacter(std::string_view text);
+
+bool IsUtf8(std::string_view text);
+
+/// 3 when the text begins with UTF-8's byte order mark, otherwise 0.
+std::size_t SkipByteOrderMark(std::string_view text);
+
+}  // namespace fogline
