@@ -117,6 +117,7 @@ struct DriverSection {
   double headway_s = 1.5;
   double standstill_m = 2.0;
   double exponent = 4.0;
+  double max_deceleration_mps2 = 9.0;
   double readiness = 1.0;
 
   template <class Self, class Visitor>
@@ -152,6 +153,12 @@ struct DriverSection {
     visit.Number(
         "exponent", self.exponent,
         {.min = 1, .max = 10, .unit = "", .doc = "delta.", .source = "Treiber et al. 2000: 4"});
+    visit.Number("max_deceleration_mps2", self.max_deceleration_mps2,
+                 {.min = 0.5,
+                  .max = 12,
+                  .unit = "m/s2",
+                  .doc = "Strongest braking; the IDM itself knows no limit as the gap vanishes.",
+                  .source = "friction 0.9 to 1.0 on a dry road"});
     visit.Number("readiness", self.readiness,
                  {.min = 0,
                   .max = 1,
@@ -182,7 +189,8 @@ template <>
 struct ChoiceNames<MissingLidar> {
   static constexpr std::array<std::string_view, 3> kNames{"hold", "skip", "conflict"};
   static constexpr std::array<std::string_view, 3> kDocs{
-      "repeats the last difference", "adds nothing to the window (silence looks like agreement)",
+      "repeats the last difference",
+      "leaves its place in the window empty (silence looks like agreement)",
       "counts as a difference of missing_conflict_m"};
 };
 

@@ -183,7 +183,6 @@ struct FusionSection {
   bool gating = false;
   double gate_probability = 0.999;
   std::int64_t gate_reopen_after = 5;
-  double initial_distance_std_m = 1.0;
   double initial_speed_std_mps = 1.0;
   double initial_acceleration_std_mps2 = 1.0;
 
@@ -213,16 +212,18 @@ struct FusionSection {
                   .max = 0.999999,
                   .unit = "",
                   .doc = "Probability mass inside the gate (chi-square, 1 degree of freedom)."});
-    visit.Integer("gate_reopen_after", self.gate_reopen_after,
-                  {.min = 1,
-                   .max = 1000,
-                   .unit = "steps",
-                   .doc = "After so many refusals in a row the gate lets a measurement through."});
-    visit.Number("initial_distance_std_m", self.initial_distance_std_m,
-                 {.min = 1e-3, .max = 100, .unit = "m", .doc = "Initial distance uncertainty."});
-    visit.Number(
-        "initial_speed_std_mps", self.initial_speed_std_mps,
-        {.min = 1e-3, .max = 100, .unit = "m/s", .doc = "Initial relative speed uncertainty."});
+    visit.Integer(
+        "gate_reopen_after", self.gate_reopen_after,
+        {.min = 1,
+         .max = 1000,
+         .unit = "steps",
+         .doc = "After so many refusals in a row the gate stays open until a measurement is "
+                "inside it again."});
+    visit.Number("initial_speed_std_mps", self.initial_speed_std_mps,
+                 {.min = 1e-3,
+                  .max = 100,
+                  .unit = "m/s",
+                  .doc = "Initial relative speed uncertainty, where a LiDAR starts the filter."});
     visit.Number("initial_acceleration_std_mps2", self.initial_acceleration_std_mps2,
                  {.min = 1e-3,
                   .max = 100,

@@ -1,0 +1,134 @@
+#include "services/fusion/fusion.h"
+
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+
+#include "services/fusion/line_of_sight.h"
+
+namespace fogline {
+namespace {
+
+// A range of less than this many lateral offsets says too little about the distance ahead to start
+// from: at 2 the cosine is 0.87.
+constexpr double kStartRangePerOffset = 2.0;
+
+constexpr double Square(double x) { return x * x; }
+
+// Distance ahead of a target seen at `range_m`, if the filter can start from there.
+std::optional<double> StartDistance(double range_m, double lateral_offset_m) {
+  if (range_m <= kStartRangePerOffset * std::abs(lateral_offset_m)) return std::nullopt;
+  return std::sqrt(Square(range_m) - Square(lateral_offset_m));
+}
+
+}  // namespace
+
+Fusion::Fusion(const Scenario& scenario)
+    : ekf_(scenario.step_s, scenario.fusion.jerk_density_m2ps5),
+      gating_(scenario.fusion.gating),
+      gates_{Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after),
+             Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after),
+             Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after)},
+      noise_variance_{Square(scenario.fusion.radar_range_std_m),
+                      Square(scenario.fusion.radar_range_rate_std_mps),
+                      Square(scenario.fusion.lidar_range_std_m)},
+      radar_offset_m_(scenario.radar.lateral_offset_m),
+      lidar_offset_m_(scenario.lidar.lateral_offset_m),
+      initial_speed_variance_(Square(scenario.fusion.initial_speed_std_mps)),
+      initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {}
+
+const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar) {
+  out_.header = ego.header;
+  for (const Value value : {kRadarRange, kRadarRangeRate, kLidarRange}) {
+    Record(value, 0, 0, track_t::ABSENT);
+  }
+  if (started_) {
+    ekf_.Predict(ego.acceleration_mps2);
+    if (radar.valid) CorrectByRadar(radar);
+    if (lidar.valid) CorrectByLidar(lidar);
+  } else if (radar.valid && StartFromRadar(radar)) {
+    if (lidar.valid) CorrectByLidar(lidar);
+  } else if (lidar.valid) {
+    StartFromLidar(lidar);
+  }
+  if (started_) Report(ego.acceleration_mps2);
+  return out_;
+}
+
+// The state that explains the radar's two values exactly, with their noise carried over:
+// P = J^-1 R J^-T, J the Jacobian of both values. Of the acceleration they say nothing.
+bool Fusion::StartFromRadar(const radar_t& radar) {
+  const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
+  const std::int8_t usage = distance ? track_t::USED : track_t::GATED;
+  Record(kRadarRange, 0, noise_variance_[kRadarRange], usage);
+  Record(kRadarRangeRate, 0, noise_variance_[kRadarRangeRate], usage);
+  if (!distance) return false;
+  const LineOfSight sight(*distance, radar_offset_m_);
+  const double relative_speed = radar.range_rate_mps / sight.cosine();
+  Eigen::Matrix2d jacobian;
+  jacobian << sight.RangeJacobian().head<2>(), sight.RangeRateJacobian(relative_speed).head<2>();
+  const Eigen::Matrix2d inverse = jacobian.inverse();
+  const Eigen::Vector2d noise(noise_variance_[kRadarRange], noise_variance_[kRadarRangeRate]);
+  Ekf::Covariance covariance = Ekf::Covariance::Zero();
+  covariance.topLeftCorner<2, 2>() = inverse * noise.asDiagonal() * inverse.transpose();
+  covariance(2, 2) = initial_acceleration_variance_;
+  ekf_.Start({*distance, relative_speed, 0}, covariance);
+  return started_ = true;
+}
+
+bool Fusion::StartFromLidar(const lidar_t& lidar) {
+  const std::optional<double> distance = StartDistance(lidar.range_m, lidar_offset_m_);
+  Record(kLidarRange, 0, noise_variance_[kLidarRange], distance ? track_t::USED : track_t::GATED);
+  if (!distance) return false;
+  const LineOfSight sight(*distance, lidar_offset_m_);
+  const Eigen::Vector3d variances(noise_variance_[kLidarRange] / Square(sight.cosine()),
+                                  initial_speed_variance_, initial_acceleration_variance_);
+  ekf_.Start({*distance, 0, 0}, variances.asDiagonal());
+  return started_ = true;
+}
+
+void Fusion::CorrectByRadar(const radar_t& radar) {
+  const LineOfSight before(ekf_.state()[0], radar_offset_m_);
+  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()});
+  const LineOfSight after(ekf_.state()[0], radar_offset_m_);
+  const double relative_speed = ekf_.state()[1];
+  Correct(kRadarRangeRate, {radar.range_rate_mps, after.RangeRate(relative_speed),
+                            after.RangeRateJacobian(relative_speed)});
+}
+
+void Fusion::CorrectByLidar(const lidar_t& lidar) {
+  const LineOfSight sight(ekf_.state()[0], lidar_offset_m_);
+  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()});
+}
+
+void Fusion::Correct(Value value, const Comparison& comparison) {
+  const double noise = noise_variance_[value];
+  const double innovation = comparison.measured - comparison.predicted;
+  const double variance = ekf_.InnovationVariance(comparison.jacobian, noise);
+  const bool refused = gating_ && !gates_[value].Admits(Square(innovation) / variance);
+  Record(value, innovation, variance, refused ? track_t::GATED : track_t::USED);
+  if (!refused) ekf_.Correct(comparison.jacobian, innovation, noise);
+}
+
+void Fusion::Record(Value value, double innovation, double variance, std::int8_t usage) {
+  out_.innovation[value] = innovation;
+  out_.innovation_variance[value] = variance;
+  out_.usage[value] = usage;
+}
+
+// The host's acceleration is known, so taking it off the preceding car's leaves the covariance.
+void Fusion::Report(double host_acceleration_mps2) {
+  const Ekf::State& state = ekf_.state();
+  out_.valid = 1;
+  out_.state[0] = state[0];
+  out_.state[1] = state[1];
+  out_.state[2] = state[2] - host_acceleration_mps2;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      out_.covariance[row][column] = ekf_.covariance()(row, column);
+    }
+  }
+}
+
+}  // namespace fogline

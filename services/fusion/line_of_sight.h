@@ -1,0 +1,52 @@
+// What a range sensor beside the lane's line sees of the car ahead.
+#pragma once
+
+#include <cmath>
+
+#include "services/fusion/ekf.h"
+
+namespace fogline {
+
+/// The line from a sensor to the target's reflection point at distance d ahead and y to the side:
+///
+///     range        r = sqrt(d^2 + y^2)        dr/dd = d / r
+///     range rate     = dv d / r               d/dd = dv y^2 / r^3,   d/ddv = d / r
+///
+/// With y = 0 both are linear: r = d, and the range rate is dv. Where an estimate has overshot to
+/// d < 0 the range counts as negative, so that the next measurement pulls it back to the front
+/// instead of fixing it at the mirror image behind.
+class LineOfSight {
+ public:
+  LineOfSight(double distance_m, double lateral_offset_m) {
+    const double range = std::copysign(
+        std::sqrt(distance_m * distance_m + lateral_offset_m * lateral_offset_m), distance_m);
+    if (std::abs(range) < kTouching_m) return;
+    range_m_ = range;
+    cosine_ = distance_m / range;
+    cosine_slope_per_m_ = lateral_offset_m * lateral_offset_m / (range * range * range);
+  }
+
+  double range_m() const { return range_m_; }
+  double RangeRate(double relative_speed_mps) const { return relative_speed_mps * cosine_; }
+
+  /// d / r: how much of a distance shows in the range.
+  double cosine() const { return cosine_; }
+
+  /// dcosine/dd.
+  double cosine_slope_per_m() const { return cosine_slope_per_m_; }
+
+  Ekf::Jacobian RangeJacobian() const { return {cosine_, 0, 0}; }
+  Ekf::Jacobian RangeRateJacobian(double relative_speed_mps) const {
+    return {relative_speed_mps * cosine_slope_per_m_, cosine_, 0};
+  }
+
+ private:
+  // Closer than this the direction is lost in rounding; the target counts as straight ahead.
+  static constexpr double kTouching_m = 1e-9;
+
+  double range_m_ = 0;
+  double cosine_ = 1;
+  double cosine_slope_per_m_ = 0;
+};
+
+}  // namespace fogline

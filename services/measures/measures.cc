@@ -1,0 +1,143 @@
+#include "services/measures/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace fogline {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+bool HumanDrives(const Sample& sample) { return sample.lambda_human > 0; }
+
+// A value that is not there (NaN) changes no extreme.
+void Lower(std::optional<double>& least, double value) {
+  if (!std::isnan(value) && (!least || value < *least)) least = value;
+}
+
+void Raise(std::optional<double>& most, double value) {
+  if (!std::isnan(value) && (!most || value > *most)) most = value;
+}
+
+std::optional<double> Root(std::optional<double> mean_square) {
+  if (!mean_square) return std::nullopt;
+  return std::sqrt(*mean_square);
+}
+
+}  // namespace
+
+double CompromisedSafety(const Sample& sample) {
+  const double shortfall = sample.follower_safe_distance_m - sample.follower_gap_m;
+  return shortfall < 0 ? 0 : shortfall;
+}
+
+void MeasureAccumulator::Mean::Add(double value) {
+  if (std::isnan(value)) return;
+  sum += value;
+  ++count;
+}
+
+std::optional<double> MeasureAccumulator::Mean::Value() const {
+  if (count == 0) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+void MeasureAccumulator::Add(const Sample& sample) {
+  if (!previous_) first_time_s_ = sample.time_s;
+  ++measures_.steps;
+  measures_.duration_s = sample.time_s - first_time_s_;
+  AddSafety(sample);
+  AddAuthority(sample);
+  AddMotion(sample);
+  AddSensing(sample);
+  previous_ = sample;
+}
+
+void MeasureAccumulator::AddSafety(const Sample& sample) {
+  const double compromised = CompromisedSafety(sample);
+  Lower(measures_.min_host_gap_m, sample.host_gap_m);
+  Lower(measures_.min_follower_gap_m, sample.follower_gap_m);
+  Raise(measures_.max_compromised_safety_m, compromised);
+  if (sample.fog_present) compromised_safety_fog_m_.Add(compromised);
+  if (sample.collision != truth_t::COLLISION_NONE && !measures_.collision_time_s) {
+    measures_.collision = sample.collision;
+    measures_.collision_time_s = sample.collision_time_s;
+  }
+}
+
+void MeasureAccumulator::AddAuthority(const Sample& sample) {
+  if (!sample.fog_present) human_in_clear_air_.Add(HumanDrives(sample) ? 1 : 0);
+  if (!previous_) return;
+  if (HumanDrives(*previous_)) measures_.human_time_s += sample.time_s - previous_->time_s;
+  if (HumanDrives(sample) != HumanDrives(*previous_)) {
+    ++measures_.transfers;
+    measures_.max_handover_jump_mps2 = std::max(
+        measures_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
+  }
+}
+
+// The acceleration at step 0 is a convention, not one that was applied.
+void MeasureAccumulator::AddMotion(const Sample& sample) {
+  if (sample.step == 0) return;
+  Raise(measures_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
+  if (!previous_ || previous_->step == 0) return;
+  const double jerk_mps3 = (sample.host_acceleration_mps2 - previous_->host_acceleration_mps2) /
+                           (sample.time_s - previous_->time_s);
+  Raise(measures_.max_abs_jerk_mps3, std::abs(jerk_mps3));
+  squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
+}
+
+void MeasureAccumulator::AddSensing(const Sample& sample) {
+  Raise(measures_.max_doc, sample.doc);
+  if (!sample.fog_present) {
+    Lower(measures_.min_conflict_clear_m, sample.conflict_m);
+    Raise(measures_.max_conflict_clear_m, sample.conflict_m);
+  }
+  const double error = sample.fused_distance_m - sample.host_gap_m;
+  squared_fusion_error_m2_.Add(error * error);
+}
+
+RunMeasures MeasureAccumulator::Result() const {
+  RunMeasures result = measures_;
+  result.mean_compromised_safety_fog_m = compromised_safety_fog_m_.Value();
+  if (const auto share = human_in_clear_air_.Value()) result.rhe_pct = kPercent * *share;
+  result.rms_jerk_mps3 = Root(squared_jerk_m2ps6_.Value());
+  result.rms_fusion_error_m = Root(squared_fusion_error_m2_.Value());
+  return result;
+}
+
+RunMeasures Measure(std::span<const Sample> samples) {
+  MeasureAccumulator accumulator;
+  for (const Sample& sample : samples) accumulator.Add(sample);
+  return accumulator.Result();
+}
+
+void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
+  if (baseline.step != traded.step) {
+    throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
+                                " of the baseline does not pair with step " +
+                                std::to_string(traded.step));
+  }
+  const double without = CompromisedSafety(baseline);
+  if (!baseline.fog_present || !(without > floor_m_)) return;
+  sum_ += (without - CompromisedSafety(traded)) / without;
+  ++relevant_steps_;
+}
+
+std::optional<double> SafetyImprovement::Pct() const {
+  if (relevant_steps_ == 0) return std::nullopt;
+  return kPercent * sum_ / static_cast<double>(relevant_steps_);
+}
+
+std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
+                                           std::span<const Sample> traded, double floor_m) {
+  SafetyImprovement improvement(floor_m);
+  const std::size_t steps = std::min(baseline.size(), traded.size());
+  for (std::size_t i = 0; i < steps; ++i) improvement.Add(baseline[i], traded[i]);
+  return improvement.Pct();
+}
+
+}  // namespace fogline

@@ -1,0 +1,174 @@
+// What a run is judged by, computed from its samples alone, in one pass and constant memory: a run
+// in this process and a log of a million messages go the same way.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "services/measures/sample.h"
+
+namespace fogline {
+
+/// Measures of one run. A step stands for the time until the next one. "Fog" is the fog window;
+/// "clear air" is every step outside it. nullopt: the run has no step that the measure looks at.
+struct RunMeasures {
+  /// Number of samples.
+  std::int64_t steps = 0;
+  /// Time from the first sample to the last, s.
+  double duration_s = 0;
+
+  /// Smallest true gap from the host to the preceding car, m.
+  std::optional<double> min_host_gap_m;
+  /// Smallest true gap from the first following car to the host, m.
+  std::optional<double> min_follower_gap_m;
+  /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
+  std::optional<double> max_compromised_safety_m;
+  /// Mean of CS over the steps in fog, m.
+  std::optional<double> mean_compromised_safety_fog_m;
+  /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
+  std::int8_t collision = truth_t::COLLISION_NONE;
+  /// Its simulated time, s.
+  std::optional<double> collision_time_s;
+
+  /// Redundant human engagement: share of the steps in clear air in which the human drives, %
+  /// (Sourav & Cheng 2024). He drives while lambda_H > 0.
+  std::optional<double> rhe_pct;
+  /// Time during which the human drives, s. The last step's command is never carried out.
+  double human_time_s = 0;
+  /// Hand-overs in either direction: the human drives in one of two successive steps only.
+  std::int64_t transfers = 0;
+  /// Largest change of the commanded acceleration from the step before a hand-over to the step of
+  /// it, m/s2; 0 without a hand-over.
+  double max_handover_jump_mps2 = 0;
+
+  /// Largest |acceleration| of the host, applied, m/s2. Step 0 has none.
+  std::optional<double> max_abs_acceleration_mps2;
+  /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
+  /// next, divided by the time between them.
+  std::optional<double> max_abs_jerk_mps3;
+  /// Root of the mean square of that jerk, m/s3.
+  std::optional<double> rms_jerk_mps3;
+
+  /// Largest Degree of Conflict, in [0, 1].
+  std::optional<double> max_doc;
+  /// Smallest and largest windowed conflict z in clear air, m. Steps after the fog whose window
+  /// still reaches into it are clear air.
+  std::optional<double> min_conflict_clear_m;
+  std::optional<double> max_conflict_clear_m;
+  /// Root of the mean square of fused distance minus true gap over the steps with a track, m.
+  std::optional<double> rms_fusion_error_m;
+};
+
+/// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
+/// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
+/// tables and reports are made from these calls.
+template <class Visitor>
+void VisitMeasures(const RunMeasures& m, Visitor&& visit);
+
+/// Compromised safety CS of a step, m: how much of the following car's dynamic safe distance is
+/// missing in its gap to the host, max(0, d_r,f - d_f) (Sourav & Cheng 2024). NaN without a
+/// following car.
+double CompromisedSafety(const Sample& sample);
+
+/// Collects the measures of a run, sample by sample, in order of steps.
+class MeasureAccumulator {
+ public:
+  void Add(const Sample& sample);
+
+  /// Measures of the samples so far.
+  RunMeasures Result() const;
+
+ private:
+  /// Mean of the values added; those that are not there (NaN) do not count.
+  struct Mean {
+    double sum = 0;
+    std::int64_t count = 0;
+    void Add(double value);
+    std::optional<double> Value() const;
+  };
+
+  void AddSafety(const Sample& sample);
+  void AddAuthority(const Sample& sample);
+  void AddMotion(const Sample& sample);
+  void AddSensing(const Sample& sample);
+
+  RunMeasures measures_;  // those that need no final division
+  Mean compromised_safety_fog_m_;
+  Mean squared_jerk_m2ps6_;
+  Mean squared_fusion_error_m2_;
+  Mean human_in_clear_air_;  // 1 or 0 in each step
+  double first_time_s_ = 0;
+  std::optional<Sample> previous_;
+};
+
+/// Measures of a whole run.
+RunMeasures Measure(std::span<const Sample> samples);
+
+/// Safety improvement SI of a run with traded control over its pair without (same scenario, same
+/// seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
+///
+///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
+///
+/// over the n relevant steps, those in fog with CS_baseline > floor. The ratio of one step can be
+/// far below 0, never above 1.
+class SafetyImprovement {
+ public:
+  /// @param floor_m At least 0; keeps the ratio away from 0/0.
+  explicit SafetyImprovement(double floor_m) : floor_m_(floor_m) {}
+
+  /// Adds a step of both runs.
+  /// @throws std::invalid_argument if the samples are not of the same step.
+  void Add(const Sample& baseline, const Sample& traded);
+
+  /// SI so far in %; nullopt without a relevant step.
+  std::optional<double> Pct() const;
+
+  std::int64_t relevant_steps() const { return relevant_steps_; }
+
+ private:
+  double floor_m_;
+  double sum_ = 0;
+  std::int64_t relevant_steps_ = 0;
+};
+
+/// SI of two whole runs. Where one of them ended early (a collision), over the steps of both.
+/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
+std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
+                                           std::span<const Sample> traded, double floor_m);
+
+template <class Visitor>
+void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
+  const auto count = [&](std::string_view name, std::int64_t value, std::string_view unit,
+                         std::string_view description) { visit(name, value, unit, description); };
+  const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
+                          std::string_view description) { visit(name, value, unit, description); };
+  count("steps", m.steps, "", "samples of the run");
+  number("duration_s", m.duration_s, "s", "time from the first sample to the last");
+  number("min_host_gap_m", m.min_host_gap_m, "m", "smallest gap to the preceding car");
+  number("min_follower_gap_m", m.min_follower_gap_m, "m", "smallest gap of the following car");
+  number("max_compromised_safety_m", m.max_compromised_safety_m, "m",
+         "largest shortfall of the following car's safe distance");
+  number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
+         "mean shortfall of the following car's safe distance in fog");
+  count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
+  number("collision_time_s", m.collision_time_s, "s", "time of the first collision");
+  number("rhe_pct", m.rhe_pct, "%",
+         "redundant human engagement: share of clear air in which the human drives");
+  number("human_time_s", m.human_time_s, "s", "time during which the human drives");
+  count("transfers", m.transfers, "", "hand-overs in either direction");
+  number("max_handover_jump_mps2", m.max_handover_jump_mps2, "m/s2",
+         "largest jump of the commanded acceleration at a hand-over");
+  number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
+         "largest acceleration or braking of the host");
+  number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");
+  number("rms_jerk_mps3", m.rms_jerk_mps3, "m/s3", "root mean square of the host's jerk");
+  number("max_doc", m.max_doc, "", "largest Degree of Conflict");
+  number("min_conflict_clear_m", m.min_conflict_clear_m, "m", "smallest conflict z in clear air");
+  number("max_conflict_clear_m", m.max_conflict_clear_m, "m", "largest conflict z in clear air");
+  number("rms_fusion_error_m", m.rms_fusion_error_m, "m",
+         "root mean square of fused distance minus true gap");
+}
+
+}  // namespace fogline

@@ -1,0 +1,196 @@
+#include "services/arbitrator/arbitrator.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kAutomation_mps2 = 0.123;  // a_A
+constexpr double kHuman_mps2 = -0.456;      // a_H
+
+struct Messages {
+  ego_t ego{};
+  radar_t radar{};
+  lidar_t lidar{};
+  track_t track{};
+  accel_command_t automation{};
+  driver_command_t driver{};
+};
+
+// Sensors that differ by radar - LiDAR.
+Messages Differing(double difference_m) {
+  Messages m;
+  m.radar.valid = 1;
+  m.radar.range_m = 32 + difference_m;
+  m.lidar.valid = 1;
+  m.lidar.range_m = 32;
+  m.automation.acceleration_mps2 = kAutomation_mps2;
+  m.driver.acceleration_mps2 = kHuman_mps2;
+  return m;
+}
+
+Messages WithoutLidar() {
+  Messages m = Differing(0);
+  m.lidar = {};
+  return m;
+}
+
+Messages WithoutRadar() {
+  Messages m = Differing(0);
+  m.radar = {};
+  return m;
+}
+
+const arbitration_t& Step(Arbitrator& arbitrator, const Messages& m) {
+  return arbitrator.Step(m.ego, m.radar, m.lidar, m.track, m.automation, m.driver);
+}
+
+Scenario Missing(MissingLidar missing) {
+  Scenario scenario;
+  scenario.arbitrator.missing_lidar = missing;
+  scenario.arbitrator.missing_conflict_m = 5;
+  scenario.arbitrator.window_steps = 4;
+  return scenario;
+}
+
+// 32 + difference loses the difference's last bits.
+constexpr double kRoundingOfRange_m = 1e-14;
+
+TEST(ArbitratorTest, CopiesTheHeader) {
+  Arbitrator arbitrator{Scenario()};
+  Messages m = Differing(0);
+  m.ego.header = {.run_id = 5, .step = 6, .utime = 600'000};
+  const arbitration_t& out = Step(arbitrator, m);
+  EXPECT_EQ(out.header.run_id, 5);
+  EXPECT_EQ(out.header.step, 6);
+  EXPECT_EQ(out.header.utime, 600'000);
+}
+
+TEST(ArbitratorTest, LetsTheAutomationDriveWhileTheSensorsAgree) {
+  Arbitrator arbitrator{Scenario()};
+  const arbitration_t& out = Step(arbitrator, Differing(0.1));
+  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
+  EXPECT_EQ(out.lambda_automation, 1);
+  EXPECT_EQ(out.lambda_human, 0);
+  EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
+}
+
+TEST(ArbitratorTest, LetsTheHumanDriveWhileTheSensorsDisagree) {
+  Arbitrator arbitrator{Scenario()};
+  const arbitration_t& out = Step(arbitrator, Differing(2));
+  EXPECT_EQ(out.acceleration_mps2, kHuman_mps2);
+  EXPECT_EQ(out.lambda_automation, 0);
+  EXPECT_EQ(out.lambda_human, 1);
+  EXPECT_EQ(out.mode, arbitration_t::HUMAN);
+}
+
+TEST(ArbitratorTest, StatesConflictDegreeAndThreshold) {
+  Scenario scenario;
+  scenario.arbitrator.threshold = 0.8;
+  Arbitrator arbitrator(scenario);
+  const arbitration_t& out = Step(arbitrator, Differing(-0.75));
+  EXPECT_EQ(out.conflict_m, 0.75);
+  EXPECT_EQ(out.doc, DegreeOfConflict(0.75, 10, 1));
+  EXPECT_EQ(out.threshold, 0.8);
+}
+
+// 0 <= DoC < threshold: at the threshold itself the human drives. A difference of 1 m is exact in
+// the ranges, and its DoC exactly 1/2.
+TEST(ArbitratorTest, HandsOverExactlyAtTheThreshold) {
+  Scenario scenario;
+  scenario.arbitrator.threshold = 0.5;
+  Arbitrator at(scenario);
+  EXPECT_EQ(Step(at, Differing(1)).lambda_human, 1);
+  scenario.arbitrator.threshold = std::nextafter(0.5, 1.0);
+  Arbitrator above(scenario);
+  EXPECT_EQ(Step(above, Differing(1)).lambda_human, 0);
+}
+
+TEST(ArbitratorTest, ThresholdZeroAlwaysCallsTheHuman) {
+  Scenario scenario;
+  scenario.arbitrator.threshold = 0;
+  Arbitrator arbitrator(scenario);
+  EXPECT_EQ(Step(arbitrator, Differing(0)).lambda_human, 1);
+}
+
+TEST(ArbitratorTest, ThresholdOneCallsTheHumanOnlyWhereDocRoundsToOne) {
+  Scenario scenario;
+  scenario.arbitrator.threshold = 1;
+  scenario.arbitrator.window_steps = 1;
+  Arbitrator arbitrator(scenario);
+  EXPECT_EQ(Step(arbitrator, Differing(4)).lambda_human, 0);
+  EXPECT_EQ(Step(arbitrator, Differing(5)).lambda_human, 1);
+}
+
+TEST(ArbitratorTest, PolicyAutomationNeverCallsTheHumanAndStillMeasures) {
+  Scenario scenario;
+  scenario.arbitrator.policy = Policy::kAutomation;
+  scenario.arbitrator.threshold = 0;
+  Arbitrator arbitrator(scenario);
+  const arbitration_t& out = Step(arbitrator, Differing(2));
+  EXPECT_EQ(out.lambda_automation, 1);
+  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
+  EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
+  EXPECT_EQ(out.conflict_m, 2);
+  EXPECT_GT(out.doc, 0.99);
+}
+
+TEST(ArbitratorTest, PassesAnOfferOnWhateverTheOtherOneIs) {
+  Arbitrator arbitrator{Scenario()};
+  Messages m = Differing(0);
+  m.driver.acceleration_mps2 = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(Step(arbitrator, m).acceleration_mps2, kAutomation_mps2);
+}
+
+TEST(ArbitratorTest, ReadsTheConflictAsTheScenarioSays) {
+  for (const auto& [reading, conflict] : {std::pair{ConflictReading::kMeanOfAbsolute, 1.5},
+                                          {ConflictReading::kAbsoluteOfMean, 0.5}}) {
+    Scenario scenario;
+    scenario.arbitrator.conflict = reading;
+    Arbitrator arbitrator(scenario);
+    Step(arbitrator, Differing(1));
+    EXPECT_EQ(Step(arbitrator, Differing(-2)).conflict_m, conflict);
+  }
+}
+
+TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
+  Arbitrator arbitrator(Missing(MissingLidar::kHold));
+  Step(arbitrator, Differing(3));
+  Step(arbitrator, Differing(1));
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
+  EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 1.5);
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left, 1 is held
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
+}
+
+TEST(ArbitratorTest, HoldHasNothingToRepeatBeforeTheFirstDifference) {
+  Arbitrator arbitrator(Missing(MissingLidar::kHold));
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 0);
+  EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 0);
+  EXPECT_EQ(Step(arbitrator, Differing(3)).conflict_m, 3);
+}
+
+TEST(ArbitratorTest, SkipLetsConflictAgeOutInSilence) {
+  Arbitrator arbitrator(Missing(MissingLidar::kSkip));
+  Step(arbitrator, Differing(3));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 3);
+  const arbitration_t& out = Step(arbitrator, WithoutRadar());
+  EXPECT_EQ(out.conflict_m, 0);
+  EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
+}
+
+TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
+  Arbitrator arbitrator(Missing(MissingLidar::kConflict));
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5);
+  EXPECT_EQ(Step(arbitrator, Differing(1)).conflict_m, 3);
+  const arbitration_t& out = Step(arbitrator, WithoutRadar());
+  EXPECT_NEAR(out.conflict_m, 11.0 / 3, kRoundingOfRange_m);
+  EXPECT_EQ(out.mode, arbitration_t::HUMAN);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,265 @@
+#include "services/fusion/fusion.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kNear = 1e-12;  // some roundings of values up to 100
+
+// What a host of constant speed is told in one step, without noise.
+struct Messages {
+  ego_t ego{};
+  radar_t radar{};
+  lidar_t lidar{};
+};
+
+Messages At(std::int64_t step, double distance_m = 30, double relative_speed_mps = 0) {
+  Messages m;
+  m.ego.header = {.run_id = 7, .step = step, .utime = step * 100'000};
+  m.radar.valid = 1;
+  m.radar.range_m = distance_m;
+  m.radar.range_rate_mps = relative_speed_mps;
+  m.lidar.valid = 1;
+  m.lidar.range_m = distance_m;
+  return m;
+}
+
+const track_t& Step(Fusion& fusion, const Messages& m) {
+  return fusion.Step(m.ego, m.radar, m.lidar);
+}
+
+Scenario Gated() {
+  Scenario scenario;
+  scenario.fusion.gating = true;
+  return scenario;
+}
+
+// Everything that consumers of a track work with.
+void ExpectSameEstimate(const track_t& a, const track_t& b) {
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.state[i], b.state[i]) << i;
+    for (int j = 0; j < 3; ++j) EXPECT_EQ(a.covariance[i][j], b.covariance[i][j]) << i << j;
+  }
+}
+
+TEST(FusionTest, CopiesTheHeader) {
+  Fusion fusion{Scenario()};
+  const track_t& track = Step(fusion, At(3));
+  EXPECT_EQ(track.header.run_id, 7);
+  EXPECT_EQ(track.header.step, 3);
+  EXPECT_EQ(track.header.utime, 300'000);
+}
+
+TEST(FusionTest, HasNoTrackBeforeTheFirstMeasurement) {
+  Fusion fusion{Scenario()};
+  Messages m = At(0);
+  m.radar.valid = m.lidar.valid = 0;
+  const track_t& track = Step(fusion, m);
+  EXPECT_FALSE(track.valid);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(track.state[i], 0);
+    EXPECT_EQ(track.covariance[i][i], 0);
+    EXPECT_EQ(track.usage[i], track_t::ABSENT);
+  }
+}
+
+TEST(FusionTest, StartsWithTheRadarsValuesAndTheirNoise) {
+  Scenario scenario;
+  scenario.fusion.radar_range_std_m = 0.3;
+  scenario.fusion.radar_range_rate_std_mps = 0.2;
+  scenario.fusion.initial_acceleration_std_mps2 = 0.7;
+  Fusion fusion(scenario);
+  Messages m = At(0, 40, -2);
+  m.lidar.valid = 0;
+  const track_t& track = Step(fusion, m);
+  EXPECT_TRUE(track.valid);
+  EXPECT_EQ(track.state[0], 40);
+  EXPECT_EQ(track.state[1], -2);
+  EXPECT_EQ(track.state[2], 0);
+  EXPECT_NEAR(track.covariance[0][0], 0.09, kNear);
+  EXPECT_NEAR(track.covariance[1][1], 0.04, kNear);
+  EXPECT_NEAR(track.covariance[2][2], 0.49, kNear);
+  EXPECT_EQ(track.covariance[0][1], 0);
+  EXPECT_EQ(track.usage[0], track_t::USED);
+  EXPECT_EQ(track.usage[1], track_t::USED);
+  EXPECT_EQ(track.usage[2], track_t::ABSENT);
+}
+
+TEST(FusionTest, StartsWithTheLidarWhereTheRadarIsBlind) {
+  Scenario scenario;
+  scenario.fusion.lidar_range_std_m = 0.1;
+  scenario.fusion.initial_speed_std_mps = 3;
+  Fusion fusion(scenario);
+  Messages m = At(0, 40, -2);
+  m.radar.valid = 0;
+  const track_t& track = Step(fusion, m);
+  EXPECT_TRUE(track.valid);
+  EXPECT_EQ(track.state[0], 40);
+  EXPECT_EQ(track.state[1], 0);
+  EXPECT_NEAR(track.covariance[0][0], 0.01, kNear);
+  EXPECT_NEAR(track.covariance[1][1], 9, kNear);
+  EXPECT_EQ(track.usage[0], track_t::ABSENT);
+  EXPECT_EQ(track.usage[2], track_t::USED);
+}
+
+TEST(FusionTest, FirstLidarValueCorrectsTheRadarsStart) {
+  Scenario scenario;
+  scenario.fusion.radar_range_std_m = 0.3;
+  scenario.fusion.lidar_range_std_m = 0.1;
+  Fusion fusion(scenario);
+  Messages m = At(0, 40);
+  m.lidar.range_m = 39;
+  const track_t& track = Step(fusion, m);
+  // Weighted by the inverse variances, 1 : 9.
+  EXPECT_NEAR(track.state[0], (40 + 9 * 39) / 10.0, kNear);
+  EXPECT_NEAR(track.covariance[0][0], 0.009, kNear);
+  EXPECT_EQ(track.innovation[2], -1);
+  EXPECT_NEAR(track.innovation_variance[2], 0.10, kNear);
+}
+
+TEST(FusionTest, StartsBesideTheLaneWithWhatTheTwoValuesSayOfTheDistance) {
+  Scenario scenario;
+  scenario.radar.lateral_offset_m = 2.5;
+  scenario.fusion.radar_range_std_m = 0.12;
+  Fusion fusion(scenario);
+  Messages m = At(0, 6.5, -1.2);
+  m.lidar.valid = 0;
+  const track_t& track = Step(fusion, m);
+  // The triangle of 2.5, 6 and 6.5 m: the cosine is 12/13.
+  EXPECT_NEAR(track.state[0], 6.0, kNear);
+  EXPECT_NEAR(track.state[1], -1.3, kNear);
+  EXPECT_NEAR(track.covariance[0][0], 0.13 * 0.13, kNear);
+  EXPECT_NE(track.covariance[0][1], 0);  // the range tells how to read the range rate
+}
+
+TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
+  Scenario scenario;
+  scenario.radar.lateral_offset_m = 3;
+  scenario.lidar.lateral_offset_m = -3;
+  Fusion fusion(scenario);
+  const track_t& track = Step(fusion, At(0, 5.9));
+  EXPECT_FALSE(track.valid);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(track.usage[i], track_t::GATED);
+  EXPECT_TRUE(Step(fusion, At(1, 6.1)).valid);
+}
+
+TEST(FusionTest, ReportsTheAccelerationRelativeToTheHosts) {
+  Fusion fusion{Scenario()};
+  Step(fusion, At(0));
+  Messages m = At(1, 30 + 0.5 * 2 * 0.01, 0.2);
+  m.ego.acceleration_mps2 = -2;  // the preceding car's is 0: no innovation, no correction
+  const track_t& track = Step(fusion, m);
+  EXPECT_NEAR(track.state[2], 2, kNear);
+  EXPECT_NEAR(track.state[1], 0.2, kNear);
+  EXPECT_NEAR(track.state[0], 30.01, kNear);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(track.innovation[i], 0, kNear);
+}
+
+TEST(FusionTest, GrowsUncertainWhileBothSensorsAreSilent) {
+  Fusion fusion{Scenario()};
+  double last = Step(fusion, At(0, 30, -1)).covariance[0][0];
+  for (int k = 1; k <= 50; ++k) {
+    Messages m = At(k);
+    m.radar.valid = m.lidar.valid = 0;
+    const track_t& track = Step(fusion, m);
+    EXPECT_TRUE(track.valid);
+    EXPECT_NEAR(track.state[0], 30 - 0.1 * k, 1e-10);
+    EXPECT_GT(track.covariance[0][0], last);
+    last = track.covariance[0][0];
+  }
+}
+
+TEST(FusionTest, IgnoresWhatTheSensorsSayOfTheirOwnPrecision) {
+  Fusion one{Scenario()};
+  Fusion other{Scenario()};
+  for (int k = 0; k < 20; ++k) {
+    Messages m = At(k, 30 + std::sin(k), std::cos(k));
+    const track_t& a = Step(one, m);
+    m.radar.range_std_m = 7;
+    m.radar.range_rate_std_mps = 8;
+    m.lidar.range_std_m = 9;
+    m.lidar.intensity = 0.01;
+    ExpectSameEstimate(a, Step(other, m));
+  }
+}
+
+TEST(FusionTest, BelievesADeceivedLidarWhenNotGated) {
+  Fusion fusion{Scenario()};
+  Step(fusion, At(0));
+  Messages m = At(1);
+  m.lidar.range_m = 4;
+  const track_t& track = Step(fusion, m);
+  EXPECT_EQ(track.usage[2], track_t::USED);
+  EXPECT_LT(track.state[0], 25);
+}
+
+TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
+  Fusion gated(Gated());
+  Fusion blind(Gated());
+  for (int k = 0; k < 30; ++k) {
+    Step(gated, At(k));
+    Step(blind, At(k));
+  }
+  // GIVEN a LiDAR value in the fog, 26 m short
+  Messages deceived = At(30);
+  deceived.lidar.range_m = 4;
+  Messages missing = At(30);
+  missing.lidar.valid = 0;
+  // WHEN it meets the gate
+  const track_t& a = Step(gated, deceived);
+  const track_t& b = Step(blind, missing);
+  // THEN it is named, measured, and has no effect
+  EXPECT_EQ(a.usage[2], track_t::GATED);
+  EXPECT_NEAR(a.innovation[2], -26, 1e-9);
+  EXPECT_GT(a.innovation_variance[2], 0);
+  ExpectSameEstimate(a, b);
+}
+
+TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
+  const Scenario scenario = Gated();
+  Fusion fusion(scenario);
+  int k = 0;
+  for (; k < 30; ++k) Step(fusion, At(k, 40));
+  // GIVEN a car that cuts in, 15 m nearer and of the same speed
+  // WHEN the gate has refused it for as long as the scenario says
+  for (int i = 0; i < scenario.fusion.gate_reopen_after; ++i, ++k) {
+    const track_t& track = Step(fusion, At(k, 25));
+    EXPECT_EQ(track.usage[0], track_t::GATED);
+    EXPECT_EQ(track.usage[1], track_t::USED);
+    EXPECT_EQ(track.usage[2], track_t::GATED);
+    EXPECT_NEAR(track.state[0], 40, 1e-9);
+  }
+  EXPECT_EQ(Step(fusion, At(k, 25)).usage[0], track_t::USED);
+  // THEN the estimate settles on it
+  for (int i = 0; i < 60; ++i) Step(fusion, At(++k, 25));
+  const track_t& settled = Step(fusion, At(++k, 25));
+  EXPECT_NEAR(settled.state[0], 25, 0.05);  // a standard deviation of one range
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(settled.usage[i], track_t::USED);
+}
+
+TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
+  Scenario scenario;
+  scenario.radar.lateral_offset_m = 1.0;
+  scenario.lidar.lateral_offset_m = -1.0;
+  Fusion fusion(scenario);
+  // GIVEN an approach at 10 m/s, and sensors silent until the estimate has passed the target
+  Step(fusion, At(0, 20, -10));
+  int k = 1;
+  for (; k < 30; ++k) {
+    Messages m = At(k);
+    m.radar.valid = m.lidar.valid = 0;
+    Step(fusion, m);
+  }
+  // WHEN the target turns out to have kept its distance
+  const double range = std::hypot(15.0, 1.0);
+  for (int i = 0; i < 50; ++i) Step(fusion, At(k++, range, 0));
+  // THEN the estimate is in front again
+  EXPECT_NEAR(Step(fusion, At(k, range, 0)).state[0], 15, 0.05);
+}
+
+}  // namespace
+}  // namespace fogline
