@@ -74,7 +74,8 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   json["steps"] = result.steps;
   json["digest"] = result.digest;
   json["wall_s"] = result.wall_s;
-  json["log"] = result.log.empty() ? nlohmann::ordered_json(nullptr) : result.log.string();
+  json["log"] = nullptr;
+  if (!result.log.empty()) json["log"] = result.log.string();
   json["repairs"] = result.repairs;
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
