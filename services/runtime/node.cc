@@ -121,7 +121,6 @@ void Node::Ask(std::string_view channel, std::int64_t step) {
   resend.requester = NameOf(role_);
   Encode(resend, buffer_);
   bus_.Publish(ChannelOf<resend_t>().name, buffer_);
-  ++status_.repairs_asked;
 }
 
 void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
@@ -283,7 +282,9 @@ void Node::AskForMissing(TimePoint now) {
   if (needed < 0) return;
   asked_ = now;
   for (const Input& input : inputs_) {
-    if (!input.ring.Has(needed)) Ask(kChannels[input.channel].name, needed);
+    if (input.ring.Has(needed)) continue;
+    Ask(kChannels[input.channel].name, needed);
+    ++status_.repairs_asked;
   }
 }
 
