@@ -24,12 +24,15 @@ std::optional<double> StartDistance(double range_m, double lateral_offset_m) {
 
 }  // namespace
 
+std::array<Gate, Fusion::kNumValues> Fusion::MakeGates(const FusionSection& section) {
+  const Gate gate(section.gate_probability, section.gate_reopen_after);
+  return {gate, gate, gate};
+}
+
 Fusion::Fusion(const Scenario& scenario)
     : ekf_(scenario.step_s, scenario.fusion.jerk_density_m2ps5),
       gating_(scenario.fusion.gating),
-      gates_{Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after),
-             Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after),
-             Gate(scenario.fusion.gate_probability, scenario.fusion.gate_reopen_after)},
+      gates_(MakeGates(scenario.fusion)),
       noise_variance_{Square(scenario.fusion.radar_range_std_m),
                       Square(scenario.fusion.radar_range_rate_std_mps),
                       Square(scenario.fusion.lidar_range_std_m)},

@@ -39,6 +39,8 @@ class Fusion {
     Ekf::Jacobian jacobian;
   };
 
+  static std::array<Gate, kNumValues> MakeGates(const FusionSection& section);
+
   /// Begin the track with this measurement; false if the target is too far to the side for that.
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
