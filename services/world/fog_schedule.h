@@ -1,0 +1,36 @@
+// When there is fog, and how dense. What fog does to a sensor is the sensor's own business.
+#pragma once
+
+#include <cstdint>
+
+#include "scenario/road.h"
+
+namespace fogline {
+
+/// Fog at one moment.
+struct Fog {
+  bool present = false;
+  double level = 0;  // in [0, 1]
+  double visibility_m = 0;
+};
+
+/// Level of a profile at x in [0, 1): the part of the fog window that has passed.
+double FogLevel(FogProfile profile, double x);
+
+/// The fog of a scenario. Its window is compared in whole microseconds, so that a step belongs to
+/// it or not whatever 0.1 is in binary; its end does not belong to it.
+class FogSchedule {
+ public:
+  explicit FogSchedule(const FogSection& fog);
+
+  /// Fog `utime` microseconds after the start of the run. Model beam blends the extinction of
+  /// clear air and of fog linearly by the level; otherwise the visibility is that of clear air.
+  Fog At(std::int64_t utime) const;
+
+ private:
+  FogSection fog_;
+  std::int64_t start_us_;
+  std::int64_t duration_us_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,15 @@
+// What visibility in fog means, for everyone who computes with it.
+#pragma once
+
+namespace fogline {
+
+/// ln 20. At the meteorological optical range 5 % of a contrast are left (WMO-No. 8; Koschmieder).
+inline constexpr double kContrastLog = 2.995732273553991;
+
+/// Extinction coefficient in 1/m of air with this meteorological optical range in m.
+constexpr double ExtinctionOf(double visibility_m) { return kContrastLog / visibility_m; }
+
+/// Meteorological optical range in m of air with this extinction coefficient in 1/m.
+constexpr double VisibilityOf(double extinction_pm) { return kContrastLog / extinction_pm; }
+
+}  // namespace fogline
