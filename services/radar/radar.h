@@ -1,0 +1,44 @@
+// The host's radar: one distance and one rate of distance of the preceding car a step. It tracks
+// nothing, filters nothing and sees one target only.
+#pragma once
+
+#include <cstdint>
+
+#include "fogline/radar_t.hpp"
+#include "fogline/truth_t.hpp"
+#include "scenario/scenario.h"
+#include "services/runtime/random.h"
+
+namespace fogline {
+
+/// With x the gap and y the lateral offset, a target at r = sqrt(x^2 + y^2) is measured as
+///     range = r + bias + noise,   range rate = x x' / r + noise
+/// where noise is Gaussian and white. There is no detection beyond the maximum range, which rain
+/// and (fog model beam) fog shorten, and none in steps that drop out. In fog models none and bias
+/// the fog leaves the radar alone, as in the paper (Sourav & Cheng 2024).
+class Radar {
+ public:
+  /// Indices of the draws of stream kRadar within a step.
+  static constexpr std::uint32_t kNoiseDraw = 0;    // Normal2: range, range rate
+  static constexpr std::uint32_t kDropoutDraw = 1;  // Uniform2: first number, second unused
+
+  explicit Radar(const Scenario& scenario);
+
+  /// The measurement in the step of `truth`. It depends on scenario and truth alone, never on the
+  /// steps before.
+  const radar_t& Step(const truth_t& truth);
+
+ private:
+  double MaxRange(const truth_t& truth) const;
+  bool DropsOut(std::int64_t step) const;
+
+  RadarSection radar_;
+  Random random_;
+  bool fog_attenuates_;
+  double fog_coefficient_;  // K_l, (dB/km) / (g/m3)
+  double rain_dbpkm_;
+  double rainy_max_range_m_;
+  radar_t output_{};
+};
+
+}  // namespace fogline
