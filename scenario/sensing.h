@@ -82,7 +82,7 @@ struct LidarBeamSection {
                   {.min = 1,
                    .max = 101,
                    .unit = "",
-                   .doc = "Beams on the target; the median of their echoes is the range."});
+                   .doc = "The range is the median of the beams' echoes, if half have one."});
     visit.Number("pulse_half_width_ns", self.pulse_half_width_ns,
                  {.min = 0.5,
                   .max = 80,

@@ -1,0 +1,58 @@
+// Expected echo powers of target and fog on one beam, step by step: services/lidar/fog_beam.h with
+// the numbers of a scenario, and its costly part in a table.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "scenario/sensing.h"
+#include "services/lidar/fog_beam.h"
+
+namespace fogline {
+
+/// Powers as ln(P / P_min), P_min being the detection threshold: an echo above 0 is detected.
+/// Minus infinity where there is no echo at all.
+struct EchoPowers {
+  double target;
+  double fog;
+  double fog_range_m;  // where the fog's echo is strongest
+};
+
+class EchoModel {
+ public:
+  /// For extinctions from `from_pm` to `to_pm` in 1/m; the shape of the fog's echo beyond is that
+  /// at the nearer end.
+  EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
+
+  /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
+  ///     P_t / P_min = (Gamma / Gamma_c) (R_c / R)^2 xi(R) exp(-2 alpha R)
+  ///     P_f / P_min = (pi beta / Gamma_c) R_c^2 J
+  /// A target nearer than r* hides the fog behind it: the fog's echo is then that at R, with J in
+  /// proportion to g(R). Up to R1, where the beam is blind, there is no echo.
+  EchoPowers At(double range_m, double visibility_m) const;
+
+  /// Power relative to that of the target in clear air at `range_m`, the distance of the echo:
+  /// 1 for the target itself in clear air, whatever its distance; a few per mille for fog.
+  double Intensity(double log_power, double range_m) const;
+
+ private:
+  // Linear between: 0.2 % in J and 2 cm in r* up to the densest fog of scenarios (5 m).
+  static constexpr std::size_t kNodes = 33;
+
+  struct LogPeak {
+    double log_strength;  // ln J
+    double range_m;       // r*
+  };
+
+  double ClearTarget(double range_m) const;  // ln(P_t / P_min) without extinction
+  LogPeak PeakAt(double extinction_pm) const;
+
+  BeamOptics optics_;
+  double log_target_m2_;    // ln(Gamma / Gamma_c R_c^2)
+  double log_backscatter_;  // ln(pi beta V / Gamma_c R_c^2), beta V being constant
+  double from_pm_;
+  double to_pm_;
+  std::array<LogPeak, kNodes> peaks_;  // at equally spaced extinctions
+};
+
+}  // namespace fogline

@@ -1,0 +1,91 @@
+#include "services/lidar/fog_beam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/lambert_w.hpp>
+#include <boost/math/tools/minima.hpp>
+
+namespace fogline {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kSpeedOfLight_mps = 299'792'458.0;
+constexpr double kSecondsPerNanosecond = 1e-9;
+
+// Nodes on each smooth piece of the integrand; 2^-14 in r* is 2^-28 in J, which is flat there.
+constexpr unsigned kQuadratureNodes = 20;
+constexpr int kPeakBits = 14;
+
+// sin^2 pulse folded with g, received from the pulse's reach behind `end_m`. In two pieces: g has a
+// kink at R2.
+double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m) {
+  const auto integrand = [&](double r) {
+    const double wave = std::sin(pi * (end_m - r) / optics.pulse_length_m);
+    return wave * wave * ChannelGain(optics, extinction_pm, r);
+  };
+  const double begin_m = std::max(end_m - optics.pulse_length_m, optics.overlap_start_m);
+  const double kink_m = std::clamp(optics.overlap_end_m, begin_m, end_m);
+  using Quadrature = boost::math::quadrature::gauss<double, kQuadratureNodes>;
+  double sum = 0.0;
+  if (kink_m > begin_m) sum += Quadrature::integrate(integrand, begin_m, kink_m);
+  if (end_m > kink_m) sum += Quadrature::integrate(integrand, kink_m, end_m);
+  return sum;
+}
+
+// Where g is largest: d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0 below R2, or R2 itself. The
+// root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 in the form that holds for alpha = 0 too.
+double StrongestGainRange(const BeamOptics& optics, double extinction_pm) {
+  const double start_m = optics.overlap_start_m;
+  const double b = 1.0 - 2.0 * extinction_pm * start_m;
+  const double root = std::sqrt(b * b + 16.0 * extinction_pm * start_m);
+  return std::min(4.0 * start_m / (b + root), optics.overlap_end_m);
+}
+
+}  // namespace
+
+BeamOptics OpticsOf(const LidarBeamSection& beam) {
+  return {.pulse_length_m = kSpeedOfLight_mps * beam.pulse_half_width_ns * kSecondsPerNanosecond,
+          .overlap_start_m = beam.overlap_start_m,
+          .overlap_end_m = std::max(beam.overlap_start_m, beam.overlap_end_m)};
+}
+
+double Overlap(const BeamOptics& optics, double range_m) {
+  if (range_m <= optics.overlap_start_m) return 0.0;
+  if (range_m >= optics.overlap_end_m) return 1.0;
+  return (range_m - optics.overlap_start_m) / (optics.overlap_end_m - optics.overlap_start_m);
+}
+
+double ChannelGain(const BeamOptics& optics, double extinction_pm, double range_m) {
+  return Overlap(optics, range_m) * std::exp(-2.0 * extinction_pm * range_m) / (range_m * range_m);
+}
+
+FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm) {
+  // g rises to its one peak and falls from there on, and so does g folded with the pulse: before
+  // the peak of g enters the pulse it still rises, after it has left the pulse it falls.
+  const double from_m = StrongestGainRange(optics, extinction_pm);
+  const auto negative = [&](double end_m) { return -FoldedPulse(optics, extinction_pm, end_m); };
+  const auto [end_m, value] = boost::math::tools::brent_find_minima(
+      negative, from_m, from_m + optics.pulse_length_m, kPeakBits);
+  return {.strength_pm = -value, .range_m = end_m - 0.5 * optics.pulse_length_m};
+}
+
+double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
+  if (extinction_pm == 0.0) return clear_range_m;
+  return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
+}
+
+double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
+                        double extinction_pm) {
+  return AttenuatedRange_m(std::sqrt(reflectivity / (pi * backscatter_pmsr * fog_strength_pm)),
+                           extinction_pm);
+}
+
+double Beta2And20(double u, double v) {
+  return 1.0 - std::exp(std::log(u) / 21.0 + std::log(v) / 20.0);
+}
+
+}  // namespace fogline

@@ -1,0 +1,257 @@
+// Properties of the LiDAR's errors and of its beams, over many seeds and steps. Every statistical
+// bound is a quantile of the exact distribution that leaves out one case in a million on a side.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+
+#include "services/lidar/lidar.h"
+#include "services/world/visibility.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kRare = 1e-6;
+constexpr double kRareSigmas = 4.75;  // normal quantile of kRare
+constexpr int kSeeds = 40;
+constexpr int kSteps = 250;
+constexpr int kSamples = kSeeds * kSteps;
+
+truth_t Target(std::int64_t step, double gap_m = 33.0, double visibility_m = 20000.0) {
+  truth_t truth{};
+  truth.header.step = step;
+  truth.host_gap_m = gap_m;
+  truth.fog_visibility_m = visibility_m;
+  return truth;
+}
+
+std::vector<lidar_t> Measure(Scenario scenario, double gap_m, double visibility_m) {
+  std::vector<lidar_t> measurements;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    scenario.seed = seed;
+    Lidar lidar(scenario);
+    for (int step = 0; step < kSteps; ++step) {
+      measurements.push_back(lidar.Step(Target(step, gap_m, visibility_m)));
+    }
+  }
+  return measurements;
+}
+
+Scenario Beam() {
+  Scenario scenario;
+  scenario.fog.model = FogModel::kBeam;
+  scenario.fog.visibility_m = 20.0;
+  scenario.lidar.range_std_m = 0.0;
+  return scenario;
+}
+
+void ExpectStandardNormalMoments(const std::vector<double>& z) {
+  const auto n = static_cast<double>(z.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double value : z) {
+    sum += value;
+    squares += value * value;
+  }
+  EXPECT_LT(std::abs(sum), kRareSigmas * std::sqrt(n));
+  const boost::math::chi_squared chi_squared(n);
+  EXPECT_GT(squares, quantile(chi_squared, kRare));
+  EXPECT_LT(squares, quantile(complement(chi_squared, kRare)));
+}
+
+void ExpectShare(int count, double probability, const char* what) {
+  const boost::math::binomial binomial(kSamples, probability);
+  EXPECT_GE(count, quantile(binomial, kRare)) << what;
+  EXPECT_LE(count, quantile(complement(binomial, kRare))) << what;
+}
+
+TEST(LidarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
+  Scenario scenario;
+  scenario.lidar.bias_m = -0.2;
+  scenario.lidar.range_std_m = 0.03;
+  std::vector<double> z;
+  for (const lidar_t& lidar : Measure(scenario, 33.0, 20000.0)) {
+    z.push_back((lidar.range_m - 32.8) / 0.03);
+  }
+  ExpectStandardNormalMoments(z);
+}
+
+TEST(LidarProperty, BeamNoiseIsWhatItStates) {
+  Scenario scenario = Beam();
+  scenario.lidar.range_std_m = 0.03;
+  std::vector<double> z;
+  for (const lidar_t& lidar : Measure(scenario, 100.0, 20000.0)) {
+    ASSERT_TRUE(lidar.valid);
+    z.push_back((lidar.range_m - 100.0) / lidar.range_std_m);
+  }
+  ExpectStandardNormalMoments(z);
+}
+
+TEST(LidarProperty, DropsOutAtItsRate) {
+  for (const double probability : {0.01, 0.3, 0.9}) {
+    Scenario scenario;
+    scenario.lidar.dropout_probability = probability;
+    int dropouts = 0;
+    for (const lidar_t& lidar : Measure(scenario, 33.0, 20000.0)) dropouts += lidar.valid ? 0 : 1;
+    ExpectShare(dropouts, probability, "dropout");
+  }
+}
+
+// Chances of what one beam sees.
+struct Outcomes {
+  double none;
+  double target;
+};
+
+// With independent normal log powers t + s X of the target and f + s Y of the fog:
+//   no echo  X < -t / s and Y < -f / s
+//   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
+Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {
+  const EchoModel model(beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
+  const EchoPowers echoes = model.At(gap_m, visibility_m);
+  const double s = beam.log_std;
+  const double t = echoes.target;
+  const double f = echoes.fog;
+  const boost::math::normal normal;
+  return {.none = cdf(normal, -t / s) * cdf(normal, -f / s),
+          .target = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+              [&](double x) { return pdf(normal, x) * cdf(normal, (t + s * x - f) / s); }, -t / s,
+              std::max(-t / s, 0.0) + 10.0)};
+}
+
+TEST(LidarProperty, ABeamsOutcomesHaveTheirProbabilities) {
+  Scenario scenario = Beam();
+  scenario.lidar.beam.beams = 1;
+  struct Case {
+    double gap_m;
+    double visibility_m;
+  };
+  for (const Case& c : {Case{70.0, 250.0}, Case{120.0, 500.0}, Case{30.0, 75.0}}) {
+    const Outcomes expected = OutcomesOf(scenario.lidar.beam, c.gap_m, c.visibility_m);
+    int none = 0;
+    int target = 0;
+    for (const lidar_t& lidar : Measure(scenario, c.gap_m, c.visibility_m)) {
+      none += !lidar.valid;
+      target += lidar.valid && lidar.range_m == c.gap_m;
+    }
+    EXPECT_GT(expected.target, 0.02) << "the case must be mixed to say something";
+    EXPECT_LT(expected.target, 0.98);
+    ExpectShare(none, expected.none, "no echo");
+    ExpectShare(target, expected.target, "target");
+  }
+}
+
+TEST(LidarProperty, OfTwoEchoesTheNearerOneCounts) {
+  // Two beams report the target if both see it, or if one does and the other sees nothing.
+  Scenario scenario = Beam();
+  scenario.lidar.beam.beams = 2;
+  const auto [none, seen] = OutcomesOf(scenario.lidar.beam, 70.0, 250.0);
+  int target = 0;
+  for (const lidar_t& lidar : Measure(scenario, 70.0, 250.0)) {
+    target += lidar.valid && lidar.range_m == 70.0;
+  }
+  ExpectShare(target, seen * seen + 2.0 * seen * none, "target");
+}
+
+TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
+  // At the range where one beam has an echo with chance 1/2, so have 15 with a majority rule.
+  Scenario scenario = Beam();
+  scenario.fog.clear_visibility_m = 1e5;
+  scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
+  const double range_m = AttenuatedRange_m(scenario.lidar.beam.clear_range_m, ExtinctionOf(1e5));
+  for (const std::int64_t beams : {1, 15, 101}) {
+    scenario.lidar.beam.beams = beams;
+    int detections = 0;
+    for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
+    ExpectShare(detections, 0.5, "detection");
+  }
+  // Half of an even number is enough: one beam of two, with chance 3/4.
+  scenario.lidar.beam.beams = 2;
+  int detections = 0;
+  for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
+  ExpectShare(detections, 0.75, "detection");
+}
+
+TEST(LidarProperty, FogScattersByABetaDistribution) {
+  Scenario scenario = Beam();
+  scenario.lidar.beam.beams = 1;
+  scenario.lidar.beam.log_std = 0.01;  // every echo is one of the fog
+  const EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
+  const double peak_m = model.At(60.0, 25.0).fog_range_m;
+  const boost::math::beta_distribution beta(2.0, 20.0);
+  constexpr int kCells = 20;
+  std::vector<int> counts(kCells);
+  for (const lidar_t& lidar : Measure(scenario, 60.0, 25.0)) {
+    ASSERT_TRUE(lidar.valid);
+    const double share = cdf(beta, (lidar.range_m - peak_m) / 10.0);
+    ++counts[static_cast<std::size_t>(share * kCells)];
+  }
+  double statistic = 0.0;
+  for (const int count : counts) {
+    const double expected = static_cast<double>(kSamples) / kCells;
+    statistic += (count - expected) * (count - expected) / expected;
+  }
+  EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
+}
+
+TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
+  Scenario scenario = Beam();
+  scenario.lidar.beam.beams = 1;
+  scenario.lidar.beam.fog_range_scale_m = 100.0;  // would scatter far behind the target
+  Lidar lidar(scenario);
+  for (double gap_m = 0.5; gap_m < 120.0; gap_m *= 1.1) {
+    for (double visibility_m = 20.0; visibility_m < 20000.0; visibility_m *= 1.3) {
+      for (std::int64_t step = 0; step < 20; ++step) {
+        const lidar_t& out = lidar.Step(Target(step, gap_m, visibility_m));
+        EXPECT_LE(out.range_m, gap_m);
+        EXPECT_GE(out.intensity, 0.0);
+        EXPECT_TRUE(std::isfinite(out.intensity));
+      }
+    }
+  }
+}
+
+TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
+  // The same step with the same draws: once the fog has won, more fog does not lose.
+  Lidar lidar(Beam());
+  for (std::int64_t step = 0; step < 100; ++step) {
+    bool sees_target = true;
+    for (double visibility_m = 20000.0; visibility_m > 20.0; visibility_m *= 0.9) {
+      const lidar_t& out = lidar.Step(Target(step, 33.0, visibility_m));
+      const bool sees = out.valid && out.range_m == 33.0;
+      EXPECT_TRUE(sees_target || !sees) << "step " << step << " visibility " << visibility_m;
+      sees_target = sees;
+    }
+    EXPECT_FALSE(sees_target);
+  }
+}
+
+TEST(LidarProperty, NoStepDependsOnAnother) {
+  Scenario scenario = Beam();
+  scenario.lidar.range_std_m = 0.02;
+  scenario.lidar.dropout_probability = 0.1;
+  Lidar forwards(scenario);
+  std::vector<lidar_t> expected;
+  for (int step = 0; step < kSteps; ++step) {
+    expected.push_back(forwards.Step(Target(step, 33.0, 80.0)));
+  }
+  Lidar backwards(scenario);
+  for (int step = kSteps - 1; step >= 0; --step) {
+    backwards.Step(Target(step * 7, 20.0, 30.0));
+    const lidar_t& lidar = backwards.Step(Target(step, 33.0, 80.0));
+    const lidar_t& same = expected[static_cast<std::size_t>(step)];
+    EXPECT_EQ(lidar.valid, same.valid);
+    EXPECT_EQ(lidar.range_m, same.range_m);
+    EXPECT_EQ(lidar.range_std_m, same.range_std_m);
+    EXPECT_EQ(lidar.intensity, same.intensity);
+  }
+}
+
+}  // namespace
+}  // namespace fogline

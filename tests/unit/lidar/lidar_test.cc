@@ -1,0 +1,172 @@
+#include "services/lidar/lidar.h"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+Scenario Exact(FogModel model) {
+  Scenario scenario;
+  scenario.fog.model = model;
+  scenario.lidar.range_std_m = 0.0;
+  return scenario;
+}
+
+truth_t Target(double gap_m, double visibility_m = 20000.0, std::int64_t step = 17) {
+  truth_t truth{};
+  truth.header = {.run_id = 5, .step = step, .utime = step * 100'000};
+  truth.host_gap_m = gap_m;
+  truth.host_speed_mps = 20.0;
+  truth.preceding_speed_mps = 20.0;
+  truth.fog_visibility_m = visibility_m;
+  return truth;
+}
+
+truth_t InFog(double gap_m, double level) {
+  truth_t truth = Target(gap_m);
+  truth.fog_present = true;
+  truth.fog_level = level;
+  return truth;
+}
+
+TEST(LidarTest, MeasuresTheGapInClearAir) {
+  for (const FogModel model : {FogModel::kNone, FogModel::kBias, FogModel::kBeam}) {
+    Lidar lidar(Exact(model));
+    const lidar_t& out = lidar.Step(Target(33.0));
+    EXPECT_TRUE(out.valid);
+    EXPECT_DOUBLE_EQ(out.range_m, 33.0);
+  }
+}
+
+TEST(LidarTest, AnswersInTheStepOfTheTruth) {
+  Lidar lidar(Exact(FogModel::kNone));
+  const lidar_t& out = lidar.Step(Target(33.0));
+  EXPECT_EQ(out.header.run_id, 5);
+  EXPECT_EQ(out.header.step, 17);
+  EXPECT_EQ(out.header.utime, 1'700'000);
+}
+
+TEST(LidarTest, SeesALateralOffsetAsASlantRangeAndAddsItsBias) {
+  Scenario scenario = Exact(FogModel::kNone);
+  scenario.lidar.lateral_offset_m = -3.0;
+  scenario.lidar.bias_m = 0.5;
+  EXPECT_DOUBLE_EQ(Lidar(scenario).Step(Target(4.0)).range_m, 5.5);
+}
+
+TEST(LidarTest, StatesItsStandardDeviation) {
+  Scenario scenario;
+  scenario.lidar.range_std_m = 0.03;
+  Lidar lidar(scenario);
+  EXPECT_EQ(lidar.Step(Target(33.0)).range_std_m, 0.03);
+  EXPECT_EQ(lidar.Step(Target(33.0)).intensity, 1.0);
+}
+
+TEST(LidarTest, IsShortByTheBiasTimesTheLevelOfTheFog) {
+  Scenario scenario = Exact(FogModel::kBias);
+  scenario.fog.bias_m = 0.34;
+  Lidar lidar(scenario);
+  EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 0.0)).range_m, 33.0);
+  EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 0.5)).range_m, 32.83);
+  EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 1.0)).range_m, 32.66);
+}
+
+TEST(LidarTest, KnowsNoFogWithoutAFogModel) {
+  EXPECT_EQ(Lidar(Exact(FogModel::kNone)).Step(InFog(33.0, 1.0)).range_m, 33.0);
+}
+
+TEST(LidarTest, HasNoEchoFromBeyondItsMaximumRange) {
+  for (const FogModel model : {FogModel::kNone, FogModel::kBias, FogModel::kBeam}) {
+    Scenario scenario = Exact(model);
+    scenario.lidar.max_range_m = 40.0;
+    Lidar lidar(scenario);
+    EXPECT_TRUE(lidar.Step(Target(40.0)).valid);
+    const lidar_t& out = lidar.Step(Target(40.001));
+    EXPECT_FALSE(out.valid);
+    EXPECT_EQ(out.header.step, 17);
+    EXPECT_EQ(out.range_m, 0.0);
+    EXPECT_EQ(out.range_std_m, 0.0);
+    EXPECT_EQ(out.intensity, 0.0);
+  }
+}
+
+TEST(LidarTest, TakesThickFogForACar) {
+  // GIVEN: fog of 30 m visibility, in which a car is outshone beyond 16 m
+  Lidar lidar(Exact(FogModel::kBeam));
+  for (std::int64_t step = 0; step < 100; ++step) {
+    // WHEN: the car is 33 m away
+    const lidar_t& out = lidar.Step(Target(33.0, 30.0, step));
+    // THEN: the LiDAR reports something in the near field, weak but valid
+    ASSERT_TRUE(out.valid);
+    EXPECT_LT(out.range_m, 8.0);
+    EXPECT_GT(out.range_m, 3.0);
+    EXPECT_LT(out.intensity, 0.05);
+  }
+}
+
+TEST(LidarTest, SeesANearCarThroughThickFog) {
+  Lidar lidar(Exact(FogModel::kBeam));
+  for (std::int64_t step = 0; step < 100; ++step) {
+    EXPECT_DOUBLE_EQ(lidar.Step(Target(8.0, 30.0, step)).range_m, 8.0);
+  }
+}
+
+TEST(LidarTest, HasNoEchoAtAllOfAFarDarkCarInThinFog) {
+  // Car and fog are 2.4 and 2 standard deviations below the detection threshold: 8 beams of 15
+  // above it have a chance of 1e-9 in a step.
+  Scenario scenario = Exact(FogModel::kBeam);
+  scenario.lidar.beam.target_reflectivity = 0.02;
+  Lidar lidar(scenario);
+  for (std::int64_t step = 0; step < 100; ++step) {
+    EXPECT_FALSE(lidar.Step(Target(110.0, 2500.0, step)).valid);
+  }
+}
+
+TEST(LidarTest, IsBlindBeforeItsBeamsOverlap) {
+  Lidar lidar(Exact(FogModel::kBeam));
+  EXPECT_FALSE(lidar.Step(Target(1.9)).valid);
+  EXPECT_FALSE(lidar.Step(Target(-1.0, 30.0)).valid);
+}
+
+TEST(LidarTest, StatesMoreJitterForAWeakEcho) {
+  Scenario scenario;
+  scenario.fog.model = FogModel::kBeam;
+  scenario.lidar.range_std_m = 0.02;
+  Lidar lidar(scenario);
+  const double near = lidar.Step(Target(10.0)).range_std_m;
+  const double far = lidar.Step(Target(115.0)).range_std_m;
+  EXPECT_GT(near, 0.02);
+  EXPECT_LT(near, 0.0202);
+  EXPECT_GT(far, near);
+  EXPECT_LE(far, 0.02 * std::sqrt(2.0)) << "at the detection threshold";
+}
+
+TEST(LidarTest, ReportsATouchForCarsThatOverlap) {
+  const lidar_t out = Lidar(Exact(FogModel::kBias)).Step(InFog(-1.0, 1.0));
+  EXPECT_TRUE(out.valid);
+  EXPECT_EQ(out.range_m, 0.0);
+}
+
+TEST(LidarTest, NoDrawServesTwoPurposes) {
+  EXPECT_NE(Lidar::kNoiseDraw, Lidar::kDropoutDraw);
+  std::set<std::uint32_t> draws;
+  constexpr std::uint32_t kMaxBeams = 101;
+  for (std::uint32_t n = 0; n < kMaxBeams; ++n) {
+    EXPECT_TRUE(draws.insert(Lidar::PowerDraw(n)).second);
+    EXPECT_TRUE(draws.insert(Lidar::ScatterDraw(n)).second);
+  }
+}
+
+TEST(LidarTest, DropsOutAlwaysAtProbabilityOne) {
+  Scenario scenario = Exact(FogModel::kBeam);
+  scenario.lidar.dropout_probability = 1.0;
+  Lidar lidar(scenario);
+  for (std::int64_t step = 0; step < 1000; ++step) {
+    EXPECT_FALSE(lidar.Step(Target(33.0, 30.0, step)).valid);
+  }
+}
+
+}  // namespace
+}  // namespace fogline
