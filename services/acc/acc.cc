@@ -1,0 +1,24 @@
+#include "services/acc/acc.h"
+
+namespace fogline {
+
+Acc::Acc(const Scenario& scenario) : controller_(scenario.acc, scenario.step_s) {}
+
+const accel_command_t& Acc::Step(const ego_t& ego, const track_t& track) {
+  const AccController::Output output = controller_.Step({
+      .distance_m = track.state[0],
+      .relative_speed_mps = track.state[1],
+      .speed_mps = ego.speed_mps,
+      .acceleration_mps2 = ego.acceleration_mps2,
+      .has_target = track.valid != 0,
+  });
+  out_.header = ego.header;
+  out_.acceleration_mps2 = output.acceleration_mps2;
+  out_.control = output.control;
+  out_.safe_distance_m = output.safe_distance_m;
+  out_.solver = static_cast<std::int8_t>(output.solver);
+  out_.iterations = output.iterations;
+  return out_;
+}
+
+}  // namespace fogline

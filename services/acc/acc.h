@@ -1,0 +1,26 @@
+// The automation agent of the host: ACC on the fused track.
+#pragma once
+
+#include "fogline/accel_command_t.hpp"
+#include "fogline/ego_t.hpp"
+#include "fogline/track_t.hpp"
+#include "scenario/scenario.h"
+#include "services/acc/acc_controller.h"
+
+namespace fogline {
+
+/// Offers the automation's acceleration a_A in every step, whoever drives. Sees the host's own
+/// odometry and the track of the preceding car, never the truth; decides nothing about authority.
+class Acc {
+ public:
+  /// @throws InputError if the weights of scenario.acc make no well-conditioned problem.
+  explicit Acc(const Scenario& scenario);
+
+  const accel_command_t& Step(const ego_t& ego, const track_t& track);
+
+ private:
+  AccController controller_;
+  accel_command_t out_{};
+};
+
+}  // namespace fogline

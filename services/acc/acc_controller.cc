@@ -1,0 +1,99 @@
+#include "services/acc/acc_controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+// A car has done what was commanded if its acceleration is this close to it, in m/s2: far above the
+// rounding of an integration over substeps, far below what anyone notices.
+constexpr double kSameAcceleration = 1e-6;
+
+QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
+  try {
+    return QpSolver(
+        program.hessian(), program.constraints(),
+        {.max_iterations = section.max_iterations, .tolerance = AccProgram::kTolerance});
+  } catch (const std::domain_error&) {
+    throw InputError(
+        "ACC: the weights make an ill-conditioned problem; raise weight_control or lower the other "
+        "weights or horizon_steps");
+  }
+}
+
+}  // namespace
+
+AccController::AccController(const AccSection& section, double step_s)
+    : section_(section), program_(section, step_s), solver_(MakeSolver(program_, section)) {
+  const Eigen::Index n = program_.horizon();
+  gain_ = -solver_.SolveHessian(program_.gradient()).bottomRows(n).transpose();
+  linear_.setZero(n + 1);
+  lower_.setZero(program_.constraints().rows());
+  upper_.setZero(program_.constraints().rows());
+  plan_.setZero(n);
+}
+
+AccController::Output AccController::Step(const Input& input) {
+  const double safe_distance = SafeDistance(section_, input.speed_mps);
+  const AccSituation now{
+      .state = {input.distance_m - safe_distance, input.relative_speed_mps,
+                input.acceleration_mps2},
+      .speed_mps = input.speed_mps,
+      .previous_control = PreviousControl(input.acceleration_mps2),
+  };
+  Output output{.acceleration_mps2 = 0,
+                .control = 0,
+                .safe_distance_m = safe_distance,
+                .solver = Solver::kFallback,
+                .iterations = 0};
+  if (input.has_target && Solve(now, output)) {
+    output.control = plan_(0);
+  } else {
+    output.control = program_.FallbackControl(now.previous_control);
+  }
+  const DiscreteAccModel& model = program_.model();
+  output.acceleration_mps2 =
+      model.phi(kOwnAcceleration, kOwnAcceleration) * input.acceleration_mps2 +
+      model.gamma(kOwnAcceleration) * output.control;
+  control_ = output.control;
+  acceleration_mps2_ = output.acceleration_mps2;
+  return output;
+}
+
+std::span<const double> AccController::plan() const {
+  return {plan_.data(), static_cast<std::size_t>(plan_.size())};
+}
+
+// The u that the rate limit counts from: the own one if the car did what it was told, otherwise the
+// one that would hold the acceleration that the car has. Brought within the limits of u, because
+// the driver may have braked harder than the automation is allowed to.
+double AccController::PreviousControl(double acceleration_mps2) const {
+  const bool obeyed = std::abs(acceleration_mps2 - acceleration_mps2_) <= kSameAcceleration;
+  const double control = obeyed ? control_ : -acceleration_mps2 / section_.engine_gain;
+  return std::clamp(control, program_.MinControl(), program_.MaxControl());
+}
+
+// Computes plan_; false if there is none.
+bool AccController::Solve(const AccSituation& now, Output& output) {
+  const Eigen::Vector4d parameters(now.state(kDeltaD), now.state(kDeltaV),
+                                   now.state(kOwnAcceleration), now.previous_control);
+  for (Eigen::Index j = 0; j < plan_.size(); ++j) plan_(j) = gain_.col(j).dot(parameters);
+  if (program_.IsWithinLimits(now, plan())) {
+    output.solver = Solver::kUnconstrained;
+    return true;
+  }
+  linear_.noalias() = program_.gradient() * parameters;
+  program_.Limits(now, lower_, upper_);
+  const QpSolver::Result result = solver_.Solve(linear_, lower_, upper_);
+  output.iterations = static_cast<std::int32_t>(result.iterations);
+  if (result.status != QpSolver::Status::kOptimal) return false;
+  output.solver = Solver::kActiveSet;
+  plan_ = solver_.solution().tail(plan_.size());
+  return true;
+}
+
+}  // namespace fogline

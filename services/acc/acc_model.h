@@ -1,0 +1,46 @@
+// Longitudinal model of the ACC: a car with a first-order engine behind a preceding car.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "scenario/control.h"
+
+namespace fogline {
+
+/// Order of the state x = [delta_d, delta_v, a]: the distance minus the safe distance
+/// d_r = T_hw v + d_0 in m, the preceding car's speed minus the own in m/s, and the own
+/// acceleration in m/s2.
+enum AccState : Eigen::Index { kDeltaD = 0, kDeltaV = 1, kOwnAcceleration = 2 };
+
+/// x' = A x + B u, y = C x, while the preceding car holds its speed:
+///
+///     A = [0 1 -T_hw; 0 0 -1; 0 0 -1/T_e]    B = [0; 0; -K_e/T_e]    C = [0 0 1]
+///
+/// as printed by Sourav & Cheng, RTSS 2024. Mind the sign of B: a positive u decelerates, and a
+/// constant u leads to the acceleration -K_e u. (Takahama & Akasaka 2018, the source of that model,
+/// have +K_e/T_e.)
+struct AccModel {
+  Eigen::Matrix3d a;     // 3x3, A
+  Eigen::Vector3d b;     // 3x1, B
+  Eigen::RowVector3d c;  // 1x3, C
+};
+
+/// x(k+1) = Phi x(k) + Gamma u(k).
+struct DiscreteAccModel {
+  Eigen::Matrix3d phi;
+  Eigen::Vector3d gamma;
+};
+
+/// The matrices above with the parameters of `section`.
+AccModel MakeAccModel(const AccSection& section);
+
+/// Exact for a u that is constant over each step (zero-order hold; Van Loan 1978):
+/// exp([A B; 0 0] h) = [Phi Gamma; 0 1].
+DiscreteAccModel Discretise(const AccModel& model, double step_s);
+
+/// d_r = T_hw v + d_0, in m.
+inline double SafeDistance(const AccSection& section, double speed_mps) {
+  return section.headway_s * speed_mps + section.standstill_m;
+}
+
+}  // namespace fogline

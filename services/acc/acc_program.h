@@ -1,0 +1,110 @@
+// The quadratic program that the ACC's model predictive control solves in every step.
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "scenario/control.h"
+#include "services/acc/acc_model.h"
+
+namespace fogline {
+
+/// What the plan starts from.
+struct AccSituation {
+  Eigen::Vector3d state;    // x(k), see AccState
+  double speed_mps;         // own speed
+  double previous_control;  // u of the step before, within MinControl() to MaxControl()
+};
+
+/// Condensed over a horizon of N steps of h seconds: the states are eliminated, the unknowns are
+/// z = [s, u_0, ..., u_{N-1}], and the preceding car is predicted to hold its speed.
+///
+///     min  sum_{j=1..N}   w_d delta_d_j^2 + w_v delta_v_j^2 + w_a a_j^2
+///        + sum_{j=0..N-1} w_u u_j^2 + w_du (u_j - u_{j-1})^2     + w_s s^2
+///
+///     limits of u         -a_max / K_e <= u_j <= -a_min / K_e
+///     of its change       |u_j - u_{j-1}| <= h jerk_max / K_e
+///     of the speed        w_j <= max(v_max, w_j under the fall-back plan)
+///     no reversing        w_j >= -s / (1 s)
+///     of the gap          d_j >= d_min - s (N + 1 - j) / N
+///
+/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. As
+/// T_e v' = w - v, a speed below v_max stays there while w does, between the steps too, and v >= 0
+/// likewise. (Limits on v_j itself would be less cautious, but u acts on v with a delay, and an
+/// optimum that touches them swings from step to step.)
+///
+/// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
+/// allow it) at the fastest allowed change of u. It meets the first three limits whatever the
+/// situation, and s >= 0 can grow until the last two are met, so the program always has a solution.
+/// A car that is faster than v_max, because its driver was, is thereby brought back no later than
+/// by the fall-back plan. s, in m, is the shortfall of the gap that the plan allows itself; less and
+/// less of it is forgiven towards the end of the horizon, or a gap that is too small now would
+/// excuse one that stays too small. s needs no sign, as no s < 0 is ever cheaper than 0.
+class AccProgram {
+ public:
+  /// By how much a limit may be broken (m/s2, m/s or m) and still count as met: far above rounding,
+  /// far below anything that a car can do.
+  static constexpr double kTolerance = 1e-10;
+
+  AccProgram(const AccSection& section, double step_s);
+
+  Eigen::Index horizon() const { return horizon_; }
+  const DiscreteAccModel& model() const { return model_; }
+
+  /// Cost 1/2 z'Hz + (G p)'z + constant, where p = [x(k); u_{-1}]. H is (N+1) x (N+1) and its first
+  /// row and column, those of s, are zero but for the diagonal; G is (N+1) x 4.
+  const Eigen::MatrixXd& hessian() const { return hessian_; }
+  const Eigen::MatrixXd& gradient() const { return gradient_; }
+
+  /// The limits' rows C, 5N x (N+1), N of each kind in the order above.
+  const Eigen::MatrixXd& constraints() const { return constraints_; }
+
+  /// Limits of C z. Those of speed and gap that no plan can reach within the horizon are infinite.
+  void Limits(const AccSituation& now, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
+
+  /// Whether a plan u_0, ..., u_{N-1} meets every limit with s = 0.
+  bool IsWithinLimits(const AccSituation& now, std::span<const double> controls) const;
+
+  double MinControl() const { return min_control_; }
+  double MaxControl() const { return max_control_; }
+  double MaxControlChange() const { return max_control_change_; }
+
+  /// u of the fall-back plan after a step with `previous_control`.
+  double FallbackControl(double previous_control) const;
+
+ private:
+  // Which limits of the predicted states any plan within the limits of u can reach at all.
+  struct Reach {
+    bool speed;
+    bool gap;
+  };
+
+  void BuildCost(const AccSection& section);
+  void BuildConstraints();
+  Reach ReachOf(const AccSituation& now) const;
+  bool SpeedsAreWithinLimits(const AccSituation& now, std::span<const double> controls) const;
+  bool GapsAreWithinLimits(const AccSituation& now, std::span<const double> controls) const;
+
+  double SettledSpeed(const AccSituation& now) const;
+  double Gap(const Eigen::Vector3d& state, double preceding_mps) const;
+  Eigen::Vector3d Advance(const Eigen::Vector3d& state, double control) const {
+    return model_.phi * state + model_.gamma * control;
+  }
+
+  AccSection section_;
+  Eigen::Index horizon_;
+  double duration_s_;
+  DiscreteAccModel model_;
+  double min_control_;
+  double max_control_;
+  double max_control_change_;
+  double speed_per_control_;  // change of w over a step with u = 1
+  double fallback_control_;
+  Eigen::Matrix3Xd response_;  // 3 x N, x(j) after u = 1 in step 0 alone is column j - 1
+  Eigen::MatrixXd hessian_;
+  Eigen::MatrixXd gradient_;
+  Eigen::MatrixXd constraints_;
+};
+
+}  // namespace fogline

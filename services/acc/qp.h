@@ -1,0 +1,120 @@
+// A small dense solver for strictly convex quadratic programs that differ in their linear term and
+// limits only. Not for many hundreds of variables, and not for problems without curvature.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace fogline {
+
+/// The dual active-set method of D. Goldfarb and A. Idnani, "A numerically stable dual method for
+/// solving strictly convex quadratic programs", Mathematical Programming 27 (1983) 1-33, for
+///
+///     min 1/2 x'Hx + g'x   subject to   lower <= C x <= upper
+///
+/// It adds one violated limit after the other to a set of active ones, and drops those that are in
+/// the way. It needs no feasible start, and few iterations where few limits are active.
+///
+/// With the Cholesky factor H = L L', the normal of a limit is the column L^-1 c. The active
+/// normals are held as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
+/// with reorthogonalisation and Givens rotations: J. W. Daniel, W. B. Gragg, L. Kaufman and
+/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2), and a
+/// row of C only the part between its outermost nonzeros.
+///
+/// The factors depend on H and C alone. So every call but the first starts from the active set of
+/// the call before, which is nearly right where problems follow each other in time. The minimum is
+/// the same from any start, but for rounding; equal sequences of calls give equal bits.
+///
+/// Allocates in its constructor, never afterwards.
+class QpSolver {
+ public:
+  enum class Status : std::uint8_t {
+    kOptimal,         // solution() is the minimum
+    kInfeasible,      // no x meets all limits
+    kIterationLimit,  // gave up; solution() breaks at least one limit
+  };
+
+  struct Options {
+    std::int64_t max_iterations = 1000;
+    // A limit counts as met when it is broken by no more than this, in the units of its row of C.
+    double tolerance = 1e-10;
+  };
+
+  struct Result {
+    Status status = Status::kOptimal;
+    std::int64_t iterations = 0;  // steps of the method: each adds a limit or drops one
+  };
+
+  /// `hessian` is n x n, symmetric; `constraints` (C) is m x n, without rows of zeros.
+  /// @throws std::domain_error if `hessian` is not positive definite to working precision.
+  QpSolver(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& constraints,
+           const Options& options);
+
+  /// `linear` (g) has n entries, `lower` and `upper` have m; an infinite limit is no limit.
+  Result Solve(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
+               const Eigen::VectorXd& upper);
+
+  /// H^-1 times each column of `columns`: minus the unconstrained minimum for that linear term.
+  Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
+
+  /// x of the last Solve().
+  const Eigen::VectorXd& solution() const { return x_; }
+
+  /// After kOptimal, the Lagrange multiplier y of every row: H x + g = C' y, with y > 0 only where
+  /// the lower limit is active, y < 0 only where the upper one is, and y = 0 elsewhere.
+  const Eigen::VectorXd& multipliers() const { return multipliers_; }
+
+ private:
+  // One of the two limits of a row: side * (c'x - limit) >= 0.
+  struct Limit {
+    Eigen::Index row;
+    double side;       // 1: lower, -1: upper
+    double violation;  // by how much it is broken
+  };
+
+  // Where a row of C is not zero.
+  struct Span {
+    Eigen::Index begin;
+    Eigen::Index size;
+  };
+
+  enum class StepKind : std::uint8_t { kAdded, kDropped, kInfeasible };
+
+  void StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
+                          const Eigen::VectorXd& upper);
+  Limit MostViolated(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) const;
+  StepKind Step(Limit& limit, double& multiplier);
+  double SplitNormal(const Limit& limit);
+  void Add(const Limit& limit, double multiplier, double norm);
+  void Drop(Eigen::Index position);
+  double Value(Eigen::Index row) const;  // of c'x
+
+  Options options_;
+  // The constant part of the problem; n variables, m rows.
+  Eigen::MatrixXd inverse_factor_;  // n x n, L^-1, lower triangular
+  Eigen::MatrixXd rows_;            // n x m, C'
+  std::vector<Span> spans_;         // m
+
+  // The active set; the first `active_` columns and entries count.
+  Eigen::Index active_ = 0;
+  std::vector<Eigen::Index> set_;  // n, rows of the active limits
+  Eigen::VectorXd sides_;          // n, their sides
+  Eigen::VectorXd lambda_;         // n, their multipliers, >= 0
+  Eigen::MatrixXd q_;              // n x n, orthonormal basis of the active normals
+  Eigen::MatrixXd r_;              // n x n, upper triangular: active normals = Q R
+
+  // Of the limit that is being added, whose normal is Q along_ + rest_.
+  Eigen::VectorXd along_;             // n, the first `active_` entries count
+  Eigen::VectorXd rest_;              // n, orthogonal to Q
+  Eigen::VectorXd correction_;        // n, of `along_`
+  Eigen::VectorXd dual_direction_;    // n, fall of lambda_ per unit of step
+  Eigen::VectorXd primal_direction_;  // n, change of x_ per unit of step
+
+  Eigen::VectorXd scaled_;       // n, L'x at the start
+  Eigen::VectorXd x_;            // n
+  Eigen::VectorXd multipliers_;  // m
+};
+
+}  // namespace fogline

@@ -1,0 +1,6 @@
+// The following car as a process: answers TRUTH with FOLLOWER_COMMAND. It is traffic, not a part of
+// the host's automation.
+#include "services/follower/follower.h"
+#include "services/runtime/service.h"
+
+int main(int argc, char** argv) { return fogline::RunService<fogline::Follower>(argc, argv); }

@@ -1,0 +1,140 @@
+#include "services/acc/acc_program.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kStep = 0.1;
+
+AccSection ShortSection() {
+  AccSection section;
+  section.horizon_steps = 6;
+  section.engine_gain = 0.732;
+  section.weight_distance = 0.7;
+  section.weight_speed = 1.3;
+  section.weight_acceleration = 0.2;
+  section.weight_control = 0.9;
+  section.weight_control_change = 2.1;
+  return section;
+}
+
+const AccSituation kSituation{.state = {1.5, -0.8, 0.4}, .speed_mps = 21, .previous_control = -0.3};
+
+// The cost as it is written in acc_program.h, by simulation.
+double Cost(const AccSection& section, const AccSituation& now, const VectorXd& z) {
+  const DiscreteAccModel model = Discretise(MakeAccModel(section), kStep);
+  Eigen::Vector3d x = now.state;
+  double previous = now.previous_control;
+  double cost = section.min_gap_weight * z(0) * z(0);
+  for (Index j = 1; j < z.size(); ++j) {
+    const double u = z(j);
+    x = model.phi * x + model.gamma * u;
+    cost += section.weight_distance * x(0) * x(0) + section.weight_speed * x(1) * x(1) +
+            section.weight_acceleration * x(2) * x(2) + section.weight_control * u * u +
+            section.weight_control_change * (u - previous) * (u - previous);
+    previous = u;
+  }
+  return cost;
+}
+
+VectorXd SomePlan(Index size, int number) {
+  VectorXd z(size);
+  for (Index i = 0; i < size; ++i) z(i) = std::sin(static_cast<double>((i + 1) * (number + 2)));
+  return z;
+}
+
+TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
+  const AccSection section = ShortSection();
+  const AccProgram program(section, kStep);
+  const Eigen::Vector4d p(kSituation.state(0), kSituation.state(1), kSituation.state(2),
+                          kSituation.previous_control);
+  const VectorXd linear = program.gradient() * p;
+  const double constant = Cost(section, kSituation, VectorXd::Zero(7));
+  for (int number = 0; number < 10; ++number) {
+    const VectorXd z = SomePlan(7, number);
+    const double condensed = 0.5 * z.dot(program.hessian() * z) + linear.dot(z) + constant;
+    const double cost = Cost(section, kSituation, z);
+    EXPECT_NEAR(condensed, cost, 1e-12 * cost);  // rounding of sums
+  }
+}
+
+// Limits are compared through the distance to them, limit - C z, which has a meaning of its own.
+TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
+  AccSection section = ShortSection();
+  section.max_speed_mps = 21.5;
+  section.min_gap_m = 36;
+  const AccProgram program(section, kStep);
+  const VectorXd z = SomePlan(7, 3);
+  VectorXd lower(30);
+  VectorXd upper(30);
+  program.Limits(kSituation, lower, upper);
+  const VectorXd below = program.constraints() * z - lower;
+  const VectorXd above = upper - program.constraints() * z;
+
+  const DiscreteAccModel model = Discretise(MakeAccModel(section), kStep);
+  const double preceding_mps = kSituation.speed_mps + kSituation.state(kDeltaV);
+  Eigen::Vector3d x = kSituation.state;
+  double previous = kSituation.previous_control;
+  for (Index j = 0; j < 6; ++j) {
+    const double u = z(1 + j);
+    x = model.phi * x + model.gamma * u;
+    const double speed = preceding_mps - x(kDeltaV);
+    const double settled = speed + section.engine_time_constant_s * x(kOwnAcceleration);
+    const double gap = x(kDeltaD) + SafeDistance(section, speed);
+    const Index row = 5 * j;
+    // Under the fall-back plan this car stays below its maximum speed, which is so the limit.
+    EXPECT_NEAR(above(row), section.max_speed_mps - settled, 1e-12) << j;
+    EXPECT_NEAR(below(row + 1), settled + z(0), 1e-12) << j;
+    const double forgiven = z(0) * static_cast<double>(6 - j) / 6;
+    EXPECT_NEAR(below(row + 2), gap + forgiven - section.min_gap_m, 1e-12) << j;
+    EXPECT_NEAR(below(row + 3), u + section.max_acceleration_mps2 / section.engine_gain, 1e-12);
+    EXPECT_NEAR(above(row + 3), -section.min_acceleration_mps2 / section.engine_gain - u, 1e-12);
+    EXPECT_NEAR(above(row + 4), program.MaxControlChange() - (u - previous), 1e-12) << j;
+    EXPECT_NEAR(below(row + 4), program.MaxControlChange() + (u - previous), 1e-12) << j;
+    previous = u;
+  }
+}
+
+TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
+  // GIVEN a car in the middle of its speeds, far behind the next one
+  const AccProgram program(ShortSection(), kStep);
+  VectorXd lower(30);
+  VectorXd upper(30);
+  program.Limits(kSituation, lower, upper);
+  // THEN only the limits of u and its change are left.
+  EXPECT_EQ((upper.array() < std::numeric_limits<double>::infinity()).count(), 12);
+  EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12);
+}
+
+TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
+  AccSection section;
+  section.engine_gain = 0.5;
+  section.fallback_deceleration_mps2 = 1.2;
+  section.max_jerk_mps3 = 5;
+  const AccProgram program(section, kStep);
+  double u = -0.5;
+  std::vector<double> plan;
+  for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
+  // u is 1.2 / 0.5 in the end and changes by 5 * 0.1 / 0.5 a step.
+  const std::vector<double> expected{0.5, 1.5, 2.4, 2.4, 2.4};
+  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(plan[j], expected[j], 1e-15);
+}
+
+TEST(AccProgramTest, FallbackPlanStaysWithinTheStrongestBraking) {
+  AccSection section;
+  section.fallback_deceleration_mps2 = 9;
+  section.min_acceleration_mps2 = -3;
+  const AccProgram program(section, kStep);
+  EXPECT_EQ(program.FallbackControl(3), 3);
+}
+
+}  // namespace
+}  // namespace fogline
