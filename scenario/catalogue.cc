@@ -40,7 +40,8 @@ class CatalogueBuilder {
   }
   void Numbers(std::string_view name, const std::vector<double>&, const NumberSpec& spec,
                const ListSpec& list) {
-    Add(name, "a list of numbers, " + Count(list), "[]", spec.doc).source = spec.source;
+    Add(name, fmt::format("a list of {} numbers", Range(list)), "[]", spec.doc).source =
+        spec.source;
     CatalogueBuilder(infos_, Pointer(name)).Add("*", Allowed(spec), "", spec.doc);
   }
   template <class T>
@@ -51,7 +52,7 @@ class CatalogueBuilder {
   }
   template <class T>
   void List(std::string_view name, const std::vector<T>&, const ListSpec& list) {
-    Add(name, "a list of objects, " + Count(list), "[]", list.doc);
+    Add(name, fmt::format("a list of {} objects", Range(list)), "[]", list.doc);
     CatalogueBuilder(infos_, Pointer(name)).Section("*", T{}, "An item of the list.");
   }
   void Needs(const NeedSpec& spec) {
@@ -110,10 +111,6 @@ std::string WithoutIndices(std::string_view pointer) {
   return out;
 }
 
-std::string_view LastSegment(std::string_view pointer) {
-  return pointer.substr(std::min(pointer.rfind('/'), pointer.size()));
-}
-
 }  // namespace
 
 const std::vector<FieldInfo>& Catalogue() {
@@ -136,17 +133,22 @@ std::string NearestKnownPointer(std::string_view pointer) {
   return pointer.empty() ? "/" : std::string(pointer);
 }
 
+std::optional<std::string_view> FindName(std::string_view name) {
+  for (const FieldInfo& info : Catalogue()) {
+    const std::string_view pointer = info.pointer;
+    if (pointer.find('*') == std::string_view::npos &&
+        pointer.substr(pointer.rfind('/') + 1) == name) {
+      return pointer;
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string_view> SuggestPointer(std::string_view pointer) {
   std::vector<std::string_view> pointers;
   for (const FieldInfo& info : Catalogue()) pointers.emplace_back(info.pointer);
   if (const auto alike = Nearest(WithoutIndices(pointer), pointers)) return alike;
-  const std::string_view name = LastSegment(pointer);
-  const auto same = std::find_if(pointers.begin(), pointers.end(), [name](std::string_view known) {
-    return name.size() > 1 && LastSegment(known) == name &&
-           known.find('*') == std::string_view::npos;
-  });
-  if (same == pointers.end()) return std::nullopt;
-  return *same;
+  return FindName(pointer.substr(pointer.rfind('/') + 1));
 }
 
 }  // namespace fogline

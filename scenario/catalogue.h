@@ -30,6 +30,9 @@ const FieldInfo* FindField(std::string_view pointer);
 /// `pointer`, or the part of it that there is; at least "/".
 std::string NearestKnownPointer(std::string_view pointer);
 
+/// The first field of this name in any section, lists' items aside.
+std::optional<std::string_view> FindName(std::string_view name);
+
 /// The field that an unknown pointer may mean: one that is spelt alike, or one of the same name in
 /// another section.
 std::optional<std::string_view> SuggestPointer(std::string_view pointer);

@@ -48,29 +48,32 @@ class CountingIterator {
   std::size_t* consumed_;
 };
 
-// What nlohmann says is wrong, without its prefix and without its excerpt of the text:
-// "... syntax error while parsing value - invalid literal; last read: '"a":N'; expected ...".
+// What nlohmann says is wrong, in a form for a person and without its excerpts of the text. It says
+// "... syntax error while parsing value - invalid literal; last read: '"a":N'; expected '['".
 std::string SyntaxDetail(std::string_view what) {
-  constexpr std::string_view kObjectEnd = "while parsing object - ";
-  constexpr std::string_view kArrayEnd = "while parsing array - ";
-  const bool in_object = what.find(kObjectEnd) != std::string_view::npos;
-  const bool in_array = what.find(kArrayEnd) != std::string_view::npos;
-  if (const std::size_t dash = what.find(" - "); dash != std::string_view::npos) {
-    what.remove_prefix(dash + 3);
-  } else if (const std::size_t bracket = what.find("] "); bracket != std::string_view::npos) {
-    what.remove_prefix(bracket + 2);
+  if (what.find("number overflow") != std::string_view::npos) return "a number beyond 1.8e308";
+  std::string_view expected;
+  if (what.find("while parsing object key") != std::string_view::npos) {
+    expected = "; expected a key in double quotes";
+  } else if (what.find("while parsing object - ") != std::string_view::npos) {
+    expected = "; expected ',' or '}'";
+  } else if (what.find("while parsing array - ") != std::string_view::npos) {
+    expected = "; expected ',' or ']'";
+  } else if (const std::size_t at = what.rfind("; expected "); at != std::string_view::npos) {
+    expected = what.substr(at);
   }
-  std::string detail(what.substr(0, what.find("; last read: ")));
-  detail = detail.substr(0, detail.find("; expected "));
-  const std::size_t expected = what.rfind("; expected ");
-  if (in_object) return detail + "; expected ',' or '}'";
-  if (in_array) return detail + "; expected ',' or ']'";
-  return expected == std::string_view::npos ? detail : detail + std::string(what.substr(expected));
+  what.remove_prefix(std::min(what.find(" - ") + 3, what.size()));
+  what = what.substr(0, std::min(what.find("; last read: "), what.find("; expected ")));
+  return std::string(what).append(expected);
 }
 
 // A likely reason for a syntax error at `offset`, or nothing.
 std::string_view SyntaxHint(std::string_view text, std::size_t offset) {
   if (offset >= text.size()) return "";
+  const char before = offset > 0 ? text[offset - 1] : ' ';
+  if (before == '0' && text[offset] >= '0' && text[offset] <= '9') {
+    return " (JSON has no leading zeros)";
+  }
   switch (text[offset]) {
     case '/':
     case '#':
@@ -82,8 +85,8 @@ std::string_view SyntaxHint(std::string_view text, std::size_t offset) {
       return " (JSON has no NaN and no Infinity)";
     case '}':
     case ']': {
-      const std::size_t before = text.substr(0, offset).find_last_not_of(" \t\r\n");
-      const bool comma = before != std::string_view::npos && text[before] == ',';
+      const std::size_t last = text.substr(0, offset).find_last_not_of(" \t\r\n");
+      const bool comma = last != std::string_view::npos && text[last] == ',';
       return comma ? " (JSON has no comma after the last item)" : "";
     }
     default:
@@ -112,16 +115,14 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   bool null() override { return Put(std::monostate{}) != nullptr; }
   bool boolean(bool value) override { return Put(value) != nullptr; }
-  bool number_integer(number_integer_t value) override { return Put(value) != nullptr; }
+  bool number_integer(number_integer_t value) override { return PutNumber(value); }
   bool number_unsigned(number_unsigned_t value) override {
     if (value <= static_cast<number_unsigned_t>(std::numeric_limits<std::int64_t>::max())) {
-      return Put(static_cast<std::int64_t>(value)) != nullptr;
+      return PutNumber(static_cast<std::int64_t>(value));
     }
-    return Put(static_cast<double>(value)) != nullptr;
+    return PutNumber(static_cast<double>(value));
   }
-  bool number_float(number_float_t value, const string_t&) override {
-    return Put(value) != nullptr;
-  }
+  bool number_float(number_float_t value, const string_t&) override { return PutNumber(value); }
   bool string(string_t& value) override { return Put(std::move(value)) != nullptr; }
   bool binary(binary_t&) override { return false; }
 
@@ -141,18 +142,17 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
     // The parser's position is behind the byte at which it gave up; the token's start is the better
-    // place, except inside a string, which may be long.
+    // place, except within a string, which may be long.
+    const std::string detail = SyntaxDetail(error.what());
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
-    std::size_t offset = std::min(TokenStart(), last);
-    if (offset < text_.size() && text_[offset] == '"') offset = last;
-    return Fail(offset, "syntax",
-                "not JSON: " + SyntaxDetail(error.what()) + std::string(SyntaxHint(text_, offset)));
+    const std::size_t offset =
+        detail.starts_with("invalid string") ? last : std::min(TokenStart(), last);
+    return Fail(offset, "syntax", fmt::format("not JSON: {}{}", detail, SyntaxHint(text_, offset)));
   }
 
  private:
   // First byte of the token that was just read: between the end of the one before and this one
-  // there is only space and punctuation. (A number's end may be one byte too far, at the comma,
-  // space or bracket that ended it, which does no harm.)
+  // there is only space and punctuation.
   std::size_t TokenStart() const {
     const std::size_t start = text_.find_first_not_of(" \t\r\n,:", end_);
     return start == std::string_view::npos ? text_.size() : start;
@@ -174,6 +174,14 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     if (open_.empty()) return &(root_ = std::move(node));
     if (auto* array = open_.back()->As<JsonArray>()) return &array->emplace_back(std::move(node));
     return &(open_.back()->As<JsonObject>()->back().value = std::move(node));
+  }
+
+  // To see where a number ends, the lexer takes one more byte, unless the text ends there.
+  template <class T>
+  bool PutNumber(T value) {
+    if (Put(value) == nullptr) return false;
+    if (consumed_ < text_.size()) end_ = consumed_ - 1;
+    return true;
   }
 
   // Pointers to open containers stay valid: what is around an open one does not grow.
@@ -208,7 +216,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
       const JsonMember& member = object[order[i]];
       if (member.key != object[order[i - 1]].key) continue;
       mistakes_.Add(member.place, JoinPointer(OpenPointer(), member.key), "duplicate-key",
-                    "duplicate key; it has a value above already, and one of the two must go");
+                    "duplicate key; it has a value above already, and one of them must go");
     }
   }
 

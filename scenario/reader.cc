@@ -177,14 +177,14 @@ void ObjectReader::Text(std::string_view name, std::string& out, std::string_vie
   const JsonValue* value = Take(name);
   if (value == nullptr) return;
   const auto* text = value->As<std::string>();
-  if (text == nullptr) return Refuse(*value, Pointer(name), AllowedText());
+  if (text == nullptr) return Refuse(*value, Pointer(name), "a text");
   const std::size_t length = CountCharacters(*text);
   if (length > static_cast<std::size_t>(kMaxTextLength)) {
     mistakes_.Add(value->place, Pointer(name), "text",
-                  fmt::format("must be {}, not of {}", AllowedText(), length));
+                  fmt::format("{} characters; allowed are {}", length, kMaxTextLength));
   } else if (HasControlCharacter(*text)) {
     mistakes_.Add(value->place, Pointer(name), "text",
-                  fmt::format("must be {}, as in {}", AllowedText(), QuoteShort(*text)));
+                  fmt::format("a control character, which is not allowed: {}", QuoteShort(*text)));
   } else {
     out = *text;
   }
@@ -210,13 +210,13 @@ const JsonArray* ObjectReader::TakeList(std::string_view name, const ListSpec& l
   if (value == nullptr) return nullptr;
   const auto* items = value->As<JsonArray>();
   if (items == nullptr) {
-    Refuse(*value, Pointer(name), "a list of " + Count(list));
+    Refuse(*value, Pointer(name), fmt::format("a list of {} items", Range(list)));
     return nullptr;
   }
   const auto count = static_cast<std::int64_t>(items->size());
   if (count >= list.min_items && count <= list.max_items) return items;
   mistakes_.Add(value->place, Pointer(name), "list-length",
-                fmt::format("{} items; allowed are {}", count, Count(list)));
+                fmt::format("{} items; allowed are {}", count, Range(list)));
   return nullptr;
 }
 
@@ -272,11 +272,12 @@ void ObjectReader::RefuseUnknownKeys() {
 }
 
 std::string ObjectReader::UnknownKeyMessage(std::string_view key) const {
-  if (const auto near = Nearest(key, known_)) return "unknown key" + DidYouMean(near);
-  if (const auto elsewhere = SuggestPointer(Pointer(key))) {
-    return "unknown key" + DidYouMean(elsewhere);
-  }
-  return "unknown key; known here are " + Names(known_);
+  constexpr std::size_t kMaxListed = 8;
+  std::optional<std::string_view> meant = Nearest(key, known_);
+  if (!meant) meant = FindName(key);
+  if (meant) return "unknown key" + DidYouMean(meant);
+  if (known_.size() <= kMaxListed) return "unknown key; known here are " + Names(known_);
+  return "unknown key; known here: fogline check --explain " + NearestKnownPointer(pointer_);
 }
 
 }  // namespace

@@ -19,8 +19,9 @@ constexpr std::size_t kMaxExcerpt = 100;
 constexpr std::size_t kMaxCompared = 64;
 
 // A suggestion may differ in one character out of three, and in one of a very short word. The
-// beginning of a name (a unit left out, say) counts as one edit from three characters on.
+// beginning of a name (its unit left out, say) counts as one edit if it is long enough.
 constexpr std::size_t kCharactersPerEdit = 3;
+constexpr std::size_t kMinBeginning = 2;
 
 // Bytes of the control character (C0, DEL, C1 in UTF-8) that `text` begins with; 0 if none.
 std::size_t ControlCharacterSize(std::string_view text) {
@@ -98,8 +99,8 @@ std::string AllowedText() {
   return fmt::format("a text of at most {} characters, none a control character", kMaxTextLength);
 }
 
-std::string Count(const ListSpec& spec) {
-  return fmt::format("{} to {} items", spec.min_items, spec.max_items);
+std::string Range(const ListSpec& spec) {
+  return fmt::format("{} to {}", spec.min_items, spec.max_items);
 }
 
 std::string Names(std::span<const std::string_view> names) {
@@ -138,7 +139,7 @@ std::optional<std::string_view> Nearest(std::string_view word,
   std::optional<std::string_view> nearest;
   std::size_t least = std::max<std::size_t>(1, word.size() / kCharactersPerEdit) + 1;
   for (const std::string_view candidate : candidates) {
-    const bool begins = word.size() >= kCharactersPerEdit && candidate.starts_with(word);
+    const bool begins = word.size() >= kMinBeginning && candidate.starts_with(word);
     const std::size_t distance = begins && candidate != word ? 1 : EditDistance(word, candidate);
     if (distance >= least || distance >= candidate.size()) continue;
     least = distance;

@@ -35,8 +35,8 @@ std::string Allowed(const NumberSpec& spec);
 std::string Allowed(const IntegerSpec& spec);
 std::string AllowedText();
 
-/// How many items a list may have, such as "0 to 100 items".
-std::string Count(const ListSpec& spec);
+/// How many items a list may have, such as "0 to 100".
+std::string Range(const ListSpec& spec);
 
 /// The names in double quotes: `"box", "half_sine", "triangle"`.
 std::string Names(std::span<const std::string_view> names);
