@@ -1,5 +1,6 @@
 #include "scenario/csv.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -94,7 +95,7 @@ std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
     Split(*line, cells);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (columns[i] >= cells.size()) {
-        refuse(line->offset, fmt::format("{} cells; the header has more", cells.size()));
+        refuse(line->offset, fmt::format("the row ends before column {}", columns[i] + 1));
         break;
       }
       const Cell& cell = cells[columns[i]];

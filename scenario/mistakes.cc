@@ -55,7 +55,8 @@ std::string Text(const std::vector<Mistake>& mistakes, std::string_view or_more)
   const std::size_t printed = std::min(mistakes.size(), kMaxPrinted);
   for (std::size_t i = 0; i < printed; ++i) text += Line(mistakes[i]);
   if (mistakes.size() > printed) {
-    text += fmt::format("... and {}{} more\n", mistakes.size() - printed, or_more);
+    text += fmt::format("... and {}{}\n", mistakes.size() - printed,
+                        or_more.empty() ? " more" : or_more);
   }
   return text + fmt::format("{}{} error{}; what is allowed: fogline check --explain {}",
                             mistakes.size(), or_more, mistakes.size() == 1 ? "" : "s",
@@ -103,7 +104,7 @@ void MistakeList::Throw(const std::vector<Source>& sources) {
     }
     mistakes.push_back(std::move(entry.mistake));
   }
-  const std::string text = Text(mistakes, full() ? " or" : "");
+  const std::string text = Text(mistakes, full() ? " or more" : "");
   throw ScenarioError(text, std::move(mistakes));
 }
 

@@ -114,7 +114,8 @@ class RecordingReader {
       AddInScenario(
           pointer, "csv-column",
           fmt::format("{} has no column {}; it has {}{}", Shown(csv_name_), QuoteShort(name),
-                      Shown(Names(header)), DidYouMean(Nearest(name, header))));
+                      header.empty() ? "no header line" : Shown(Names(header)),
+                      DidYouMean(Nearest(name, header))));
     } else if (std::count(header.begin(), header.end(), name) > 1) {
       AddInScenario(
           pointer, "csv-column",

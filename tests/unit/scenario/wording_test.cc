@@ -1,0 +1,76 @@
+#include "scenario/wording.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNames{"threshold", "speed_mps", "speed_s"};
+
+TEST(WordingTest, WritesNumbersShortAndExact) {
+  EXPECT_EQ(NumberText(20.0), "20");
+  EXPECT_EQ(NumberText(0.1), "0.1");
+  EXPECT_EQ(NumberText(-0.0), "-0.0");
+  EXPECT_EQ(NumberText(1e5), "100000");
+  EXPECT_EQ(NumberText(0.1 + 0.2), "0.30000000000000004");
+}
+
+TEST(WordingTest, QuotesSoThatNothingReachesTheTerminal) {
+  EXPECT_EQ(Quote("a\"b\\c"), R"("a\"b\\c")");
+  EXPECT_EQ(Quote("\x1b[31m\n\x7f\xc2\x9b"), R"("\u001b[31m\u000a\u007f\u009b")");
+  EXPECT_EQ(Quote("\xc3\xa4"), "\"\xc3\xa4\"");
+}
+
+TEST(WordingTest, CutsLongTextsBetweenCharacters) {
+  std::string umlauts;
+  for (int i = 0; i < 200; ++i) umlauts += "\xc3\xa4";
+  const std::string shown = Shown("x" + umlauts);
+  EXPECT_TRUE(IsUtf8(shown));
+  EXPECT_LT(shown.size(), 110U);
+  EXPECT_TRUE(shown.ends_with("..."));
+}
+
+TEST(WordingTest, CountsEachKindOfEditOnce) {
+  EXPECT_EQ(EditDistance("threshold", "threshold"), 0U);
+  EXPECT_EQ(EditDistance("treshold", "threshold"), 1U);
+  EXPECT_EQ(EditDistance("threshhold", "threshold"), 1U);
+  EXPECT_EQ(EditDistance("thrashold", "threshold"), 1U);
+  EXPECT_EQ(EditDistance("htreshold", "threshold"), 1U);
+  EXPECT_EQ(EditDistance("", "fog"), 3U);
+  EXPECT_EQ(EditDistance("fog", ""), 3U);
+}
+
+TEST(WordingTest, SuggestsTheNearestNameOrNone) {
+  EXPECT_EQ(Nearest("treshold", kNames), "threshold");
+  EXPECT_EQ(Nearest("speed", kNames), "speed_mps");
+  EXPECT_EQ(Nearest("speed_kmh", kNames), "speed_mps");
+  EXPECT_EQ(Nearest("weather", kNames), std::nullopt);
+  EXPECT_EQ(Nearest(std::string(100'000, 't'), kNames), std::nullopt);
+}
+
+TEST(WordingTest, NamesWhatAFieldAllows) {
+  EXPECT_EQ(Allowed(NumberSpec{.min = 0, .max = 70, .unit = "m/s", .doc = ""}),
+            "a number in [0, 70] m/s");
+  EXPECT_EQ(Allowed(IntegerSpec{.min = 1, .max = 60, .unit = "", .doc = ""}),
+            "an integer in [1, 60]");
+  EXPECT_EQ(Allowed(IntegerSpec{.min = 1, .max = 1, .unit = "", .doc = ""}), "1");
+}
+
+TEST(WordingTest, CountsCharactersNotBytes) {
+  EXPECT_EQ(CountCharacters("A\xc3\xa4\xe2\x82\xac\xf0\x9f\x8c\xab"), 4U);
+}
+
+TEST(WordingTest, FindsControlCharactersOfAllThreeKinds) {
+  EXPECT_TRUE(HasControlCharacter("a\tb"));
+  EXPECT_TRUE(HasControlCharacter("a\x7f"));
+  EXPECT_TRUE(HasControlCharacter("\xc2\x85"));
+  EXPECT_FALSE(HasControlCharacter("\xc2\xa0 \xc3\x85"));
+}
+
+}  // namespace
+}  // namespace fogline
