@@ -190,7 +190,7 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
     cursor: {
       y: false,
       points: {size: 6},
-      drag: {x: true, y: false, dist: 6},
+      drag: {x: true, y: false, dist: 6, setScale: false},  // onSpan sets it, in every chart
       bind: {mouseleave: () => null, dblclick: () => () => onSpan(wholeSpan())},
     },
     hooks: {
@@ -204,7 +204,6 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
       }],
     },
   };
-  options.cursor.drag.setScale = false;  // the span is the page's: onSpan sets it everywhere
   const chart = new uPlot(options, data, element);
   chart.over.addEventListener("touchmove", ({touches: [touch]}) => {
     onTime(chart.posToVal(touch.clientX - chart.over.getBoundingClientRect().left, "x"));
