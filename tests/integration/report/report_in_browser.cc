@@ -1,0 +1,349 @@
+// The report's page in headless Chromium: are the figures drawn, does it stay within the width of a
+// phone, does it do what the reader asks. Each test adds a script to a copy of the page; the script
+// puts what it finds into an attribute, which Chromium prints with the rest of the page.
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+#include "tests/unit/report/example_runs.h"
+#include "tools/report/figures.h"
+#include "tools/report/html.h"
+#include "tools/report/report.h"
+
+namespace fogline {
+namespace {
+
+using nlohmann::json;
+using ::testing::Each;
+using ::testing::SizeIs;
+
+struct ViewSize {
+  int width;
+  int height;
+};
+/// What the reader prefers, by Chromium's numbers.
+enum class Scheme { kDark = 0, kLight = 1 };
+
+constexpr ViewSize kDesktop{1280, 900};
+constexpr ViewSize kPhone{360, 740};
+
+/// The page in a frame of the wanted size (a window is never narrower than 500 pixels), and an
+/// unfinished document beside it: Chromium prints when everything is loaded, so the probe ends that
+/// document when it is done.
+constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
+<iframe id="hold" hidden></iframe>
+<script>document.getElementById("hold").contentDocument.open();</script>
+<iframe style="border:0;width:{}px;height:{}px" srcdoc="{}"></iframe>)";
+
+/// For a browser that starts on a busy machine; a page takes about a second.
+constexpr std::chrono::seconds kLimit(60);
+
+/// Runs before everything else in the page.
+constexpr std::string_view kWatch = R"(<script>
+const problems = [];
+addEventListener("error", (event) => problems.push(event.message));
+addEventListener("unhandledrejection", (event) => problems.push(String(event.reason)));
+addEventListener("securitypolicyviolation", (event) => problems.push(event.violatedDirective));
+</script>)";
+
+/// Runs last, with the test's own part in the middle.
+constexpr std::string_view kProbe = R"(<script>
+const frame = () => new Promise(requestAnimationFrame);
+const settled = async () => {{ for (let i = 0; i < 5; ++i) await frame(); }};
+const isDrawn = (canvas) => canvas.width > 0 &&
+    canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 0);
+const canvases = () => [...document.querySelectorAll("figure canvas")];
+const mouse = (type, element, x) => {{
+  const {{left, top}} = element.getBoundingClientRect();
+  element.dispatchEvent(new MouseEvent(type, {{bubbles: true, button: 0, clientX: left + x,
+                                              clientY: top + 40, movementX: 5, movementY: 1}}));
+}};
+const pointer = (index, x) => mouse("mousemove", page.charts[index].over, x);
+const click = (selector) => document.querySelector(selector).click();
+(async () => {{
+  await settled();
+  const found = {{}};
+  try {{
+    {}
+  }} catch (problem) {{
+    problems.push(String(problem));
+  }}
+  await settled();
+  found.problems = problems;
+  found.loaded = performance.getEntriesByType("resource").length;
+  top.document.documentElement.dataset.found = JSON.stringify(found);
+  top.document.getElementById("hold").contentDocument.close();
+}})();
+</script>)";
+
+std::string Replaced(std::string text, std::string_view what, std::string_view with) {
+  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+  return text;
+}
+
+class ReportInBrowserTest : public ::testing::Test {
+ protected:
+  /// Shows the report in a window and returns what `script` put into `found`, with "problems" and
+  /// the number of things "loaded" from outside.
+  json Show(std::span<const ReportRun> runs, ViewSize window, std::string_view script,
+            Scheme scheme = Scheme::kLight) {
+    std::string report = MakeReport(runs, ExampleTable());
+    report.insert(report.find("<meta"), kWatch);
+    report.insert(report.rfind("</body>"), fmt::format(kProbe, script));
+    const std::string file = folder_.File("page.html");
+    std::ofstream(file) << fmt::format(kFrame, window.width, window.height, EscapeHtml(report));
+    const test::Outcome outcome = test::RunCommand(
+        {FOGLINE_CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+         "--no-first-run", "--disable-background-networking", "--disable-component-update",
+         "--disable-sync", "--user-data-dir=" + folder_.File("profile"),
+         fmt::format("--window-size={},{}", window.width, window.height),
+         fmt::format("--blink-settings=preferredColorScheme={}", static_cast<int>(scheme)),
+         "--dump-dom", "file://" + file},
+        kLimit);
+    return Found(outcome.out);
+  }
+
+ private:
+  static json Found(const std::string& shown) {
+    constexpr std::string_view kAttribute = "data-found=\"";
+    const std::size_t begin = shown.find(kAttribute);
+    if (begin == std::string::npos) {
+      ADD_FAILURE() << "the page's script did not come to its end";
+      return {{"problems", {"no result"}}};
+    }
+    const std::size_t from = begin + kAttribute.size();
+    std::string text = shown.substr(from, shown.find('"', from) - from);
+    for (const auto& [entity, character] :
+         {std::pair{"&quot;", "\""}, {"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}}) {
+      text = Replaced(text, entity, character);
+    }
+    return json::parse(text);
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(ReportInBrowserTest, DrawsEveryFigureAndLoadsNothing) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    found.drawn = canvases().map(isDrawn);
+    found.values = [...document.querySelectorAll(".legend td")].map((cell) => cell.textContent);
+    found.names = [...document.querySelectorAll("[role=img]")].map((e) => e.ariaLabel);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["loaded"], 0);
+  EXPECT_THAT(found["drawn"], SizeIs(Figures().size()));
+  EXPECT_THAT(found["drawn"], Each(true));
+  EXPECT_THAT(found["values"], Each(::testing::Ne("")));
+  EXPECT_THAT(found["names"][0].get<std::string>(),
+              ::testing::StartsWith("Figure 1, Speeds of the three cars: without"));
+}
+
+TEST_F(ReportInBrowserTest, GivesEachRunAPanelSideBySide) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    click("[value=apart]");
+    await settled();
+    found.drawn = canvases().map(isDrawn);
+    const spans = page.charts.slice(0, 4).map(({scales: {y: {min, max}}}) => [min, max].join());
+    found.spans = new Set(spans).size;)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["drawn"], SizeIs(4 * Figures().size()));
+  EXPECT_THAT(found["drawn"], Each(true));
+  EXPECT_EQ(found["spans"], 1) << "panels of a figure are compared, so they share their axis";
+}
+
+TEST_F(ReportInBrowserTest, PointsAtTheSameTimeInEveryFigure) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    pointer(0, 100);
+    await settled();
+    found.time = state.time;
+    found.cursors = page.charts.map((chart) => chart.posToVal(chart.cursor.left, "x"));
+    found.slider = Number(page.slider.value);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  const double time_s = found["time"];
+  EXPECT_GT(time_s, 5.0);
+  EXPECT_LT(time_s, 19.0);
+  EXPECT_NEAR(found["slider"].get<double>(), time_s, 0.051);  // half a step
+  for (const json& cursor : found["cursors"]) {
+    EXPECT_NEAR(cursor.get<double>(), time_s, 0.1);  // a pixel
+  }
+}
+
+TEST_F(ReportInBrowserTest, ShowsTheValuesOfTheTimeOfTheSlider) {
+  std::vector<ReportRun> runs = ExampleRuns();
+  runs[1].samples[123].host_speed_mps = -12.3456;
+  const json found = Show(runs, kDesktop, R"(
+    page.slider.value = 12.3;
+    page.slider.dispatchEvent(new Event("input"));
+    await settled();
+    const row = document.querySelectorAll("#speeds .legend tbody tr")[1];
+    found.row = row.innerText;)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["row"].get<std::string>(), ::testing::HasSubstr("\u221212.346"));
+}
+
+TEST_F(ReportInBrowserTest, ZoomsEveryFigureByDraggingAndBack) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    const {over} = page.charts[2];
+    const span = () => page.charts.map(({scales: {x: {min, max}}}) => [min, max]);
+    mouse("mousemove", over, 100);
+    mouse("mousedown", over, 100);
+    mouse("mousemove", over, 250);
+    mouse("mouseup", over, 250);
+    await settled();
+    found.zoomed = span();
+    found.drawn = canvases().map(isDrawn);
+    click("#whole");
+    await settled();
+    found.whole = span();)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  const json first = found["zoomed"][0];
+  EXPECT_GT(first[0].get<double>(), 5.0);
+  EXPECT_LT(first[1].get<double>(), 40.0);
+  EXPECT_THAT(found["zoomed"], Each(first));
+  EXPECT_THAT(found["whole"], Each(json::parse("[0.0, 49.9]")));
+  EXPECT_THAT(found["drawn"], Each(true));
+}
+
+TEST_F(ReportInBrowserTest, FollowsTheRunSelectorDownToNoRun) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    found.counts = [];
+    for (const box of document.querySelectorAll("#runs input")) {
+      box.click();
+      await settled();
+      found.counts.push(canvases().length);
+      found.rows = document.querySelectorAll("#speeds .legend thead th").length;
+    })");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["counts"], json::parse("[6, 6, 6, 0]"));
+  EXPECT_EQ(found["rows"], 1);
+}
+
+TEST_F(ReportInBrowserTest, HidesACurveAndShowsItAgain) {
+  const json found = Show(ExampleRuns(), kDesktop, R"(
+    const series = () => page.charts[3].series.length - 1;
+    found.before = series();
+    click("#follower-gap .legend button");
+    await settled();
+    found.hidden = page.charts.at(-1).series.length;
+    found.after = page.charts[3].series.length - 1;
+    found.focus = document.activeElement.textContent;)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["before"], 8);  // gap and safe distance of four runs
+  EXPECT_EQ(found["after"], 4);
+  EXPECT_EQ(found["focus"], "gap");
+}
+
+TEST_F(ReportInBrowserTest, FitsAPhoneInEveryView) {
+  const json found = Show(ExampleRuns(), kPhone, R"(
+    const width = () => document.documentElement.scrollWidth;
+    document.querySelectorAll("details").forEach((element) => { element.open = true; });
+    found.viewport = innerWidth;
+    found.widths = [width()];
+    found.drawn = canvases().map(isDrawn);
+    click("[value=apart]");
+    await settled();
+    found.widths.push(width());
+    found.charts = page.charts.map((chart) => chart.width);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["viewport"], kPhone.width);
+  EXPECT_THAT(found["widths"], Each(::testing::Le(kPhone.width)));
+  EXPECT_THAT(found["charts"], Each(::testing::Le(kPhone.width)));
+  EXPECT_THAT(found["drawn"], Each(true));
+}
+
+TEST_F(ReportInBrowserTest, FitsAPhoneWithLongNames) {
+  std::vector<ReportRun> runs = ExampleRuns(50);
+  for (ReportRun& run : runs) {
+    run.name = run.scenario_title = std::string(200, 'x');
+    run.measures = {{std::string(200, 'y'), 1.5, "m", std::string(200, 'z')}};
+  }
+  const json found = Show(runs, kPhone, "found.width = document.documentElement.scrollWidth;");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_LE(found["width"], kPhone.width);
+}
+
+TEST_F(ReportInBrowserTest, ResizesTheChartsWithTheWindow) {
+  const json found = Show(ExampleRuns(50), kDesktop, R"(
+    found.before = page.charts[0].width;
+    document.querySelector("main").style.maxWidth = "420px";
+    await settled();
+    found.after = page.charts[0].width;)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_GT(found["before"], 450);
+  EXPECT_LT(found["after"], 200) << "two columns in 420 pixels";
+}
+
+TEST_F(ReportInBrowserTest, IsDarkWhereTheReaderLikesItDarkAndWhiteOnPaper) {
+  const json found = Show(ExampleRuns(50), kDesktop, R"(
+    found.screen = [getComputedStyle(document.body).backgroundColor, state.theme.ink];
+    dispatchEvent(new Event("beforeprint"));
+    found.paper = [getComputedStyle(document.documentElement).backgroundColor, state.theme.ink];
+    dispatchEvent(new Event("afterprint"));
+    found.again = state.theme.ink;)",
+                          Scheme::kDark);
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["screen"], json::parse(R"json(["rgb(17, 21, 26)", "#e4e8ec"])json"));
+  EXPECT_EQ(found["paper"], json::parse(R"json(["rgb(255, 255, 255)", "#1b2127"])json"));
+  EXPECT_EQ(found["again"], "#e4e8ec");
+}
+
+TEST_F(ReportInBrowserTest, TakesTextOfARunForTextOnly) {
+  std::vector<ReportRun> runs = ExampleRuns(20);
+  const std::string evil =
+      "</script><script>window.taken = true</script>\"><img src=x onerror='taken=1'>";
+  for (ReportRun& run : runs) run.name = run.scenario_title = run.digest = evil;
+  const json found = Show(runs, kDesktop, R"(
+    found.taken = window.taken === true;
+    found.name = document.querySelector(".run .name").textContent;)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["taken"], false);
+  EXPECT_EQ(found["name"], evil);
+}
+
+TEST_F(ReportInBrowserTest, ComparesRunsOfDifferentLengthAndStep) {
+  std::vector<ReportRun> runs = ExampleRuns(100);
+  runs[0].samples.resize(40);
+  for (Sample& sample : runs[1].samples) sample.time_s *= 2.5;
+  const json found = Show(runs, kDesktop, R"(
+    setTime(15.0);
+    await settled();
+    found.span = state.span;
+    found.row = [...document.querySelectorAll("#speeds .legend tbody tr:nth-child(2) td")]
+        .map((cell) => cell.textContent);
+    found.drawn = canvases().map(isDrawn);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["span"], json::parse("[0.0, 24.75]"));
+  EXPECT_EQ(found["row"][0], "–");
+  EXPECT_NE(found["row"][1], "–");
+  EXPECT_THAT(found["drawn"], Each(true));
+}
+
+TEST_F(ReportInBrowserTest, ShowsRunsWithoutFollowerOrStepsWithoutAnError) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ReportRun> runs = ExampleRuns(60);
+  runs[0].samples.clear();
+  for (Sample& sample : runs[1].samples) {
+    sample.follower_gap_m = sample.follower_safe_distance_m = sample.follower_speed_mps = kNone;
+  }
+  runs.resize(2);
+  const json both = Show(runs, kDesktop, "found.charts = page.charts.length;");
+  EXPECT_THAT(both["problems"], SizeIs(0)) << both;
+  EXPECT_EQ(both["charts"], 6);
+  EXPECT_THAT(Show({runs.data(), 1}, kDesktop, "")["problems"], SizeIs(0));
+  EXPECT_THAT(Show({}, kDesktop, "")["problems"], SizeIs(0));
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,94 @@
+#include "tools/report/figures.h"
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/report/example_runs.h"
+#include "tools/report/assets.h"
+
+namespace fogline {
+namespace {
+
+Sample At(double time_s, double lambda_human, bool fog) {
+  Sample sample;
+  sample.time_s = time_s;
+  sample.lambda_human = lambda_human;
+  sample.fog_present = fog;
+  return sample;
+}
+
+TEST(FiguresTest, DrawOnlyColumnsThatExistAndColoursOfThePalette) {
+  for (const Figure& figure : Figures()) {
+    for (const Curve& curve : figure.curves) {
+      EXPECT_NO_THROW(ColumnNamed(curve.column)) << figure.id;
+      EXPECT_LT(static_cast<std::size_t>(curve.colour), kPaletteSize) << curve.label;
+    }
+  }
+}
+
+TEST(FiguresTest, LeaveNoColumnUndrawn) {
+  std::set<std::string_view> drawn{"time_s"};
+  for (const Figure& figure : Figures()) {
+    for (const Curve& curve : figure.curves) drawn.insert(curve.column);
+  }
+  EXPECT_EQ(drawn.size(), kColumns.size());
+}
+
+TEST(FiguresTest, TellTheCurvesOfAFigureApartByColourAndByDash) {
+  for (const Figure& figure : Figures()) {
+    std::set<int> colours;
+    std::set<Dash> dashes;
+    for (const Curve& curve : figure.curves) {
+      EXPECT_TRUE(colours.insert(curve.colour).second) << figure.id << ": " << curve.label;
+      EXPECT_TRUE(dashes.insert(curve.dash).second) << figure.id << ": " << curve.label;
+    }
+  }
+}
+
+TEST(FiguresTest, HaveThePaletteOfThePage) {
+  for (std::size_t i = 0; i < kPaletteSize; ++i) {
+    const std::string rule = fmt::format("--p{}: {};", i, kPalette[i]);
+    EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
+  }
+}
+
+TEST(ColumnNamedTest, RefusesAnUnknownName) {
+  EXPECT_THROW(ColumnNamed("speed"), std::out_of_range);
+}
+
+TEST(HostJerkTest, IsTheChangeOfAccelerationPerSecond) {
+  std::vector<Sample> samples{At(0.0, 0, false), At(0.1, 0, false), At(0.2, 0, false)};
+  samples[1].host_acceleration_mps2 = 0.5;
+  samples[2].host_acceleration_mps2 = 0.25;
+  EXPECT_TRUE(std::isnan(HostJerk(samples, 0)));
+  EXPECT_NEAR(HostJerk(samples, 1), 5.0, 1e-12);
+  EXPECT_NEAR(HostJerk(samples, 2), -2.5, 1e-12);
+}
+
+TEST(FogWindowsTest, LastUntilTheStepWithoutFog) {
+  const ReportRun run = ExampleRun({.threshold = 0.5});
+  const std::vector<Window> windows = FogWindows(run.samples);
+  ASSERT_EQ(windows.size(), 1U);
+  EXPECT_DOUBLE_EQ(windows[0].begin_s, 19.0);
+  EXPECT_DOUBLE_EQ(windows[0].end_s, 30.0);
+}
+
+TEST(HumanWindowsTest, LastWhileTheHumanHasAnyAuthorityOrUntilTheEnd) {
+  const std::vector<Sample> samples{At(0.0, 1.0, false), At(0.1, 0.0, false), At(0.2, 0.01, false),
+                                    At(0.3, 0.6, false)};
+  const std::vector<Window> windows = HumanWindows(samples);
+  ASSERT_EQ(windows.size(), 2U);
+  EXPECT_EQ(windows[0].begin_s, 0.0);
+  EXPECT_EQ(windows[0].end_s, 0.1);
+  EXPECT_EQ(windows[1].begin_s, 0.2);
+  EXPECT_EQ(windows[1].end_s, 0.3);
+}
+
+TEST(HumanWindowsTest, AreNoneInARunWithoutSamples) { EXPECT_TRUE(HumanWindows({}).empty()); }
+
+}  // namespace
+}  // namespace fogline

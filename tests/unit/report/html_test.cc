@@ -1,0 +1,44 @@
+#include "tools/report/html.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+TEST(EscapeHtmlTest, LeavesNothingThatOpensATagOrEndsAnAttribute) {
+  EXPECT_EQ(EscapeHtml("<b a=\"1\" c='2'> & \xCE\xBB"),
+            "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt; &amp; \xCE\xBB");
+}
+
+TEST(EscapeScriptTest, KeepsTheJsonAndCannotEndTheScript) {
+  EXPECT_EQ(EscapeScript(R"({"name":"</script><!--"})"), R"({"name":"\u003c/script>\u003c!--"})");
+}
+
+TEST(FillTest, PutsValuesInAndDoesNotLookIntoThem) {
+  EXPECT_EQ(Fill("<{{a}}|{{b}}|{{a}}>", {{"a", "{{b}}"}, {"b", "2"}}), "<{{b}}|2|{{b}}>");
+}
+
+TEST(FillTest, RefusesANameWithoutValue) {
+  EXPECT_THROW(Fill("{{missing}}", {{"a", "1"}}), std::out_of_range);
+}
+
+TEST(DecimalTest, UsesATrueMinusSignAndNoNegativeZero) {
+  EXPECT_EQ(Decimal(-1.25, 1), "\u22121.2");
+  EXPECT_EQ(Decimal(-0.001, 2), "0.00");
+  EXPECT_EQ(Decimal(12.345, 0), "12");
+}
+
+TEST(DecimalTest, ShowsADashForNoValue) {
+  EXPECT_EQ(Decimal(std::numeric_limits<double>::quiet_NaN(), 2), "–");
+  EXPECT_EQ(Decimal(std::numeric_limits<double>::infinity(), 2), "–");
+}
+
+TEST(DataElementTest, CarriesTheExactNumberBesideTheRoundedOne) {
+  EXPECT_EQ(DataElement(0.1 + 0.2, 2), "<data value=\"0.30000000000000004\">0.30</data>");
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,190 @@
+#include "tools/report/report.h"
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/report/example_runs.h"
+#include "tools/report/assets.h"
+#include "tools/report/figures.h"
+#include "tools/report/html.h"
+
+namespace fogline {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::size_t Count(std::string_view text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// From `begin` to before `end`.
+std::string Between(const std::string& text, std::string_view begin, std::string_view end) {
+  const std::size_t from = text.find(begin);
+  if (from == std::string::npos) return "";
+  return text.substr(from, text.find(end, from) - from);
+}
+
+std::string SectionOf(const std::string& page, std::string_view id) {
+  return Between(page, fmt::format("<section id=\"{}\"", id), "</section>");
+}
+
+TEST(MakeReportTest, HasEveryFigureAndEveryRun) {
+  const std::vector<ReportRun> runs = ExampleRuns();
+  const std::string page = MakeReport(runs, ExampleTable());
+  for (const Figure& figure : Figures()) {
+    EXPECT_EQ(Count(page, fmt::format("<figure id=\"{}\"", figure.id)), 1U) << figure.id;
+    EXPECT_THAT(page, HasSubstr(std::string(figure.title)));
+  }
+  const std::string selector = Between(page, "<fieldset", "</fieldset>");
+  for (const ReportRun& run : runs) {
+    EXPECT_THAT(selector, HasSubstr(fmt::format("<span class=\"name\">{}</span>", run.name)));
+    EXPECT_THAT(SectionOf(page, "scenarios"), HasSubstr(run.digest));
+    EXPECT_THAT(SectionOf(page, "scenarios"), HasSubstr(EscapeHtml(run.scenario_json)));
+  }
+}
+
+TEST(MakeReportTest, LeavesNoPlaceOfTheTemplateOpen) {
+  const std::string page = MakeReport(ExampleRuns(10), {});
+  EXPECT_THAT(page, Not(HasSubstr("{{title}}")));
+  EXPECT_THAT(page, Not(HasSubstr("{{data}}")));
+  EXPECT_THAT(page, HasSubstr("<title>Traded control in fog · Fogline report</title>"));
+}
+
+TEST(MakeReportTest, RefersToNothingOutsideThePage) {
+  std::string page = MakeReport(ExampleRuns(), ExampleTable());
+  // uPlot's comment with its licence, and the name of SVG's namespace, load nothing.
+  for (const std::string_view known :
+       {"https://github.com/leeoniya/uPlot", "http://www.w3.org/2000/svg"}) {
+    for (std::size_t at = page.find(known); at != page.npos; at = page.find(known)) {
+      page.erase(at, known.size());
+    }
+  }
+  for (const std::string_view reference :
+       {"http:", "https:", "src=", "@import", "url(", "fetch("}) {
+    EXPECT_THAT(page, Not(HasSubstr(std::string(reference))));
+  }
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+}
+
+TEST(MakeReportTest, CarriesTheLicenceOfTheChartLibrary) {
+  const std::string page = MakeReport({}, {});
+  EXPECT_THAT(page, HasSubstr("Copyright (c) 2022 Leon Sorokin"));
+  EXPECT_THAT(page, HasSubstr("THE SOFTWARE IS PROVIDED &quot;AS IS&quot;"));
+}
+
+TEST(MakeReportTest, StaysBelowTwoMegabytesForFourRunsOfFiveHundredSteps) {
+  EXPECT_LT(MakeReport(ExampleRuns(), ExampleTable()).size(), 2'000'000U);
+}
+
+TEST(MakeReportTest, EscapesEveryTextOfARun) {
+  const std::string evil = "</script><img src=x onerror=alert(1)>\"'&";
+  ReportRun run = ExampleRun({.steps = 3});
+  run.name = run.scenario_title = run.scenario_json = run.digest = evil;
+  run.measures = {{evil, 1.0, evil, evil}};
+  ReportTable table = ExampleTable();
+  table.note = evil;
+  const std::string page = MakeReport({&run, 1}, table);
+  EXPECT_THAT(page, Not(HasSubstr("<img")));
+  EXPECT_THAT(page, Not(HasSubstr("</script><")));
+}
+
+TEST(MakeReportTest, DoesNotTakeTextOfARunForItsTemplate) {
+  ReportRun run = ExampleRun({.steps = 3});
+  run.name = "{{data}}";
+  EXPECT_THAT(MakeReport({&run, 1}, {}), HasSubstr("<span class=\"name\">{{data}}</span>"));
+}
+
+TEST(MakeReportTest, ShowsEveryMeasureOfEveryRunSideBySide) {
+  std::vector<ReportRun> runs = ExampleRuns(20);
+  runs[0].measures = {{"first", 1.25, "m", "of one run"}, {"both", 2.5, "s", ""}};
+  runs[1].measures = {{"both", 3.5, "s", ""}, {"last", 4.5, "", "of the other"}};
+  runs.resize(2);
+  runs[1].si_pct = 55.5;
+  const std::string table = SectionOf(MakeReport(runs, {}), "measures");
+  for (const double value : {1.25, 2.5, 3.5, 4.5, 55.5}) {
+    EXPECT_THAT(table, HasSubstr(fmt::format("<data value=\"{}\">", value)));
+  }
+  EXPECT_EQ(Count(table, "<tr>"), 1U + 4U);  // head; SI and three measures
+  EXPECT_EQ(Count(table, "<td>–</td>"), 3U);
+  EXPECT_THAT(table,
+              HasSubstr("<data value=\"2.5\">2.5000</data></td><td><data value=\"3.5\">3.5000"));
+}
+
+TEST(MakeReportTest, KeepsAMeasureThatARunHasTwice) {
+  ReportRun run = ExampleRun({.steps = 3});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  run.measures = {{"twice", none, "m", ""}, {"twice", 2.0, "m", ""}};
+  EXPECT_EQ(Count(SectionOf(MakeReport({&run, 1}, {}), "measures"), ">twice "), 2U);
+}
+
+TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
+  const std::string table = SectionOf(MakeReport(ExampleRuns(10), ExampleTable()), "table");
+  EXPECT_THAT(table, HasSubstr("<data value=\"80.8125\">80.81</data></td>"
+                               "<td class=\"deviation\">± <data value=\"4.5\">4.50</data></td>"
+                               "<td><data value=\"80.79\">80.79</data></td>"));
+  EXPECT_THAT(table, HasSubstr("\u221210.25"));
+  EXPECT_EQ(Count(table, "<td>–</td>"), 2U);  // the row that was never published
+  EXPECT_THAT(table, HasSubstr("Mean and standard deviation over seeds 1 to 200."));
+}
+
+TEST(MakeReportTest, HasNoTableSectionWithoutATable) {
+  EXPECT_EQ(SectionOf(MakeReport(ExampleRuns(10), {}), "table"), "");
+}
+
+TEST(MakeReportTest, ListsTheScenarioFieldsThatDifferAndNoOthers) {
+  const std::string table = SectionOf(MakeReport(ExampleRuns(10), {}), "differences");
+  EXPECT_THAT(table, HasSubstr("/arbitrator/threshold"));
+  EXPECT_THAT(table, HasSubstr("<td>automation</td><td>traded</td>"));
+  EXPECT_THAT(table, Not(HasSubstr("/fog/start_s")));
+}
+
+TEST(MakeReportTest, SaysNothingOfDifferencesWhereThereAreNone) {
+  const std::vector<ReportRun> runs(2, ExampleRun({.threshold = 0.5, .steps = 10}));
+  EXPECT_EQ(SectionOf(MakeReport(runs, {}), "differences"), "");
+}
+
+TEST(MakeReportTest, SaysHowManyOfManyDifferencesItLeavesOut) {
+  std::vector<ReportRun> runs(2, ExampleRun({.steps = 3}));
+  for (int i = 0; i < 2; ++i) {
+    std::string list;
+    for (int k = 0; k < 60; ++k) list += fmt::format("{}{}", k == 0 ? "" : ",", 100 * i + k);
+    runs[static_cast<std::size_t>(i)].scenario_json = fmt::format("{{\"speeds\": [{}]}}", list);
+  }
+  EXPECT_THAT(SectionOf(MakeReport(runs, {}), "differences"), HasSubstr("and 10 more"));
+}
+
+TEST(MakeReportTest, NamesACollisionInTheRunSelector) {
+  ReportRun run = ExampleRun({.steps = 30});
+  run.samples.back().collision = truth_t::COLLISION_FOLLOWER;
+  run.samples.back().collision_time_s = 2.9;
+  EXPECT_THAT(MakeReport({&run, 1}, {}), HasSubstr("following car, at 2.9 s"));
+}
+
+TEST(MakeReportTest, SumsUpHowLongTheHumanDrives) {
+  ReportRun run;
+  run.samples.resize(11);
+  for (std::size_t i = 0; i < run.samples.size(); ++i) {
+    run.samples[i].time_s = 0.5 * static_cast<double>(i);
+    run.samples[i].lambda_human = i == 1 || i == 2 || i == 6 ? 1.0 : 0.0;
+  }
+  EXPECT_THAT(MakeReport({&run, 1}, {}),
+              HasSubstr("<dt>Human drives</dt><dd><data value=\"1.5\">1.5</data> s</dd>"));
+}
+
+TEST(MakeReportTest, MakesAPageOfNoRunsAndOfARunWithoutSteps) {
+  EXPECT_THAT(MakeReport({}, {}), HasSubstr("<h1>No runs</h1>"));
+  const ReportRun empty;
+  EXPECT_THAT(MakeReport({&empty, 1}, {}), HasSubstr("run 1"));
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,23 @@
+# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: the definitions of assets.h, each file as a raw
+# string. A program that carries its page needs no path to it when it runs.
+set(assets
+  kPageHtml=page.html
+  kPageCss=page.css
+  kModelJs=model.js
+  kChartJs=chart.js
+  kLegendJs=legend.js
+  kPageJs=page.js
+  kUplotJs=uplot/uPlot.iife.min.js
+  kUplotCss=uplot/uPlot.min.css
+  kUplotLicense=uplot/LICENSE)
+
+set(source "#include \"tools/report/assets.h\"\n\nnamespace fogline::assets {\n\n")
+foreach(asset IN LISTS assets)
+  string(REPLACE "=" ";" asset "${asset}")
+  list(GET asset 0 name)
+  list(GET asset 1 file)
+  file(READ "${DIR}/${file}" text)
+  string(APPEND source "const std::string_view ${name} = R\"asset(${text})asset\";\n")
+endforeach()
+string(APPEND source "\n}  // namespace fogline::assets\n")
+file(WRITE "${OUT}" "${source}")

@@ -1,0 +1,18 @@
+// The files that the page is made of, built into the program (assets.cmake writes the definitions).
+#pragma once
+
+#include <string_view>
+
+namespace fogline::assets {
+
+extern const std::string_view kPageHtml;
+extern const std::string_view kPageCss;
+extern const std::string_view kModelJs;
+extern const std::string_view kChartJs;
+extern const std::string_view kLegendJs;
+extern const std::string_view kPageJs;
+extern const std::string_view kUplotJs;
+extern const std::string_view kUplotCss;
+extern const std::string_view kUplotLicense;
+
+}  // namespace fogline::assets

@@ -1,0 +1,219 @@
+// One panel of a figure: a uPlot chart of one or several runs over time.
+
+const TICK_SPACE = {time: 56, value: 34};  // least distance of ticks, in pixels
+const VALUE_AXIS_WIDTH = 50;               // the same everywhere, so that time axes line up
+const TOP = 8;                             // above the plot, in pixels
+const LANE = {height: 4, gap: 2};          // bars above the plot that say when the human drives
+
+/** The curves of a panel, in drawing order: [{run, curve, stroke, dash, width}]. */
+function panelCurves(figure, runs) {
+  const {palette, shared} = state.theme;
+  return visibleCurves(figure).flatMap((curve) => {
+    const width = curve.limit ? 1.5 : curve.detail ? 1.25 : 1.75;
+    if (runs.length === 1) {
+      const dash = curve.limit ? curve.dash : [];
+      return [{run: runs[0], curve, stroke: palette[curve.colour], dash, width}];
+    }
+    if (isShared(runs, curve.column)) {
+      return [{run: runs[0], curve, stroke: shared, dash: curve.dash, width}];
+    }
+    return runs.map((run) => ({run, curve, stroke: runColour(run), dash: curve.dash, width}));
+  });
+}
+
+function runColour(run) {
+  return state.theme.palette[run.index % state.theme.palette.length];
+}
+
+/** Columns for uPlot: one time axis for all, whatever the lengths and steps of the runs. */
+function panelData(curves) {
+  if (curves.length === 0) return [state.span.slice()];
+  return uPlot.join(curves.map(({run, curve}) => [run.columns.time_s, run.columns[curve.column]]));
+}
+
+function withAlpha(colour, alpha) {
+  return colour + Math.round(alpha * 255).toString(16).padStart(2, "0");
+}
+
+/** Diagonal lines, so that a shade is told from another without its colour. */
+function hatch(context, colour) {
+  const size = Math.round(7 * devicePixelRatio);
+  const tile = document.createElement("canvas");
+  tile.width = tile.height = size;
+  const pen = tile.getContext("2d");
+  pen.strokeStyle = colour;
+  pen.lineWidth = Math.max(1, devicePixelRatio * 0.8);
+  for (const shift of [-size, 0, size]) {
+    pen.moveTo(shift - 1, size + 1);
+    pen.lineTo(shift + size + 1, -1);
+  }
+  pen.stroke();
+  return context.createPattern(tile, "repeat");
+}
+
+/** Fills [from, to] in s over the full height, or `height` from `top`, in canvas pixels. */
+function fillSpan(chart, [from, to], fill, top = chart.bbox.top, height = chart.bbox.height) {
+  const left = chart.valToPos(from, "x", true);
+  chart.ctx.fillStyle = fill;
+  chart.ctx.fillRect(left, top, chart.valToPos(to, "x", true) - left, height);
+}
+
+function drawFog(chart, runs) {
+  const spans = new Map(runs.flatMap((run) => run.fog).map((span) => [span.join(), span]));
+  for (const span of spans.values()) fillSpan(chart, span, state.theme.fog);
+}
+
+/** When the human drives, hatched. */
+function drawHuman(chart, run) {
+  const lines = hatch(chart.ctx, state.theme.humanLine);
+  for (const span of run.human) {
+    fillSpan(chart, span, state.theme.human);
+    fillSpan(chart, span, lines);
+  }
+}
+
+/** The same for several runs: a bar for each, above the plot. */
+function drawLanes(chart, runs) {
+  const lanes = runs.filter((run) => run.human.length);
+  lanes.forEach((run, lane) => {
+    const top = chart.bbox.top - (lanes.length - lane) * (LANE.height + LANE.gap) * devicePixelRatio;
+    for (const span of run.human) {
+      fillSpan(chart, span, runColour(run), top, LANE.height * devicePixelRatio);
+    }
+  });
+}
+
+function laneSpace(runs) {
+  if (runs.length === 1) return 0;
+  return runs.filter((run) => run.human.length).length * (LANE.height + LANE.gap);
+}
+
+/** Shades where the gap is below the safe distance. */
+function drawShortfall(chart, runs) {
+  for (const run of runs) {
+    const {time_s: times, follower_gap_m: gaps, follower_safe_distance_m: limits} = run.columns;
+    const at = (i, value) => [chart.valToPos(times[i], "x", true), chart.valToPos(value, "y", true)];
+    const upper = (i) => at(i, Math.max(gaps[i], limits[i]));
+    const {ctx} = chart;
+    ctx.fillStyle = runs.length === 1 ? state.theme.short : withAlpha(runColour(run), 0.22);
+    ctx.beginPath();
+    for (let i = 0; i < gaps.length;) {
+      const begin = i;
+      while (i < gaps.length && gaps[i] !== null && limits[i] !== null) ++i;
+      for (let k = begin; k < i; ++k) {
+        if (k === begin) ctx.moveTo(...at(k, gaps[k]));
+        else ctx.lineTo(...at(k, gaps[k]));
+      }
+      for (let k = i - 1; k >= begin; --k) ctx.lineTo(...upper(k));
+      if (i === begin) ++i;
+    }
+    ctx.fill();
+  }
+}
+
+/** Everything that lies under the curves. */
+function drawShades(chart, figure, runs) {
+  const {ctx, bbox} = chart;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, 0, bbox.width, bbox.top + bbox.height);
+  ctx.clip();
+  drawFog(chart, runs);
+  if (runs.length === 1) drawHuman(chart, runs[0]);
+  else drawLanes(chart, runs);
+  const visible = new Set(visibleCurves(figure).map((curve) => curve.column));
+  if (figure.shortfall && figure.curves.every((curve) => visible.has(curve.column))) {
+    drawShortfall(chart, runs);
+  }
+  ctx.restore();
+}
+
+const holdPaths = {
+  linear: undefined,
+  since: uPlot.paths.stepped({align: -1}),
+  until: uPlot.paths.stepped({align: 1}),
+};
+
+function seriesOptions({curve, stroke, dash, width}) {
+  return {stroke, dash, width, paths: holdPaths[curve.hold], points: {show: false}};
+}
+
+function axisOptions(space, values, more) {
+  const {muted, grid, font} = state.theme;
+  const lines = {stroke: grid, width: 1};
+  return {stroke: muted, font: `12px ${font}`, grid: lines, ticks: {...lines, size: 4}, gap: 5,
+          space, values, ...more};
+}
+
+/** Decimals that it takes to print a multiple of `increment`. */
+function decimalsOf(increment) {
+  let decimals = 0;
+  while (decimals < 6 && Math.abs(Number(increment.toFixed(decimals)) / increment - 1) > 1e-6) {
+    ++decimals;
+  }
+  return decimals;
+}
+
+function tickTexts(suffix) {
+  return (chart, ticks, axis, space, increment) => {
+    const decimals = decimalsOf(increment);
+    return ticks.map((tick) => decimal(tick, decimals) + suffix);
+  };
+}
+
+function chartHeight(width, runs) {
+  return Math.round(Math.min(300, Math.max(200, width * 0.42))) + laneSpace(runs);
+}
+
+/**
+ * A chart of `runs` in `element`. `onTime(time)` is called when the reader points at a time,
+ * `onSpan(span)` when they choose a time span.
+ */
+function makeChart(element, figure, runs, {onTime, onSpan}) {
+  const curves = panelCurves(figure, runs);
+  const data = panelData(curves);
+  const width = element.clientWidth;
+  const options = {
+    width,
+    height: chartHeight(width, runs),
+    padding: [TOP + laneSpace(runs), 10, 0, 0],
+    legend: {show: false},
+    series: [{}, ...curves.map(seriesOptions)],
+    scales: {
+      x: {time: false, min: state.span[0], max: state.span[1], range: (chart, min, max) => [min, max]},
+      y: {range: () => valueSpan(figure, ...state.span)},
+    },
+    axes: [
+      axisOptions(TICK_SPACE.time, tickTexts(" s"), {size: 30}),
+      axisOptions(TICK_SPACE.value, tickTexts(""), {size: VALUE_AXIS_WIDTH}),
+    ],
+    cursor: {
+      y: false,
+      points: {size: 6},
+      drag: {x: true, y: false, dist: 6, setScale: false},  // onSpan sets it, in every chart
+      bind: {mouseleave: () => null, dblclick: () => () => onSpan(wholeSpan())},
+    },
+    hooks: {
+      drawClear: [(chart) => drawShades(chart, figure, runs)],
+      setCursor: [(chart) => {
+        if (chart.cursor.left >= 0) onTime(chart.posToVal(chart.cursor.left, "x"));
+      }],
+      setSelect: [(chart) => {
+        const {left, width: chosen} = chart.select;
+        if (chosen > 0) onSpan([chart.posToVal(left, "x"), chart.posToVal(left + chosen, "x")]);
+      }],
+    },
+  };
+  const chart = new uPlot(options, data, element);
+  chart.over.addEventListener("touchmove", ({touches: [touch]}) => {
+    onTime(chart.posToVal(touch.clientX - chart.over.getBoundingClientRect().left, "x"));
+  }, {passive: true});
+  return chart;
+}
+
+/** Puts the chart's cursor at a time, or takes it away if the time is out of sight. */
+function pointAt(chart, time) {
+  const {min, max} = chart.scales.x;
+  const seen = time >= min && time <= max;
+  chart.setCursor({left: seen ? chart.valToPos(time, "x") : -10, top: seen ? 1 : -10}, false);
+}

@@ -1,0 +1,120 @@
+#include "tools/report/figures.h"
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace fogline {
+namespace {
+
+constexpr std::array kSpeeds{
+    Curve{"preceding_speed_mps", "preceding car", Hold::kLinear, 2, Dash::kDotted, Part::kMain},
+    Curve{"host_speed_mps", "host", Hold::kLinear, 0, Dash::kSolid, Part::kMain},
+    Curve{"follower_speed_mps", "following car", Hold::kLinear, 1, Dash::kDashed, Part::kMain},
+};
+
+constexpr std::array kHostGap{
+    Curve{"radar_range_m", "radar", Hold::kLinear, 2, Dash::kDotted, Part::kDetail},
+    Curve{"lidar_range_m", "LiDAR", Hold::kLinear, 4, Dash::kDashDot, Part::kDetail},
+    Curve{"fused_distance_m", "fused", Hold::kLinear, 1, Dash::kLong, Part::kDetail},
+    Curve{"host_gap_m", "true gap", Hold::kLinear, 0, Dash::kSolid, Part::kMain},
+    Curve{"host_safe_distance_m", "safe distance", Hold::kLinear, 3, Dash::kDashed, Part::kLimit},
+};
+
+constexpr std::array kConflict{
+    Curve{"lambda_human", "human's authority", Hold::kUntil, 4, Dash::kDotted, Part::kDetail},
+    Curve{"doc", "Degree of Conflict", Hold::kLinear, 0, Dash::kSolid, Part::kMain},
+    Curve{"threshold", "threshold", Hold::kLinear, 3, Dash::kDashed, Part::kLimit},
+};
+
+constexpr std::array kFollowerGap{
+    Curve{"follower_gap_m", "gap", Hold::kLinear, 0, Dash::kSolid, Part::kMain},
+    Curve{"follower_safe_distance_m", "safe distance", Hold::kLinear, 3, Dash::kDashed,
+          Part::kLimit},
+};
+
+constexpr std::array kAccelerations{
+    Curve{"acc_acceleration_mps2", "automation's offer", Hold::kUntil, 2, Dash::kDashDot,
+          Part::kDetail},
+    Curve{"driver_acceleration_mps2", "human's offer", Hold::kUntil, 4, Dash::kDotted,
+          Part::kDetail},
+    Curve{"follower_acceleration_mps2", "following car", Hold::kSince, 1, Dash::kDashed,
+          Part::kMain},
+    Curve{"host_acceleration_mps2", "host", Hold::kSince, 0, Dash::kSolid, Part::kMain},
+};
+
+constexpr std::array kJerk{
+    Curve{"host_jerk_mps3", "host", Hold::kSince, 0, Dash::kSolid, Part::kMain},
+};
+
+constexpr std::array kFigures{
+    Figure{"speeds", "Speeds of the three cars",
+           "A host that slows down while the preceding car does not is misled by its sensors.",
+           "Speed", "m/s", 3, 0.1, kSpeeds},
+    Figure{"host-gap", "Gap from the host to the preceding car",
+           "What it is, what radar and LiDAR say, what the fusion makes of both, and the safe "
+           "distance that the host’s ACC aims at.",
+           "Distance", "m", 3, 0.2, kHostGap},
+    Figure{"conflict", "Degree of Conflict, and who drives",
+           "From the threshold on, the arbitrator hands the host over to the human.",
+           "Degree of Conflict, authority", "", 3, 1.0, kConflict},
+    Figure{"follower-gap", "Gap from the following car to the host",
+           "Safety is compromised while the gap is below the following car’s safe distance.",
+           "Distance", "m", 3, 0.2, kFollowerGap, true},
+    Figure{"accelerations", "Accelerations",
+           "What host and following car did, and what the automation and the human would have the "
+           "host do.",
+           "Acceleration", "m/s²", 3, 0.1, kAccelerations},
+    Figure{"jerk", "Jerk of the host",
+           "The change of its acceleration from step to step: abrupt transfers of control show as "
+           "peaks.",
+           "Jerk", "m/s³", 2, 0.2, kJerk},
+};
+
+template <class Predicate>
+std::vector<Window> WindowsWhere(std::span<const Sample> samples, Predicate holds) {
+  std::vector<Window> windows;
+  bool open = false;
+  for (const Sample& sample : samples) {
+    if (open) windows.back().end_s = sample.time_s;
+    if (holds(sample) && !open) windows.push_back({sample.time_s, sample.time_s});
+    open = holds(sample);
+  }
+  return windows;
+}
+
+}  // namespace
+
+double HostJerk(std::span<const Sample> samples, std::size_t index) {
+  if (index == 0) return std::numeric_limits<double>::quiet_NaN();
+  const Sample& now = samples[index];
+  const Sample& before = samples[index - 1];
+  return (now.host_acceleration_mps2 - before.host_acceleration_mps2) /
+         (now.time_s - before.time_s);
+}
+
+std::span<const Figure> Figures() { return kFigures; }
+
+const Column& ColumnNamed(std::string_view name) {
+  for (const Column& column : kColumns) {
+    if (column.name == name) return column;
+  }
+  throw std::out_of_range("no column " + std::string(name));
+}
+
+std::vector<double> Values(const Column& column, std::span<const Sample> samples) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) values.push_back(column.value(samples, i));
+  return values;
+}
+
+std::vector<Window> FogWindows(std::span<const Sample> samples) {
+  return WindowsWhere(samples, [](const Sample& sample) { return sample.fog_present; });
+}
+
+std::vector<Window> HumanWindows(std::span<const Sample> samples) {
+  return WindowsWhere(samples, [](const Sample& sample) { return sample.lambda_human > 0; });
+}
+
+}  // namespace fogline

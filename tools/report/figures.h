@@ -1,0 +1,117 @@
+// What the figures show: the one table that the page and the PNG files are drawn from.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "services/measures/sample.h"
+
+namespace fogline {
+
+/// One quantity over time, taken from the samples of a run; NaN where there is no value.
+struct Column {
+  std::string_view name;
+  double (*value)(std::span<const Sample> samples, std::size_t index);
+};
+
+/// Colours on paper, as in page.css; a run or a curve beyond the last starts over. Under simulated
+/// protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first five are
+/// at least 25 apart in CIELAB, any two of all at least 15; on white each has a contrast of 3 or
+/// more.
+inline constexpr std::array<std::string_view, 8> kPalette{
+    "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
+inline constexpr std::size_t kPaletteSize = kPalette.size();
+
+/// How a curve goes from one sample to the next.
+enum class Hold {
+  kLinear,
+  kSince,  // the value was there since the sample before, as an applied acceleration is
+  kUntil,  // the value stays until the next sample, as a command does
+};
+
+enum class Dash { kSolid, kDashed, kDotted, kDashDot, kLong };
+
+/// Who a curve is of: a quantity of the run, or a limit that it is compared with (always dashed).
+enum class Part { kMain, kDetail, kLimit };
+
+struct Curve {
+  std::string_view column;
+  std::string_view label;
+  Hold hold;
+  int colour;  // of the palette, where the figure shows one run
+  Dash dash;   // where several runs share the axes and the colour says which run
+  Part part;   // a detail is hidden at first where several runs share the axes
+};
+
+struct Figure {
+  std::string_view id;
+  std::string_view title;
+  std::string_view caption;
+  std::string_view quantity;
+  std::string_view unit;  // "" if none
+  int decimals;           // of a value that the reader points at
+  double least_span;      // an axis never shows less, so that noise does not look like an event
+  std::span<const Curve> curves;
+  bool shortfall = false;  // shades where the gap is below the safe distance
+};
+
+/// The change of the host's acceleration since the sample before, per second.
+double HostJerk(std::span<const Sample> samples, std::size_t index);
+
+namespace report_internal {
+
+template <double Sample::*kMember>
+double Get(std::span<const Sample> samples, std::size_t index) {
+  return samples[index].*kMember;
+}
+
+}  // namespace report_internal
+
+inline constexpr std::array kColumns{
+    Column{"time_s", report_internal::Get<&Sample::time_s>},
+    Column{"preceding_speed_mps", report_internal::Get<&Sample::preceding_speed_mps>},
+    Column{"host_speed_mps", report_internal::Get<&Sample::host_speed_mps>},
+    Column{"follower_speed_mps", report_internal::Get<&Sample::follower_speed_mps>},
+    Column{"host_gap_m", report_internal::Get<&Sample::host_gap_m>},
+    Column{"radar_range_m", report_internal::Get<&Sample::radar_range_m>},
+    Column{"lidar_range_m", report_internal::Get<&Sample::lidar_range_m>},
+    Column{"fused_distance_m", report_internal::Get<&Sample::fused_distance_m>},
+    Column{"host_safe_distance_m", report_internal::Get<&Sample::host_safe_distance_m>},
+    Column{"doc", report_internal::Get<&Sample::doc>},
+    Column{"threshold", report_internal::Get<&Sample::threshold>},
+    Column{"lambda_human", report_internal::Get<&Sample::lambda_human>},
+    Column{"follower_gap_m", report_internal::Get<&Sample::follower_gap_m>},
+    Column{"follower_safe_distance_m", report_internal::Get<&Sample::follower_safe_distance_m>},
+    Column{"host_acceleration_mps2", report_internal::Get<&Sample::host_acceleration_mps2>},
+    Column{"follower_acceleration_mps2", report_internal::Get<&Sample::follower_acceleration_mps2>},
+    Column{"acc_acceleration_mps2", report_internal::Get<&Sample::acc_acceleration_mps2>},
+    Column{"driver_acceleration_mps2", report_internal::Get<&Sample::driver_acceleration_mps2>},
+    Column{"host_jerk_mps3", HostJerk},
+};
+
+/// Figures in their order; a figure's number is its place, from 1.
+std::span<const Figure> Figures();
+
+/// The column of that name.
+/// @throws std::out_of_range
+const Column& ColumnNamed(std::string_view name);
+
+/// All values of a column.
+std::vector<double> Values(const Column& column, std::span<const Sample> samples);
+
+/// A time span, from begin_s to before end_s.
+struct Window {
+  double begin_s;
+  double end_s;
+};
+
+/// When there is fog. A step lasts until the next sample.
+std::vector<Window> FogWindows(std::span<const Sample> samples);
+
+/// When the human drives, that is, has any authority, as in measures.h.
+std::vector<Window> HumanWindows(std::span<const Sample> samples);
+
+}  // namespace fogline

@@ -1,0 +1,79 @@
+// The legend of a figure: a row for each curve, a column for each run, the values at the cursor's
+// time in between; and the keys of the shades.
+
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** A short piece of the curve, as it is drawn. */
+function swatch(curve, overlaid, shared) {
+  const {palette, ink, shared: sharedColour} = state.theme;
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
+  const attributes = {x1: 0, y1: 5, x2: 28, y2: 5, "stroke-width": curve.limit ? 2 : 2.5};
+  attributes.stroke = !overlaid ? palette[curve.colour] : shared ? sharedColour : ink;
+  if (overlaid || curve.limit) attributes["stroke-dasharray"] = curve.dash.join(" ");
+  for (const [name, value] of Object.entries(attributes)) line.setAttribute(name, value);
+  for (const [name, value] of Object.entries({width: 28, height: 10, "aria-hidden": "true"})) {
+    svg.setAttribute(name, value);
+  }
+  svg.append(line);
+  return svg;
+}
+
+function shadeKeys(figure) {
+  const overlaid = isOverlaid();
+  const keys = [];
+  if (state.runs.some((run) => run.fog.length)) keys.push(["fog", "fog"]);
+  if (state.runs.some((run) => run.human.length)) {
+    keys.push(overlaid ? ["bars", "bar: the human drives, in the run of that colour"]
+                       : ["human", "the human drives"]);
+  }
+  if (figure.shortfall) keys.push([overlaid ? "short neutral" : "short", "safety compromised"]);
+  return make("ul", {class: "keys"}, ...keys.map(([name, text]) =>
+      make("li", {}, make("span", {class: `key ${name}`}), text)));
+}
+
+/**
+ * Fills `element` with the legend; `onToggle(curve)` is called when the reader shows or hides a
+ * curve. Returns a function that shows the values at a time.
+ */
+function makeLegend(element, figure, onToggle) {
+  const overlaid = isOverlaid();
+  const clock = make("span");
+  const head = make("tr", {}, make("th", {scope: "col"}, clock));
+  for (const run of state.runs) {
+    head.append(make("th", {scope: "col", class: `c${run.index % 8}`}, run.name));
+  }
+  const cells = [];
+  const rows = figure.curves.map((curve) => {
+    const shared = overlaid && isShared(state.runs, curve.column);
+    const shown = !state.hidden.get(figure.id).has(curve.column);
+    const button = make("button", {type: "button", "aria-pressed": shown},
+                        swatch(curve, overlaid, shared), curve.label);
+    button.addEventListener("click", () => onToggle(curve));
+    const row = make("tr", {}, make("th", {scope: "row"}, button));
+    for (const run of state.runs) {
+      const cell = make("td");
+      cells.push({cell, run, values: run.columns[curve.column]});
+      row.append(cell);
+    }
+    return row;
+  });
+  const label = `Values of figure ${report.figures.indexOf(figure) + 1} at the cursor`;
+  element.replaceChildren(
+      make("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": label},
+           make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows))),
+      shadeKeys(figure));
+  return (time) => {
+    const unit = figure.unit ? ` in ${figure.unit}` : "";
+    clock.textContent = `at ${decimal(time, 1)} s${unit}`;
+    const places = new Map(state.runs.map((run) => [run, sampleAt(run, time)]));
+    for (const {cell, run, values} of cells) {
+      cell.textContent = decimal(values[places.get(run)], figure.decimals);
+    }
+  };
+}

@@ -1,0 +1,145 @@
+"use strict";
+// What the page shows: the runs and figures that it carries, and what the reader has chosen.
+
+const report = JSON.parse(document.getElementById("report-data").textContent);
+
+report.runs.forEach((run, index) => {
+  run.index = index;
+  for (const name in run.columns) run.columns[name] = report.columns[run.columns[name]];
+});
+
+const state = {
+  runs: report.runs,  // those in the figures
+  apart: false,       // a panel for each run, instead of all in one
+  hidden: new Map(),  // names of the columns that a figure leaves out, by figure id
+  time: 0,            // where the cursor is, in s
+  span: [0, 1],       // what the time axes show, in s
+  zoomed: false,      // whether that is less than the whole
+  theme: null,
+};
+
+/** Colours for the canvases, from the style sheet. */
+function readTheme() {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name) => style.getPropertyValue(name).trim();
+  state.theme = {
+    palette: Array.from({length: 8}, (_, i) => colour(`--p${i}`)),
+    ink: colour("--ink"),
+    muted: colour("--muted"),
+    grid: colour("--grid"),
+    fog: colour("--fog"),
+    human: colour("--human"),
+    humanLine: colour("--human-line"),
+    short: colour("--short"),
+    shared: colour("--shared"),
+    font: getComputedStyle(document.body).fontFamily,
+  };
+}
+
+/** Place of the last of ascending `values` that is at most `x`; 0 if there is none. */
+function placeOf(values, x) {
+  let low = 0;
+  let high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] <= x) low = middle + 1;
+    else high = middle;
+  }
+  return Math.max(0, low - 1);
+}
+
+/** Time between samples of the first run in the figures that has several, in s. */
+function timeStep() {
+  const run = state.runs.find(({columns}) => columns.time_s.length > 1);
+  return run ? run.columns.time_s[1] - run.columns.time_s[0] : 1;
+}
+
+/** Place of the sample nearest to that time; -1 after the end of the run. */
+function sampleAt(run, time) {
+  const times = run.columns.time_s;
+  const place = placeOf(times, time);
+  const next = Math.min(place + 1, times.length - 1);
+  const step = times.length > 1 ? times[1] - times[0] : 1;
+  if (times.length === 0 || time > times[times.length - 1] + step / 2) return -1;
+  return times[next] - time < time - times[place] ? next : place;
+}
+
+/** First and last time of the runs in the figures. */
+function wholeSpan() {
+  let first = Infinity;
+  let last = -Infinity;
+  for (const {columns: {time_s: times}} of state.runs) {
+    if (times.length === 0) continue;
+    first = Math.min(first, times[0]);
+    last = Math.max(last, times[times.length - 1]);
+  }
+  return first < last ? [first, last] : [0, 1];
+}
+
+/** When the follower's gap is furthest below its safe distance; else the middle of the fog. */
+function tellingTime() {
+  let worst = 0;
+  let time = null;
+  for (const {columns} of report.runs) {
+    columns.follower_gap_m.forEach((gap, i) => {
+      const shortfall = gap === null ? 0 : columns.follower_safe_distance_m[i] - gap;
+      if (shortfall > worst) [worst, time] = [shortfall, columns.time_s[i]];
+    });
+  }
+  const fog = report.runs.flatMap((run) => run.fog)[0];
+  return time ?? (fog ? (fog[0] + fog[1]) / 2 : wholeSpan()[0]);
+}
+
+/** True if several runs share the axes: a colour then says which run, a dash which curve. */
+function isOverlaid() {
+  return state.runs.length > 1 && !state.apart;
+}
+
+/** Hides the details where several runs share the axes, and shows them else. */
+function resetHidden() {
+  for (const figure of report.figures) {
+    const details = figure.curves.filter((curve) => curve.detail);
+    state.hidden.set(figure.id, new Set(isOverlaid() ? details.map((curve) => curve.column) : []));
+  }
+}
+
+function visibleCurves(figure) {
+  return figure.curves.filter((curve) => !state.hidden.get(figure.id).has(curve.column));
+}
+
+/** True if the curve is one and the same in all these runs. */
+function isShared(runs, column) {
+  const [first] = runs;
+  return runs.every(({columns}) => columns[column] === first.columns[column] &&
+                                   columns.time_s === first.columns.time_s);
+}
+
+/** What the axis of a figure's values shows while its time axes show [from, to]. */
+function valueSpan(figure, from, to) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const {columns} of state.runs) {
+    const first = placeOf(columns.time_s, from);
+    const last = placeOf(columns.time_s, to);
+    for (const {column} of visibleCurves(figure)) {
+      const values = columns[column];
+      for (let i = first; i <= last; ++i) {
+        const value = values[i];
+        if (value == null) continue;
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+  }
+  if (low > high) [low, high] = [0, 1];
+  const half = Math.max(high - low, figure.leastSpan) * 0.56;
+  const middle = (low + high) / 2;
+  return [middle - half, middle + half];
+}
+
+/** A number as the tables print it. */
+function decimal(value, decimals) {
+  if (value == null) return "–";
+  const text = Math.abs(value).toFixed(decimals);
+  return value < 0 && Number(text) !== 0 ? `−${text}` : text;
+}

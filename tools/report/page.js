@@ -1,0 +1,154 @@
+// The page: builds the figures for what the reader has chosen, and keeps them in step.
+
+const page = {
+  charts: [],   // of all figures
+  legends: [],  // functions that show the values at a time
+  panels: new Map(),  // chart and its runs, by its element
+  toolbar: document.getElementById("toolbar"),
+  slider: document.getElementById("time"),
+  sliderText: document.getElementById("time-text"),
+  whole: document.getElementById("whole"),
+};
+
+/** Runs `work` once before the next picture, however often it is asked for. */
+function oncePerFrame(work) {
+  let asked = false;
+  return () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      work();
+    });
+  };
+}
+
+const showTime = oncePerFrame(() => {
+  for (const chart of page.charts) pointAt(chart, state.time);
+  for (const showValues of page.legends) showValues(state.time);
+  page.slider.value = state.time;
+  page.sliderText.textContent = `${decimal(state.time, 1)} s`;
+});
+
+function setTime(time) {
+  const [first, last] = wholeSpan();
+  state.time = Math.min(last, Math.max(first, time));
+  showTime();
+}
+
+function setSpan([from, to]) {
+  const [first, last] = wholeSpan();
+  state.span = [Math.max(first, from), Math.min(last, to)];
+  state.zoomed = state.span[0] > first || state.span[1] < last;
+  page.whole.disabled = !state.zoomed;
+  for (const chart of page.charts) {
+    chart.batch(() => {
+      chart.setSelect({left: 0, width: 0}, false);
+      chart.setScale("x", {min: state.span[0], max: state.span[1]});
+    });
+  }
+  showTime();
+}
+
+const fitCharts = oncePerFrame(() => {
+  for (const [element, {chart, runs}] of page.panels) {
+    const width = element.clientWidth;
+    if (width > 0 && width !== chart.width) chart.setSize({width, height: chartHeight(width, runs)});
+  }
+  showTime();
+});
+
+const sizes = new ResizeObserver(fitCharts);
+
+/** A panel for each run where they stand side by side, else one panel for all. */
+function panelsOf() {
+  if (state.runs.length === 0) return [];
+  return state.apart ? state.runs.map((run) => [run]) : [state.runs];
+}
+
+function buildFigure(figure, number) {
+  const element = document.getElementById(figure.id);
+  const place = element.querySelector(".panels");
+  const panels = panelsOf();
+  place.classList.toggle("several", panels.length > 1);
+  place.replaceChildren();
+  for (const runs of panels) {
+    const names = runs.map((run) => run.name).join(", ");
+    const chartElement = make("div", {
+      class: "chart", role: "img", "aria-label": `Figure ${number}, ${figure.title}: ${names}`});
+    const panel = make("div", {class: "panel"});
+    if (state.apart) panel.append(make("h4", {}, runs[0].name));
+    panel.append(chartElement);
+    place.append(panel);
+    const chart = makeChart(chartElement, figure, runs, {onTime: setTime, onSpan: setSpan});
+    page.charts.push(chart);
+    page.panels.set(chartElement, {chart, runs});
+    sizes.observe(chartElement);
+  }
+  page.legends.push(makeLegend(element.querySelector(".legend"), figure, (curve) => {
+    const hidden = state.hidden.get(figure.id);
+    if (!hidden.delete(curve.column)) hidden.add(curve.column);
+    const label = curve.label;
+    build();
+    for (const button of element.querySelectorAll(".legend button")) {
+      if (button.textContent === label) button.focus();
+    }
+  }));
+}
+
+function build() {
+  sizes.disconnect();
+  for (const chart of page.charts) chart.destroy();
+  page.charts = [];
+  page.legends = [];
+  page.panels.clear();
+  document.querySelector(".figures").classList.toggle("apart", state.apart);
+  readTheme();
+  report.figures.forEach((figure, index) => buildFigure(figure, index + 1));
+  showTime();
+}
+
+/** After a change of what is compared. */
+function compare(change) {
+  const wasOverlaid = isOverlaid();
+  change();
+  if (isOverlaid() !== wasOverlaid) resetHidden();
+  const whole = wholeSpan();
+  if (!state.zoomed) state.span = whole;
+  Object.assign(page.slider, {min: whole[0], max: whole[1], step: timeStep()});
+  build();
+  setTime(state.time);
+}
+
+function listen() {
+  const runs = document.getElementById("runs");
+  runs.addEventListener("change", () => {
+    const chosen = new Set([...runs.querySelectorAll(":checked")].map((box) => Number(box.value)));
+    compare(() => { state.runs = report.runs.filter((run) => chosen.has(run.index)); });
+  });
+  document.getElementById("views").addEventListener("change", ({target}) => {
+    compare(() => { state.apart = target.value === "apart"; });
+  });
+  page.slider.addEventListener("input", () => setTime(Number(page.slider.value)));
+  page.whole.addEventListener("click", () => setSpan(wholeSpan()));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", build);
+  const paper = (on) => () => {
+    document.documentElement.classList.toggle("paper", on);
+    build();
+  };
+  addEventListener("beforeprint", paper(true));
+  addEventListener("afterprint", paper(false));
+}
+
+function start() {
+  const several = report.runs.length > 1;
+  document.getElementById("runs").classList.toggle("single", !several);
+  document.getElementById("views").hidden = !several;
+  page.toolbar.hidden = report.runs.length === 0;
+  state.time = tellingTime();
+  resetHidden();
+  listen();
+  compare(() => {});
+}
+
+start();

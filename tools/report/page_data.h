@@ -1,0 +1,16 @@
+// What the page's script draws: figures and runs as JSON.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tools/report/report.h"
+
+namespace fogline {
+
+/// JSON text: {"figures": [...], "columns": [[...], ...], "runs": [...]}. A run names its columns
+/// by their places in "columns", where equal ones stand once: curves that runs share have one
+/// place. Numbers are rounded to 1e-6; NaN is null.
+std::string PageData(std::span<const ReportRun> runs);
+
+}  // namespace fogline

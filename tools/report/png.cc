@@ -1,0 +1,279 @@
+// The figures as PNG files, for a paper: the panels of a figure share their axes, the key stands
+// above them.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tools/report/figures.h"
+#include "tools/report/gnuplot.h"
+#include "tools/report/report.h"
+#include "tools/report/tables.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::string_view kFog = "#e3e8ed";
+constexpr std::string_view kHumanTint = "#a0fbedd0";  // alpha first, 0 is opaque
+constexpr std::string_view kHumanLines = "#ebcb8d";
+constexpr std::string_view kShortfall = "#a0bd3a29";
+constexpr std::string_view kInk = "#1b2127";
+constexpr std::string_view kGrid = "#e3e3de";
+
+struct Span {
+  double low;
+  double high;
+};
+
+/// Where the panels lie: below each other up to three, else in two columns; the key above them.
+/// Places are shares of the picture, from its lower left corner.
+class Layout {
+ public:
+  explicit Layout(std::size_t panels)
+      : columns_(panels <= 3 ? 1 : 2),
+        rows_((panels + columns_ - 1) / columns_),
+        above_px_(panels == 1 ? kKey : kKey + kName),
+        height_px_(std::max(kHeight, kHeight * rows_ / 3)) {}
+
+  std::size_t height_px() const { return height_px_; }
+  bool IsLeft(std::size_t panel) const { return panel % columns_ == 0; }
+  bool IsLowest(std::size_t panel, std::size_t panels) const { return panel + columns_ >= panels; }
+
+  /// Commands that put the next plot into the place of a panel.
+  std::string Place(std::size_t panel) const {
+    const double width = (1.0 - kLeft - kRight + kColumnGap) / static_cast<double>(columns_);
+    const double left = kLeft + width * static_cast<double>(panel % columns_);
+    const double below = Share(kBelow);
+    const double gap = Share(kRowGap);
+    const double height = (1.0 - below - Share(above_px_) + gap) / static_cast<double>(rows_);
+    const double top = 1.0 - Share(above_px_) - height * static_cast<double>(panel / columns_);
+    return Margins(left, left + width - kColumnGap, top - height + gap, top);
+  }
+
+  /// The same for the key.
+  std::string PlaceOfKey() const { return Margins(0.0, 1.0, 1.0 - Share(kKey), 1.0); }
+
+ private:
+  static constexpr std::size_t kHeight = 1000;  // in pixels, as are those up to kRowGap
+  static constexpr double kKey = 90;
+  static constexpr double kName = 50;
+  static constexpr double kBelow = 95;
+  static constexpr double kRowGap = 75;
+  static constexpr double kLeft = 0.1;
+  static constexpr double kRight = 0.02;
+  static constexpr double kColumnGap = 0.04;
+
+  double Share(double pixels) const { return pixels / static_cast<double>(height_px_); }
+
+  static std::string Margins(double left, double right, double bottom, double top) {
+    return fmt::format(
+        "set margins at screen {:.4f}, at screen {:.4f}, at screen {:.4f}, at screen {:.4f}\n",
+        left, right, bottom, top);
+  }
+
+  std::size_t columns_;
+  std::size_t rows_;
+  double above_px_;
+  std::size_t height_px_;
+};
+
+/// Least and greatest value of some columns over all runs.
+Span SpanOf(std::span<const ReportRun> runs, std::span<const Curve> curves) {
+  Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const ReportRun& run : runs) {
+    for (const Curve& curve : curves) {
+      for (const double value : Values(ColumnNamed(curve.column), run.samples)) {
+        if (!std::isfinite(value)) continue;
+        span.low = std::min(span.low, value);
+        span.high = std::max(span.high, value);
+      }
+    }
+  }
+  return span.low <= span.high ? span : Span{0, 1};
+}
+
+/// `span` with a margin, and no shorter than `least`.
+Span Widened(Span span, double least) {
+  constexpr double kHalfWithMargin = 0.56;
+  const double middle = (span.low + span.high) / 2;
+  const double half = kHalfWithMargin * std::max(span.high - span.low, least);
+  return {middle - half, middle + half};
+}
+
+Span TimeSpanOf(std::span<const ReportRun> runs) {
+  Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const ReportRun& run : runs) {
+    if (run.samples.empty()) continue;
+    span.low = std::min(span.low, run.samples.front().time_s);
+    span.high = std::max(span.high, run.samples.back().time_s);
+  }
+  return span.low < span.high ? span : Span{0, 1};
+}
+
+/// A line without a value: gnuplot refuses an empty block.
+std::string NoValues(std::size_t curves) {
+  std::string line = "NaN";
+  for (std::size_t i = 0; i < curves; ++i) line += " NaN";
+  return line + '\n';
+}
+
+/// The curves' values as a gnuplot data block: time first, a column for each curve.
+std::string DataBlock(std::size_t number, const ReportRun& run, std::span<const Curve> curves) {
+  const std::span<const Sample> samples = run.samples;
+  std::string block = fmt::format("$run{} << EOD\n", number);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    block += fmt::format("{}", samples[i].time_s);
+    for (const Curve& curve : curves) {
+      const double value = ColumnNamed(curve.column).value(samples, i);
+      block += std::isfinite(value) ? fmt::format(" {}", value) : " NaN";
+    }
+    block += '\n';
+  }
+  if (samples.empty()) block += NoValues(curves.size());
+  return block + "EOD\n";
+}
+
+std::string Rectangles(const std::vector<Window>& windows, std::string_view colour,
+                       std::string_view fill) {
+  std::string commands;
+  for (const Window& window : windows) {
+    commands += fmt::format(
+        "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fillcolor rgb "
+        "'{}' fillstyle {} noborder\n",
+        window.begin_s, window.end_s, colour, fill);
+  }
+  return commands;
+}
+
+std::string Shades(const ReportRun& run) {
+  const std::vector<Window> human = HumanWindows(run.samples);
+  return "unset object\n" + Rectangles(FogWindows(run.samples), kFog, "solid") +
+         Rectangles(human, kHumanTint, "solid") +
+         Rectangles(human, kHumanLines, "transparent pattern 4");
+}
+
+/// How a curve is drawn: width, dashes, colour.
+std::string LineOf(const Curve& curve) {
+  return fmt::format("linewidth {} dashtype {} linecolor rgb '{}'",
+                     curve.part == Part::kDetail ? 1.0 : 1.5,
+                     curve.part == Part::kLimit ? "(8, 4)" : "solid",
+                     kPalette[static_cast<std::size_t>(curve.colour)]);
+}
+
+std::string_view StyleOf(Hold hold) {
+  switch (hold) {
+    case Hold::kLinear:
+      return "lines";
+    case Hold::kSince:
+      return "fsteps";
+    case Hold::kUntil:
+      return "steps";
+  }
+  return "lines";
+}
+
+/// The plot command of one panel.
+std::string Plot(const Figure& figure, std::size_t number) {
+  std::vector<std::string> parts;
+  if (figure.shortfall) {  // columns 2 and 3 are the gap and its safe distance
+    parts.push_back(
+        fmt::format("$run{} using 1:2:($3 > $2 ? $3 : $2) with filledcurves fillcolor rgb '{}' "
+                    "fillstyle solid noborder",
+                    number, kShortfall));
+  }
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    const Curve& curve = figure.curves[i];
+    parts.push_back(fmt::format("$run{} using 1:{} with {} {}", number, i + 2, StyleOf(curve.hold),
+                                LineOf(curve)));
+  }
+  return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
+}
+
+/// The key, as a plot of nothing else.
+std::string Key(const Figure& figure, const Layout& layout) {
+  std::vector<std::string> parts{"NaN notitle"};
+  for (const Curve& curve : figure.curves) {
+    parts.push_back(
+        fmt::format("keyentry with lines {} title {}", LineOf(curve), GnuplotString(curve.label)));
+  }
+  const auto add_shade = [&](std::string_view colour, std::string_view fill,
+                             std::string_view what) {
+    parts.push_back(fmt::format("keyentry with boxes fillcolor rgb '{}' fillstyle {} title '{}'",
+                                colour, fill, what));
+  };
+  add_shade(kFog, "solid", "fog");
+  add_shade(kHumanLines, "pattern 4", "the human drives");
+  if (figure.shortfall) add_shade(kShortfall, "solid", "safety compromised");
+  return fmt::format(
+      "{}unset border\nunset tics\nunset grid\n"
+      "set key center center horizontal Left reverse samplen 2 width 1 font ',18'\n"
+      "plot {}\n"
+      "unset key\nset border 3 linecolor rgb '{}' linewidth 0.6\n"
+      "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
+      "set grid linecolor rgb '{}' linetype 1 linewidth 0.5\n",
+      layout.PlaceOfKey(), fmt::join(parts, ", \\\n     "), kInk, kGrid);
+}
+
+std::string AxisLabel(const Figure& figure) {
+  return GnuplotString(figure.unit.empty() ? std::string(figure.quantity)
+                                           : fmt::format("{} ({})", figure.quantity, figure.unit));
+}
+
+std::string Heading(const Figure& figure, std::span<const ReportRun> runs, const Layout& layout) {
+  const Span time = TimeSpanOf(runs);
+  const Span values = Widened(SpanOf(runs, figure.curves), figure.least_span);
+  return fmt::format(
+      "set encoding utf8\nset minussign\n"
+      "set terminal pngcairo noenhanced size 1600,{} font 'sans,20' linewidth 2 "
+      "background rgb 'white'\n"
+      "set style fill solid noborder\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\n"
+      "set multiplot\n",
+      layout.height_px(), time.low, time.high, values.low, values.high);
+}
+
+std::string Panel(const Figure& figure, std::span<const ReportRun> runs, std::size_t index,
+                  const Layout& layout) {
+  std::string commands = layout.Place(index) + Shades(runs[index]);
+  if (runs.size() > 1) {
+    commands += fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.7 left\n",
+                            GnuplotString(RunName(runs, index)));
+  }
+  commands += layout.IsLeft(index)
+                  ? fmt::format("set ylabel {}\nset format y '%h'\n", AxisLabel(figure))
+                  : "unset ylabel\nset format y ''\n";
+  commands += layout.IsLowest(index, runs.size())
+                  ? "set xlabel 'Time (s)' offset 0,0.3\nset format x '%h'\n"
+                  : "unset xlabel\nset format x ''\n";
+  return commands + Plot(figure, index);
+}
+
+std::string Script(const Figure& figure, std::span<const ReportRun> runs) {
+  const Layout layout(runs.size());
+  std::string script;
+  for (std::size_t i = 0; i < runs.size(); ++i) script += DataBlock(i, runs[i], figure.curves);
+  script += Heading(figure, runs, layout) + Key(figure, layout);
+  for (std::size_t i = 0; i < runs.size(); ++i) script += Panel(figure, runs, i, layout);
+  return script + "unset multiplot\n";
+}
+
+}  // namespace
+
+void WritePngFigures(const std::filesystem::path& dir, std::span<const ReportRun> runs) {
+  if (runs.empty()) return;
+  std::filesystem::create_directories(dir);
+  for (std::size_t i = 0; i < Figures().size(); ++i) {
+    const Figure& figure = Figures()[i];
+    RunGnuplot(Script(figure, runs), dir / fmt::format("figure-{}-{}.png", i + 1, figure.id));
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,144 @@
+#include "tools/report/report.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "services/measures/measures.h"
+#include "tools/report/assets.h"
+#include "tools/report/figures.h"
+#include "tools/report/html.h"
+#include "tools/report/page_data.h"
+#include "tools/report/tables.h"
+
+namespace fogline {
+namespace {
+
+std::string TitleOf(std::span<const ReportRun> runs) {
+  if (runs.empty()) return "No runs";
+  const std::string& title = runs.front().scenario_title;
+  const bool same = std::all_of(runs.begin(), runs.end(),
+                                [&](const ReportRun& run) { return run.scenario_title == title; });
+  return same && !title.empty() ? title : fmt::format("{} runs", runs.size());
+}
+
+std::string Fact(std::string_view what, const std::string& value) {
+  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", what, value);
+}
+
+std::string CollisionFact(const RunMeasures& measures) {
+  if (!measures.collision_time_s) return "";
+  const bool host = measures.collision == truth_t::COLLISION_HOST;
+  return Fact("Collision",
+              fmt::format("<strong>{}, at {} s</strong>", host ? "host" : "following car",
+                          Decimal(*measures.collision_time_s, 1)));
+}
+
+/// One entry of the run selector: the run in four numbers.
+std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
+  const ReportRun& run = runs[index];
+  std::string facts;
+  if (run.si_pct) facts += Fact("Safety improvement", DataElement(*run.si_pct, 2) + " %");
+  const RunMeasures measures = Measure(run.samples);
+  facts += Fact("Human drives", DataElement(measures.human_time_s, 1) + " s");
+  if (measures.max_compromised_safety_m) {
+    facts +=
+        Fact("Worst compromised safety", DataElement(*measures.max_compromised_safety_m, 3) + " m");
+  }
+  facts += CollisionFact(measures);
+  return fmt::format(
+      "<label class=\"run c{}\"><input type=\"checkbox\" value=\"{}\" checked>"
+      "<span class=\"name\">{}</span><dl>{}</dl></label>\n",
+      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), facts);
+}
+
+std::string FigureElement(const Figure& figure, std::size_t number) {
+  const std::string unit =
+      figure.unit.empty() ? "" : fmt::format(" <span class=\"unit\">{}</span>", figure.unit);
+  return fmt::format(
+      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">"
+      "<span class=\"number\">{1}</span> {2}</h3><p>{3}</p></figcaption>\n"
+      "<p class=\"axis\">{4}{5}</p>\n<div class=\"panels\"></div>\n<div class=\"legend\"></div>\n"
+      "</figure>\n",
+      figure.id, number, figure.title, figure.caption, figure.quantity, unit);
+}
+
+std::string ScenarioElement(std::span<const ReportRun> runs, std::size_t index) {
+  const ReportRun& run = runs[index];
+  return fmt::format(
+      "<details><summary><i class=\"dot c{}\"></i><span class=\"name\">{}</span>"
+      "<span class=\"facts\">seed {}, digest <code>{}</code></span></summary>\n"
+      "<pre tabindex=\"0\" aria-label=\"Scenario of {}\">{}</pre></details>\n",
+      index % kPaletteSize, EscapeHtml(RunName(runs, index)), run.seed, EscapeHtml(run.digest),
+      EscapeHtml(RunName(runs, index)), EscapeHtml(run.scenario_json));
+}
+
+std::string Section(std::string_view id, std::string_view title, const std::string& content) {
+  if (content.empty()) return "";
+  return fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}"
+      "</h2>\n{2}</section>\n",
+      id, title, content);
+}
+
+std::string TableSection(const std::optional<ReportTable>& table) {
+  if (!table || table->rows.empty()) return "";
+  std::string content = ThresholdTable(*table);
+  if (!table->note.empty()) {
+    content += fmt::format("<p class=\"note\">{}</p>\n", EscapeHtml(table->note));
+  }
+  return Section("table", "Safety and human engagement by threshold", content);
+}
+
+/// "7", or "7 to 9" where the runs differ.
+template <class Get>
+std::string RangeOf(std::span<const ReportRun> runs, Get get) {
+  const auto less = [&](const ReportRun& a, const ReportRun& b) { return get(a) < get(b); };
+  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), less);
+  const auto first = get(*least);
+  const auto last = get(*most);
+  return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
+}
+
+std::string SummaryOf(std::span<const ReportRun> runs) {
+  if (runs.empty()) return "";
+  return fmt::format("{} {} of {} steps, seed {}", runs.size(), runs.size() == 1 ? "run" : "runs",
+                     RangeOf(runs, [](const ReportRun& run) { return run.samples.size(); }),
+                     RangeOf(runs, [](const ReportRun& run) { return run.seed; }));
+}
+
+}  // namespace
+
+std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table) {
+  std::string cards;
+  std::string scenarios;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    cards += RunCard(runs, i);
+    scenarios += ScenarioElement(runs, i);
+  }
+  std::string figures;
+  for (std::size_t i = 0; i < Figures().size(); ++i) {
+    figures += FigureElement(Figures()[i], i + 1);
+  }
+  const std::string script = fmt::format("{}\n{}\n{}\n{}", assets::kModelJs, assets::kChartJs,
+                                         assets::kLegendJs, assets::kPageJs);
+  return Fill(assets::kPageHtml,
+              {{"title", EscapeHtml(TitleOf(runs))},
+               {"style", fmt::format("{}\n{}", assets::kUplotCss, assets::kPageCss)},
+               {"summary", SummaryOf(runs)},
+               {"runs", cards},
+               {"table", TableSection(table)},
+               {"figures", figures},
+               {"measures", Section("measures", "Measures", MeasureTable(runs))},
+               {"differences", Section("differences", "What differs between the scenarios",
+                                       DifferenceTable(runs))},
+               {"scenarios", Section("scenarios", "Scenarios", scenarios)},
+               {"data", EscapeScript(PageData(runs))},
+               {"uplot", std::string(assets::kUplotJs)},
+               {"uplot_license", EscapeHtml(assets::kUplotLicense)},
+               {"script", script}});
+}
+
+}  // namespace fogline

@@ -1,0 +1,61 @@
+// The report of runs: one self-contained HTML page, and PNG figures for a paper. This library draws
+// what it is given. It reads no log and runs nothing.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "services/measures/sample.h"
+
+namespace fogline {
+
+/// One number that judges a run.
+struct ReportMeasure {
+  std::string name;
+  double value = 0;  // NaN where the run gives none
+  std::string unit;  // "" if none
+  std::string description;
+};
+
+/// One run, as the report shows it. Every text may hold anything; it is escaped.
+struct ReportRun {
+  std::string name;  // such as "threshold 0.5", or the name of its log
+  std::string scenario_title;
+  std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
+  std::int64_t seed = 0;
+  std::string digest;
+  std::vector<Sample> samples;  // in the order of time
+  std::vector<ReportMeasure> measures;
+  std::optional<double> si_pct =
+      {};  // safety improvement over the paired run without traded control
+};
+
+/// The paper's table. Standard deviations are those over seeds; published values come from the
+/// scenario.
+struct ReportTable {
+  struct Row {
+    double threshold = 0;
+    double si_pct = 0;  // NaN where no seed has one
+    double rhe_pct = 0;
+    std::optional<double> si_std_pct = {};
+    std::optional<double> rhe_std_pct = {};
+    std::optional<double> published_si_pct = {};
+    std::optional<double> published_rhe_pct = {};
+  };
+  std::vector<Row> rows;
+  std::string note;  // such as "mean and standard deviation over seeds 1 to 200"; "" if none
+};
+
+/// The whole page. It refers to nothing outside itself.
+std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table);
+
+/// Writes one PNG file for each figure into `dir` (made if missing), with gnuplot: a panel for each
+/// run, all with the same axes. Files are named figure-1-speeds.png and so on.
+/// @throws std::runtime_error with gnuplot's own words if it fails or is not installed
+void WritePngFigures(const std::filesystem::path& dir, std::span<const ReportRun> runs);
+
+}  // namespace fogline

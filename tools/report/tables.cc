@@ -1,0 +1,190 @@
+#include "tools/report/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/report/figures.h"
+#include "tools/report/html.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPercentDecimals = 2;  // as the paper prints them
+
+/// A table in a container that scrolls by itself, so that the page never does sideways.
+std::string Scrolling(std::string_view label, std::string_view head, std::string_view body) {
+  return fmt::format(
+      "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n"
+      "<thead>\n{}</thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n",
+      label, head, body);
+}
+
+std::string HeadOfRuns(std::string_view first, std::span<const ReportRun> runs) {
+  std::string head = fmt::format("<tr><th scope=\"col\">{}</th>", first);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    head += fmt::format("<th scope=\"col\"><i class=\"dot c{}\"></i>{}</th>", i % kPaletteSize,
+                        EscapeHtml(RunName(runs, i)));
+  }
+  return head + "</tr>\n";
+}
+
+std::string PercentCell(double value) {
+  return fmt::format("<td>{}</td>", DataElement(value, kPercentDecimals));
+}
+
+/// A cell for a value and, after it, its standard deviation, if it has one.
+std::string PercentCells(double value, const std::optional<double>& deviation) {
+  return PercentCell(value) + (deviation ? fmt::format("<td class=\"deviation\">± {}</td>",
+                                                       DataElement(*deviation, kPercentDecimals))
+                                         : "<td class=\"deviation\"></td>");
+}
+
+std::string RowOf(const ReportTable::Row& row) {
+  return fmt::format("<tr><th scope=\"row\">{}</th>{}{}{}{}</tr>\n",
+                     fmt::format("<data value=\"{0}\">{0}</data>", row.threshold),
+                     PercentCells(row.si_pct, row.si_std_pct),
+                     PercentCell(row.published_si_pct.value_or(kNone)),
+                     PercentCells(row.rhe_pct, row.rhe_std_pct),
+                     PercentCell(row.published_rhe_pct.value_or(kNone)));
+}
+
+/// Decimals that give the largest of `values` five significant digits.
+int DecimalsFor(const std::vector<std::optional<double>>& values) {
+  constexpr int kSignificant = 5;
+  double largest = 0;
+  bool whole = true;
+  for (const std::optional<double>& value : values) {
+    if (!value || !std::isfinite(*value)) continue;
+    largest = std::max(largest, std::fabs(*value));
+    whole = whole && *value == std::round(*value);
+  }
+  if (whole) return 0;
+  const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
+  return std::clamp(kSignificant - 1 - magnitude, 0, 6);
+}
+
+/// A measure's place in the table: runs may have different ones.
+struct MeasureRow {
+  ReportMeasure measure;
+  std::vector<std::optional<double>> values;  // of each run, if it has the measure
+};
+
+void Put(std::vector<MeasureRow>& rows, const ReportMeasure& measure, std::size_t run,
+         std::size_t num_runs) {
+  const auto same = [&](const MeasureRow& row) {
+    return row.measure.name == measure.name && row.measure.unit == measure.unit && !row.values[run];
+  };
+  auto found = std::find_if(rows.begin(), rows.end(), same);
+  if (found == rows.end()) {
+    rows.push_back({measure, std::vector<std::optional<double>>(num_runs)});
+    found = rows.end() - 1;
+  }
+  found->values[run] = measure.value;
+}
+
+std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
+  std::vector<MeasureRow> rows;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].si_pct) {
+      Put(rows,
+          {"safety improvement", *runs[i].si_pct, "%",
+           "SI: less compromised safety in the fog than in the paired run without traded control"},
+          i, runs.size());
+    }
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const ReportMeasure& measure : runs[i].measures) Put(rows, measure, i, runs.size());
+  }
+  return rows;
+}
+
+/// The scenario's fields by JSON pointer; empty if the text is no JSON.
+nlohmann::json FieldsOf(const ReportRun& run) {
+  const auto scenario =
+      nlohmann::json::parse(run.scenario_json, nullptr, /*allow_exceptions=*/false);
+  if (!scenario.is_object()) return nlohmann::json::object();
+  return scenario.flatten();
+}
+
+std::string TextOf(const nlohmann::json& fields, const std::string& pointer) {
+  constexpr auto kReplaceBadUtf8 = nlohmann::json::error_handler_t::replace;
+  const auto found = fields.find(pointer);
+  if (found == fields.end()) return "–";
+  return EscapeHtml(found->is_string() ? found->get<std::string>()
+                                       : found->dump(-1, ' ', false, kReplaceBadUtf8));
+}
+
+}  // namespace
+
+std::string RunName(std::span<const ReportRun> runs, std::size_t index) {
+  return runs[index].name.empty() ? fmt::format("run {}", index + 1) : runs[index].name;
+}
+
+std::string ThresholdTable(const ReportTable& table) {
+  std::string rows;
+  for (const ReportTable::Row& row : table.rows) rows += RowOf(row);
+  return Scrolling(
+      "Safety improvement and redundant human engagement by threshold",
+      "<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>"
+      "<th scope=\"colgroup\" colspan=\"3\">Safety improvement (%)</th>"
+      "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th></tr>\n"
+      "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
+      "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th></tr>\n",
+      rows);
+}
+
+std::string MeasureTable(std::span<const ReportRun> runs) {
+  std::string body;
+  for (const MeasureRow& row : MeasureRows(runs)) {
+    const std::string unit =
+        row.measure.unit.empty()
+            ? ""
+            : fmt::format(" <span class=\"unit\">{}</span>", EscapeHtml(row.measure.unit));
+    body += fmt::format("<tr><th scope=\"row\">{}{}<small>{}</small></th>",
+                        EscapeHtml(row.measure.name), unit, EscapeHtml(row.measure.description));
+    const int decimals = DecimalsFor(row.values);
+    for (const std::optional<double>& value : row.values) {
+      body += fmt::format("<td>{}</td>", DataElement(value.value_or(kNone), decimals));
+    }
+    body += "</tr>\n";
+  }
+  return Scrolling("Measures of the runs", HeadOfRuns("Measure", runs), body);
+}
+
+std::string DifferenceTable(std::span<const ReportRun> runs) {
+  constexpr std::size_t kMostRows = 50;  // recorded speeds may differ in thousands of places
+  std::vector<nlohmann::json> fields;
+  nlohmann::json pointers = nlohmann::json::object();  // ordered by key
+  for (const ReportRun& run : runs) {
+    fields.push_back(FieldsOf(run));
+    pointers.update(fields.back());
+  }
+  std::string body;
+  std::size_t rows = 0;
+  for (const auto& [pointer, unused] : pointers.items()) {
+    if (pointer == "/title" || pointer == "/description") continue;
+    std::vector<std::string> texts;
+    for (const nlohmann::json& of_run : fields) texts.push_back(TextOf(of_run, pointer));
+    if (std::equal(texts.begin() + 1, texts.end(), texts.begin())) continue;
+    if (++rows > kMostRows) continue;
+    body += fmt::format("<tr><th scope=\"row\"><code>{}</code></th>", EscapeHtml(pointer));
+    for (const std::string& text : texts) body += fmt::format("<td>{}</td>", text);
+    body += "</tr>\n";
+  }
+  if (rows == 0) return "";
+  std::string table = Scrolling("Scenario fields that differ", HeadOfRuns("Field", runs), body);
+  if (rows > kMostRows) {
+    table += fmt::format("<p class=\"note\">and {} more</p>\n", rows - kMostRows);
+  }
+  return table;
+}
+
+}  // namespace fogline
