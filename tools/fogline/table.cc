@@ -1,6 +1,7 @@
 // fogline table: safety improvement against redundant human engagement, by threshold.
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
+#include "tools/sweep/engine.h"
 
 namespace fogline {
 namespace {
@@ -69,53 +71,60 @@ struct TableArguments {
   bool json = false;
 };
 
-/// First and last of "A:B".
-std::pair<std::int64_t, std::int64_t> ParseSeeds(const std::string& text) {
-  std::int64_t first = 0;
-  std::int64_t last = 0;
-  char end = 0;
-  if (std::sscanf(text.c_str(), "%ld:%ld%c", &first, &last, &end) != 2 || first < 0 ||
-      last < first) {
-    throw InputError(fmt::format("error: --seeds {}: not a range A:B with 0 <= A <= B", text));
+ExperimentResult RunOne(const TableArguments& arguments, const Scenario& scenario,
+                        const std::string& name) {
+  ExperimentOptions options;
+  options.transport = arguments.transport;
+  if (!arguments.logs.empty()) {
+    options.log = arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
+                                               arguments.scenario.file().stem().string(),
+                                               scenario.seed, name);
   }
-  return {first, last};
+  return RunExperiment(scenario, options);
 }
 
-class TableMaker {
- public:
-  explicit TableMaker(const TableArguments& arguments) : arguments_(arguments) {
-    if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
-  }
+void AddTo(Row& row, const std::optional<double>& si_pct, const RunMeasures& measures) {
+  if (measures.rhe_pct) row.rhe_pct.Add(*measures.rhe_pct);
+  if (si_pct) row.si_pct.Add(*si_pct);
+}
 
-  /// Adds the runs of one seed to the rows.
-  void AddSeed(const Scenario& scenario, std::vector<Row>& rows) {
-    const ExperimentResult baseline = RunOne(WithoutTradedControl(scenario), "none");
+/// Runs every pair on a transport, with logs if wanted.
+void FillByRuns(const TableArguments& arguments, Scenario scenario, const SeedRange& seeds,
+                std::vector<Row>& rows) {
+  if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
+  Progress progress("seed", seeds.count());
+  for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
+    scenario.seed = seed;
+    const ExperimentResult baseline = RunOne(arguments, WithoutTradedControl(scenario), "none");
     for (Row& row : rows) {
-      Scenario traded = scenario;
-      traded.arbitrator.threshold = row.threshold;
-      const ExperimentResult result = RunOne(traded, fmt::format("{:g}", row.threshold));
-      if (result.measures.rhe_pct) row.rhe_pct.Add(*result.measures.rhe_pct);
-      if (const auto si = SafetyImprovementPct(baseline.samples, result.samples,
-                                               scenario.measures.safety_floor_m)) {
-        row.si_pct.Add(*si);
-      }
+      scenario.arbitrator.threshold = row.threshold;
+      const ExperimentResult result =
+          RunOne(arguments, scenario, fmt::format("{:g}", row.threshold));
+      AddTo(
+          row,
+          SafetyImprovementPct(baseline.samples, result.samples, scenario.measures.safety_floor_m),
+          result.measures);
     }
+    progress.Show(seed - seeds.first + 1);
   }
+}
 
- private:
-  ExperimentResult RunOne(const Scenario& scenario, const std::string& name) {
-    ExperimentOptions options;
-    options.transport = arguments_.transport;
-    if (!arguments_.logs.empty()) {
-      options.log = arguments_.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
-                                                  arguments_.scenario.file().stem().string(),
-                                                  scenario.seed, name);
-    }
-    return RunExperiment(scenario, options);
-  }
-
-  const TableArguments& arguments_;
-};
+/// The same in this process, on all cores.
+void FillBySweep(const Scenario& scenario, const SeedRange& seeds, std::vector<Row>& rows) {
+  Axis axis{.pointer = "/arbitrator/threshold", .values = {}};
+  for (const Row& row : rows) axis.values.push_back(fmt::format("{}", row.threshold));
+  const SweepPlan plan(scenario, {axis}, seeds);
+  Progress progress("seed", seeds.count());
+  RunSweep(plan, 0, plan.units(), AllCores(),
+           [&](std::int64_t unit, const std::vector<SweepRow>& results) {
+             for (std::size_t i = 0; i < rows.size(); ++i) {
+               AddTo(rows[i], results[i].si_pct, results[i].measures);
+             }
+             progress.Show(unit + 1);
+             return !WasInterrupted();
+           });
+  if (WasInterrupted()) throw Interrupted("interrupted");
+}
 
 std::vector<Row> MakeRows(const TableArguments& arguments, const Scenario& scenario) {
   std::vector<double> thresholds = arguments.thresholds;
@@ -186,18 +195,16 @@ void PrintText(const Scenario& scenario, std::int64_t seeds, const std::vector<R
 }
 
 int RunTable(const TableArguments& arguments) {
-  Scenario scenario = arguments.scenario.Load();
-  const auto [first, last] = arguments.seeds.empty() ? std::pair(scenario.seed, scenario.seed)
-                                                     : ParseSeeds(arguments.seeds);
-  const std::int64_t seeds = last - first + 1;
+  const Scenario scenario = arguments.scenario.Load();
+  const SeedRange range = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
+                                                  : ParseSeeds(arguments.seeds);
+  const std::int64_t seeds = range.count();
   std::vector<Row> rows = MakeRows(arguments, scenario);
   WatchInterrupts();
-  TableMaker maker(arguments);
-  Progress progress("seed", seeds);
-  for (std::int64_t seed = first; seed <= last; ++seed) {
-    scenario.seed = seed;
-    maker.AddSeed(scenario, rows);
-    progress.Show(seed - first + 1);
+  if (arguments.transport == "direct" && arguments.logs.empty()) {
+    FillBySweep(scenario, range, rows);
+  } else {
+    FillByRuns(arguments, scenario, range, rows);
   }
   if (arguments.json) {
     PrintJson(ToJson(arguments, scenario, seeds, rows));

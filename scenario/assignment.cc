@@ -1,0 +1,108 @@
+#include "scenario/assignment.h"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include <fmt/core.h>
+
+#include "scenario/catalogue.h"
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+/// A value in the two forms that fields take.
+struct Value {
+  std::optional<double> number;
+  std::string_view text;
+};
+
+/// Follows a path through the sections and sets the field at its end.
+class Assigner {
+ public:
+  Assigner(std::span<const std::string> path, const Value& value) : path_(path), value_(value) {}
+
+  bool done() const { return done_; }
+
+  void Number(std::string_view name, double& field, const NumberSpec&) {
+    if (Here(name) && value_.number) Done(field = *value_.number);
+  }
+  void Integer(std::string_view name, std::int64_t& field, const IntegerSpec&) {
+    if (Here(name) && value_.number) Done(field = std::llround(*value_.number));
+  }
+  void Flag(std::string_view name, bool& field, std::string_view) {
+    if (Here(name) && (value_.text == "true" || value_.text == "false")) {
+      Done(field = value_.text == "true");
+    }
+  }
+  template <class Enum>
+  void Choice(std::string_view name, Enum& field, std::string_view) {
+    if (!Here(name)) return;
+    for (std::size_t i = 0; i < ChoiceNames<Enum>::kNames.size(); ++i) {
+      if (ChoiceNames<Enum>::kNames[i] == value_.text) Done(field = static_cast<Enum>(i));
+    }
+  }
+  template <class Section>
+  void Section(std::string_view name, Section& section, std::string_view) {
+    if (path_.size() < 2 || path_.front() != name) return;
+    Assigner inner(path_.subspan(1), value_);
+    Section::Fields(section, inner);
+    done_ = done_ || inner.done_;
+  }
+  void Text(std::string_view, std::string&, std::string_view) {}
+  void Numbers(std::string_view, std::vector<double>&, const NumberSpec&, const ListSpec&) {}
+  template <class Item>
+  void List(std::string_view, std::vector<Item>&, const ListSpec&) {}
+
+ private:
+  bool Here(std::string_view name) const { return path_.size() == 1 && path_.front() == name; }
+  template <class T>
+  void Done(const T&) {
+    done_ = true;
+  }
+
+  std::span<const std::string> path_;
+  const Value& value_;
+  bool done_ = false;
+};
+
+void Assign(Scenario& scenario, std::span<const std::string> path, const std::string& pointer,
+            const Value& value) {
+  Assigner assigner(path, value);
+  Scenario::Fields(scenario, assigner);
+  if (!assigner.done()) {
+    throw InputError(fmt::format("error: {} cannot be \"{}\"", pointer, value.text));
+  }
+}
+
+}  // namespace
+
+FieldAssignment::FieldAssignment(std::string_view pointer) : pointer_(pointer) {
+  const FieldInfo* field = FindField(pointer);
+  if (field == nullptr || field->is_section) {
+    const auto suggestion = SuggestPointer(pointer);
+    throw InputError(fmt::format("error: {}: no field of a scenario{}", pointer,
+                                 suggestion ? fmt::format("; did you mean {}?", *suggestion) : ""));
+  }
+  for (std::string_view rest = pointer.substr(1); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('/'), rest.size());
+    path_.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+}
+
+void FieldAssignment::Set(Scenario& scenario, double number) const {
+  Assign(scenario, path_, pointer_, {.number = number, .text = ""});
+}
+
+void FieldAssignment::Set(Scenario& scenario, std::string_view text) const {
+  Value value{.number = std::nullopt, .text = text};
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size()) value.number = number;
+  Assign(scenario, path_, pointer_, value);
+}
+
+}  // namespace fogline

@@ -1,0 +1,124 @@
+// fogline sweep: a scenario over a grid of fields and a range of seeds, on all cores.
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/progress.h"
+#include "tools/fogline/verbs.h"
+#include "tools/sweep/csv.h"
+
+namespace fogline {
+namespace {
+
+struct SweepArguments {
+  explicit SweepArguments(CLI::App& verb) {
+    verb.add_option("SCENARIO", scenario, "Scenario file");
+    verb.add_option("--set", overrides, "Override a field in every run (repeatable)")
+        ->allow_extra_args(false);
+    verb.add_option("--grid", grid,
+                    "Values of a field: /pointer=a,b,c or /pointer=first:last:count (repeatable)")
+        ->allow_extra_args(false);
+    verb.add_option("--seeds", seeds, "Seeds A:B, both included (default: the scenario's own)");
+    verb.add_option("--jobs", jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
+    verb.add_option("--out", out, "CSV file (default: SCENARIO-sweep.csv in this folder)");
+    verb.add_option("--shard", shard, "Only part I of N equal parts, as I/N");
+    verb.add_option("--merge", merge, "Put the files of all shards together into --out");
+    verb.add_flag("--force", force, "Replace the file even if it is of another sweep");
+    verb.add_flag("--json", json, "Print runs, time and rate as JSON");
+    verb.footer(
+        "Rows stand in a defined order whatever --jobs is. A sweep that was stopped or killed "
+        "goes\n"
+        "on where its file ends when it is called again. FILE.json says what the sweep in FILE "
+        "is.\n"
+        "SI compares each row with the same run without traded control.\n\n"
+        "Examples:\n"
+        "  fogline sweep scenario/paper.json --grid /arbitrator/threshold=0.2,0.5,0.8 --seeds "
+        "1:1000\n"
+        "  fogline sweep scenario/paper.json --grid /arbitrator/threshold=0.01:0.99:99 \\\n"
+        "    --grid /fog/bias_m=0.2,0.3,0.4 --seeds 1:100 --out curves.csv\n"
+        "  fogline sweep scenario/paper.json --seeds 1:1000 --shard 3/7 --out part3.csv\n"
+        "  fogline sweep --merge part*.csv --out whole.csv");
+  }
+
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  std::vector<std::string> grid;
+  std::string seeds;
+  int jobs = AllCores();
+  std::filesystem::path out;
+  std::string shard = "1/1";
+  std::vector<std::filesystem::path> merge;
+  bool force = false;
+  bool json = false;
+};
+
+SweepPlan MakePlan(const SweepArguments& arguments) {
+  if (arguments.scenario.empty()) throw InputError("error: SCENARIO is required");
+  Scenario scenario = LoadScenario(arguments.scenario, arguments.overrides);
+  std::vector<Axis> axes;
+  for (const std::string& axis : arguments.grid) axes.push_back(ParseAxis(axis));
+  const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
+                                                  : ParseSeeds(arguments.seeds);
+  return SweepPlan(std::move(scenario), std::move(axes), seeds);
+}
+
+int Merge(const SweepArguments& arguments) {
+  if (arguments.out.empty()) throw InputError("error: --merge needs --out");
+  MergeShards(arguments.merge, arguments.out, arguments.force);
+  if (!arguments.json) fmt::print("{}\n", arguments.out.string());
+  return kDone;
+}
+
+int RunSweepVerb(const SweepArguments& arguments) {
+  if (!arguments.merge.empty()) return Merge(arguments);
+  const SweepPlan plan = MakePlan(arguments);
+  const Shard shard = ParseShard(arguments.shard);
+  std::filesystem::path out = arguments.out;
+  if (out.empty()) out = fmt::format("{}-sweep.csv", arguments.scenario.stem().string());
+  SweepFile file(out, plan, shard, arguments.force);
+  const std::int64_t begin = file.next_unit();
+  const std::int64_t end = plan.ShardEnd(shard);
+  if (begin > plan.ShardBegin(shard) && !arguments.json) {
+    fmt::print(stderr, "{}: {} of {} rows are there\n", out.string(),
+               (begin - plan.ShardBegin(shard)) * plan.rows_per_unit(),
+               (end - plan.ShardBegin(shard)) * plan.rows_per_unit());
+  }
+  WatchInterrupts();
+  Progress progress("row", (end - begin) * plan.rows_per_unit());
+  const TimePoint began = Clock::now();
+  RunSweep(plan, begin, end, arguments.jobs, [&](std::int64_t, const std::vector<SweepRow>& rows) {
+    file.Append(rows);
+    progress.Show((file.next_unit() - begin) * plan.rows_per_unit());
+    return !WasInterrupted();
+  });
+  const std::int64_t rows = (file.next_unit() - begin) * plan.rows_per_unit();
+  if (file.next_unit() != end) {
+    throw Interrupted(fmt::format("interrupted after {} rows; call it again to go on", rows));
+  }
+  const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
+  // Each unit computes the paired run without traded control besides its rows.
+  const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / arguments.jobs : 0;
+  if (arguments.json) {
+    const nlohmann::ordered_json json{
+        {"runs", rows}, {"wall_s", wall_s}, {"runs_per_s_per_core", rate}, {"out", out.string()}};
+    PrintJson(json.dump(2));
+  } else {
+    fmt::print("{} rows in {:.2f} s, {:.0f} rows per second and core\n{}\n", rows, wall_s, rate,
+               out.string());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSweep(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("sweep", "Run a grid of fields and seeds on all cores");
+  const auto arguments = std::make_shared<SweepArguments>(*verb);
+  verb->callback(
+      [&action, arguments] { action = [arguments] { return RunSweepVerb(*arguments); }; });
+}
+
+}  // namespace fogline

@@ -1,0 +1,147 @@
+#include "tools/sweep/plan.h"
+
+#include <charconv>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+/// The most points of an axis "first:last:count".
+constexpr std::int64_t kMaxPoints = 1'000'000;
+
+template <class T>
+bool Parse(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+std::vector<std::string_view> Split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// "first:last:count" as values; empty if the text is something else.
+std::vector<std::string> Spaced(std::string_view text) {
+  const std::vector<std::string_view> parts = Split(text, ':');
+  double first = 0;
+  double last = 0;
+  std::int64_t count = 0;
+  if (parts.size() != 3 || !Parse(parts[0], first) || !Parse(parts[1], last) ||
+      !Parse(parts[2], count) || count < 2 || count > kMaxPoints) {
+    return {};
+  }
+  std::vector<std::string> values;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(fmt::format("{}", i == count - 1 ? last : first + (last - first) * share));
+  }
+  return values;
+}
+
+}  // namespace
+
+Axis ParseAxis(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || !text.starts_with('/')) {
+    throw InputError(fmt::format(
+        "error: --grid {}: neither /pointer=a,b,c nor /pointer=first:last:count", text));
+  }
+  Axis axis{.pointer = text.substr(0, equals), .values = {}};
+  const std::string_view values = std::string_view(text).substr(equals + 1);
+  if (values.find(':') != std::string_view::npos) {
+    axis.values = Spaced(values);
+    if (axis.values.empty()) {
+      throw InputError(fmt::format(
+          "error: --grid {}: not first:last:count with two numbers and a count from 2 to {}", text,
+          kMaxPoints));
+    }
+    return axis;
+  }
+  for (const std::string_view value : Split(values, ',')) {
+    if (value.empty()) throw InputError(fmt::format("error: --grid {}: an empty value", text));
+    axis.values.emplace_back(value);
+  }
+  return axis;
+}
+
+SeedRange ParseSeeds(const std::string& text) {
+  const std::vector<std::string_view> parts = Split(text, ':');
+  SeedRange seeds;
+  if (parts.size() > 2 || !Parse(parts.front(), seeds.first) || !Parse(parts.back(), seeds.last) ||
+      seeds.first < 0 || seeds.last < seeds.first) {
+    throw InputError(
+        fmt::format("error: --seeds {}: neither A:B with 0 <= A <= B nor one seed", text));
+  }
+  return seeds;
+}
+
+Shard ParseShard(const std::string& text) {
+  const std::vector<std::string_view> parts = Split(text, '/');
+  Shard shard;
+  if (parts.size() != 2 || !Parse(parts[0], shard.index) || !Parse(parts[1], shard.count) ||
+      shard.index < 1 || shard.index > shard.count) {
+    throw InputError(fmt::format("error: --shard {}: not I/N with 1 <= I <= N", text));
+  }
+  return shard;
+}
+
+SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds)
+    : base_(std::move(base)), axes_(std::move(axes)), seeds_(seeds) {
+  const std::string text = PrintScenario(base_);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Axis& axis = axes_[i];
+    if (axis.pointer == "/seed" || axis.pointer == "/steps") {
+      throw InputError(fmt::format("error: --grid {}: {}", axis.pointer,
+                                   axis.pointer == "/seed" ? "seeds are given by --seeds"
+                                                           : "runs of one sweep are equally long"));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (axes_[j].pointer == axis.pointer) {
+        throw InputError(fmt::format("error: --grid {}: given twice", axis.pointer));
+      }
+    }
+    fields_.emplace_back(axis.pointer);
+    for (const std::string& value : axis.values) {
+      ParseScenario(text, "scenario", {fmt::format("{}={}", axis.pointer, value)});
+    }
+    inner_.push_back(axis.pointer.starts_with("/arbitrator/"));
+  }
+  // The last axis of a kind varies fastest.
+  stride_.resize(axes_.size());
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;
+    stride_[i] = points;
+    points *= static_cast<std::int64_t>(axes_[i].values.size());
+  }
+}
+
+std::size_t SweepPlan::ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const {
+  const std::int64_t point = inner_[axis] ? row : unit / seeds_.count();
+  return static_cast<std::size_t>(point / stride_[axis]) % axes_[axis].values.size();
+}
+
+void SweepPlan::Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const {
+  scenario.seed = SeedOf(unit);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    fields_[i].Set(scenario, axes_[i].values[ValueIndex(i, unit, row)]);
+  }
+}
+
+std::vector<std::string_view> SweepPlan::ValuesOf(std::int64_t unit, std::int64_t row) const {
+  std::vector<std::string_view> values;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    values.push_back(axes_[i].values[ValueIndex(i, unit, row)]);
+  }
+  return values;
+}
+
+}  // namespace fogline

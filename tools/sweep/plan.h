@@ -1,0 +1,84 @@
+// What a sweep consists of: a grid over fields of a scenario and a range of seeds, in a defined
+// order.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenario/assignment.h"
+#include "scenario/scenario.h"
+
+namespace fogline {
+
+/// One field and the values that it takes, as they stand in a scenario file.
+struct Axis {
+  std::string pointer;
+  std::vector<std::string> values;
+};
+
+/// "/pointer=a,b,c", or "/pointer=first:last:count" for evenly spaced numbers.
+/// @throws InputError
+Axis ParseAxis(const std::string& text);
+
+/// First and last seed of "A:B", or of "A".
+struct SeedRange {
+  std::int64_t first = 1;
+  std::int64_t last = 1;
+  std::int64_t count() const { return last - first + 1; }
+};
+/// @throws InputError
+SeedRange ParseSeeds(const std::string& text);
+
+/// Part `index` of `count` equal parts, counted from 1.
+struct Shard {
+  std::int64_t index = 1;
+  std::int64_t count = 1;
+};
+/// "I/N". @throws InputError
+Shard ParseShard(const std::string& text);
+
+/// The rows of a sweep. Axes of the arbitrator do not change a run without traded control, so the
+/// rows that differ only in these (and are next to each other) share their paired run: they are one
+/// unit of work. Rows are ordered by the other axes as given, then by seed, then by the
+/// arbitrator's axes.
+class SweepPlan {
+ public:
+  /// @throws InputError, ScenarioError if a value is none that its field can have
+  SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds);
+
+  std::int64_t units() const { return outer_points_ * seeds_.count(); }
+  std::int64_t rows_per_unit() const { return inner_points_; }
+  std::int64_t rows() const { return units() * rows_per_unit(); }
+  /// First unit of a shard; that of shard count + 1 is units().
+  std::int64_t ShardBegin(const Shard& shard) const {
+    return units() * (shard.index - 1) / shard.count;
+  }
+  std::int64_t ShardEnd(const Shard& shard) const { return units() * shard.index / shard.count; }
+
+  /// Sets the scenario of a unit's row, 0 to rows_per_unit() - 1. `scenario` is a copy of base()
+  /// that may have been that of any other row before.
+  void Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const;
+  /// The value of every axis in a row, in the order in which the axes were given.
+  std::vector<std::string_view> ValuesOf(std::int64_t unit, std::int64_t row) const;
+  std::int64_t SeedOf(std::int64_t unit) const { return seeds_.first + unit % seeds_.count(); }
+
+  const Scenario& base() const { return base_; }
+  const std::vector<Axis>& axes() const { return axes_; }
+  const SeedRange& seeds() const { return seeds_; }
+
+ private:
+  /// Place of an axis' value in a row.
+  std::size_t ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const;
+
+  Scenario base_;
+  std::vector<Axis> axes_;
+  SeedRange seeds_;
+  std::vector<FieldAssignment> fields_;  // of each axis
+  std::vector<bool> inner_;              // of each axis: the arbitrator's
+  std::vector<std::int64_t> stride_;     // of each axis among those of its kind
+  std::int64_t outer_points_ = 1;
+  std::int64_t inner_points_ = 1;
+};
+
+}  // namespace fogline
