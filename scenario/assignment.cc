@@ -44,17 +44,19 @@ class Assigner {
       if (ChoiceNames<Enum>::kNames[i] == value_.text) Done(field = static_cast<Enum>(i));
     }
   }
-  template <class Section>
-  void Section(std::string_view name, Section& section, std::string_view) {
+  template <class S>
+  void Section(std::string_view name, S& section, std::string_view) {
     if (path_.size() < 2 || path_.front() != name) return;
     Assigner inner(path_.subspan(1), value_);
-    Section::Fields(section, inner);
+    S::Fields(section, inner);
     done_ = done_ || inner.done_;
   }
   void Text(std::string_view, std::string&, std::string_view) {}
   void Numbers(std::string_view, std::vector<double>&, const NumberSpec&, const ListSpec&) {}
   template <class Item>
   void List(std::string_view, std::vector<Item>&, const ListSpec&) {}
+
+  void Needs(const NeedSpec&) {}
 
  private:
   bool Here(std::string_view name) const { return path_.size() == 1 && path_.front() == name; }

@@ -101,9 +101,12 @@ SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, c
                     "--force replaces it",
                     file.string()));
   }
-  if (there && !force) return Resume();
-  WriteWhole(DescriptionFile(file), description);
-  Start();
+  if (there && !force) {
+    Resume();
+  } else {
+    WriteWhole(DescriptionFile(file), description);
+    Start();
+  }
 }
 
 void SweepFile::Start() {
