@@ -76,14 +76,15 @@ function wholeSpan() {
   return first < last ? [first, last] : [0, 1];
 }
 
-/** When the follower's gap is furthest below its safe distance; else the middle of the fog. */
+/** When, in the fog, the follower's gap is furthest below its safe distance; else its middle. */
 function tellingTime() {
   let worst = 0;
   let time = null;
-  for (const {columns} of report.runs) {
-    columns.follower_gap_m.forEach((gap, i) => {
-      const shortfall = gap === null ? 0 : columns.follower_safe_distance_m[i] - gap;
-      if (shortfall > worst) [worst, time] = [shortfall, columns.time_s[i]];
+  for (const {columns, fog} of report.runs) {
+    columns.time_s.forEach((now, i) => {
+      if (!fog.some(([from, to]) => from <= now && now < to)) return;
+      const shortfall = columns.follower_safe_distance_m[i] - columns.follower_gap_m[i];
+      if (shortfall > worst) [worst, time] = [shortfall, now];
     });
   }
   const fog = report.runs.flatMap((run) => run.fog)[0];

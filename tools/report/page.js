@@ -102,7 +102,9 @@ function build() {
   page.charts = [];
   page.legends = [];
   page.panels.clear();
-  document.querySelector(".figures").classList.toggle("apart", state.apart);
+  const {classList} = document.querySelector(".figures");
+  classList.toggle("apart", state.apart);
+  classList.toggle("overlaid", isOverlaid());
   readTheme();
   report.figures.forEach((figure, index) => buildFigure(figure, index + 1));
   showTime();

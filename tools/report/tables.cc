@@ -95,8 +95,8 @@ std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].si_pct) {
       Put(rows,
-          {"safety improvement", *runs[i].si_pct, "%",
-           "SI: less compromised safety in the fog than in the paired run without traded control"},
+          {"si_pct", *runs[i].si_pct, "%",
+           "safety improvement over the paired run without traded control"},
           i, runs.size());
     }
   }
@@ -104,6 +104,32 @@ std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
     for (const ReportMeasure& measure : runs[i].measures) Put(rows, measure, i, runs.size());
   }
   return rows;
+}
+
+/// "m/s2" as "m/s²".
+std::string UnitText(const std::string& unit) {
+  std::string text;
+  for (const char c : unit) {
+    if (c == '2') {
+      text += "²";
+    } else if (c == '3') {
+      text += "³";
+    } else {
+      text += c;
+    }
+  }
+  return EscapeHtml(text);
+}
+
+/// What a measure is, its unit, and its name in JSON and CSV.
+std::string HeadOf(const ReportMeasure& measure) {
+  const bool described = !measure.description.empty();
+  std::string head = EscapeHtml(described ? measure.description : measure.name);
+  if (!measure.unit.empty()) {
+    head += fmt::format(" <span class=\"unit\">{}</span>", UnitText(measure.unit));
+  }
+  if (described) head += fmt::format("<small>{}</small>", EscapeHtml(measure.name));
+  return head;
 }
 
 /// The scenario's fields by JSON pointer; empty if the text is no JSON.
@@ -144,12 +170,7 @@ std::string ThresholdTable(const ReportTable& table) {
 std::string MeasureTable(std::span<const ReportRun> runs) {
   std::string body;
   for (const MeasureRow& row : MeasureRows(runs)) {
-    const std::string unit =
-        row.measure.unit.empty()
-            ? ""
-            : fmt::format(" <span class=\"unit\">{}</span>", EscapeHtml(row.measure.unit));
-    body += fmt::format("<tr><th scope=\"row\">{}{}<small>{}</small></th>",
-                        EscapeHtml(row.measure.name), unit, EscapeHtml(row.measure.description));
+    body += fmt::format("<tr><th scope=\"row\">{}</th>", HeadOf(row.measure));
     const int decimals = DecimalsFor(row.values);
     for (const std::optional<double>& value : row.values) {
       body += fmt::format("<td>{}</td>", DataElement(value.value_or(kNone), decimals));

@@ -119,11 +119,19 @@ TEST(MakeReportTest, ShowsEveryMeasureOfEveryRunSideBySide) {
               HasSubstr("<data value=\"2.5\">2.5000</data></td><td><data value=\"3.5\">3.5000"));
 }
 
+TEST(MakeReportTest, NamesAMeasureByItsDescriptionFirstAndTypesetsItsUnit) {
+  ReportRun run = ExampleRun({.steps = 3});
+  run.measures = {{"max_abs_jerk_mps3", 2.0, "m/s3", "largest jerk of the host"}};
+  EXPECT_THAT(MakeReport({&run, 1}, {}),
+              HasSubstr("largest jerk of the host <span class=\"unit\">m/s³</span>"
+                        "<small>max_abs_jerk_mps3</small>"));
+}
+
 TEST(MakeReportTest, KeepsAMeasureThatARunHasTwice) {
   ReportRun run = ExampleRun({.steps = 3});
   const double none = std::numeric_limits<double>::quiet_NaN();
   run.measures = {{"twice", none, "m", ""}, {"twice", 2.0, "m", ""}};
-  EXPECT_EQ(Count(SectionOf(MakeReport({&run, 1}, {}), "measures"), ">twice "), 2U);
+  EXPECT_EQ(Count(SectionOf(MakeReport({&run, 1}, {}), "measures"), ">twice <span"), 2U);
 }
 
 TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
