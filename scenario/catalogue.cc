@@ -1,6 +1,7 @@
 #include "scenario/catalogue.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -97,16 +98,36 @@ std::vector<FieldInfo> BuildCatalogue() {
   return infos;
 }
 
-// Each segment of digits becomes *.
+// The segments of a pointer, each with its slash.
+std::vector<std::string_view> Segments(std::string_view pointer) {
+  std::vector<std::string_view> segments;
+  while (!pointer.empty()) {
+    segments.push_back(pointer.substr(0, pointer.find('/', 1)));
+    pointer.remove_prefix(segments.back().size());
+  }
+  return segments;
+}
+
+bool IsIndex(std::string_view segment) {
+  return segment.size() > 1 && segment.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+// Each index becomes *.
 std::string WithoutIndices(std::string_view pointer) {
   std::string out;
-  while (!pointer.empty()) {
-    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
-    const std::string_view segment = pointer.substr(0, end);
-    const bool index = segment.size() > 1 && segment[0] == '/' &&
-                       segment.find_first_not_of("0123456789", 1) == std::string_view::npos;
-    out += index ? "/*" : segment;
-    pointer.remove_prefix(end);
+  for (const std::string_view segment : Segments(pointer)) out += IsIndex(segment) ? "/*" : segment;
+  return out;
+}
+
+// Each * becomes the index that `pointer` has at its place.
+std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
+  const std::vector<std::string_view> segments = Segments(pointer);
+  std::string out;
+  std::size_t depth = 0;
+  for (const std::string_view segment : Segments(pattern)) {
+    const bool index = segment == "/*" && depth < segments.size() && IsIndex(segments[depth]);
+    out += index ? segments[depth] : segment;
+    ++depth;
   }
   return out;
 }
@@ -136,7 +157,7 @@ std::string NearestKnownPointer(std::string_view pointer) {
 std::optional<std::string_view> FindName(std::string_view name) {
   for (const FieldInfo& info : Catalogue()) {
     const std::string_view pointer = info.pointer;
-    if (pointer.find('*') == std::string_view::npos &&
+    if (pointer != "/" && pointer.find('*') == std::string_view::npos &&
         pointer.substr(pointer.rfind('/') + 1) == name) {
       return pointer;
     }
@@ -144,11 +165,14 @@ std::optional<std::string_view> FindName(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<std::string_view> SuggestPointer(std::string_view pointer) {
+std::optional<std::string> SuggestPointer(std::string_view pointer) {
   std::vector<std::string_view> pointers;
   for (const FieldInfo& info : Catalogue()) pointers.emplace_back(info.pointer);
-  if (const auto alike = Nearest(WithoutIndices(pointer), pointers)) return alike;
-  return FindName(pointer.substr(pointer.rfind('/') + 1));
+  if (const auto alike = Nearest(WithoutIndices(pointer), pointers)) {
+    return WithIndicesOf(pointer, *alike);
+  }
+  const auto same = FindName(pointer.substr(pointer.rfind('/') + 1));
+  return same ? std::optional<std::string>(*same) : std::nullopt;
 }
 
 }  // namespace fogline

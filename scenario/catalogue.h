@@ -33,8 +33,8 @@ std::string NearestKnownPointer(std::string_view pointer);
 /// The first field of this name in any section, lists' items aside.
 std::optional<std::string_view> FindName(std::string_view name);
 
-/// The field that an unknown pointer may mean: one that is spelt alike, or one of the same name in
-/// another section.
-std::optional<std::string_view> SuggestPointer(std::string_view pointer);
+/// The field that an unknown pointer may mean: one that is spelt alike (with the same indices), or
+/// one of the same name in another section.
+std::optional<std::string> SuggestPointer(std::string_view pointer);
 
 }  // namespace fogline

@@ -1,26 +1,25 @@
 // The scenarios of the repository as `fogline check` sees them: the shipped ones and scenario/bad.
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
-
-#include <sys/wait.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"
+#include "tests/support/command.h"
 
 namespace fogline {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = FOGLINE_SOURCE_DIR;
-const fs::path kProgram = fs::path(FOGLINE_BINARY_DIR) / "bin/fogline";
+using test::Outcome;
+using test::SourceDirectory;
 
 std::string FileText(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -28,34 +27,31 @@ std::string FileText(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-struct Outcome {
-  int exit_code;
-  std::string output;
-};
-
-// Runs `fogline check` in the repository's folder; `redirection` says what of it to catch.
-Outcome RunCheck(const std::string& arguments, const std::string& redirection) {
-  const std::string command = "cd '" + kSource.string() + "' && '" + kProgram.string() +
-                              "' check " + arguments + " " + redirection;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::string output;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
-  return {.exit_code = WEXITSTATUS(pclose(pipe)), .output = output};
+// Runs `fogline check` in the repository's folder.
+Outcome RunCheck(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{test::Program("fogline"), "check"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return test::RunCommand(command);
 }
 
 // Names of the files in scenario/bad that end in `extension`, without it.
 std::vector<std::string> BadNames(const std::string& extension) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(kSource / "scenario/bad")) {
+  for (const auto& entry : fs::directory_iterator(SourceDirectory() / "scenario/bad")) {
     if (entry.path().extension() == extension) names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
+// Runs in the repository's folder, so that messages have the file names of the expected texts.
 class BadScenarioTest : public testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override { fs::current_path(kSource); }
+  BadScenarioTest() { fs::current_path(SourceDirectory()); }
+  ~BadScenarioTest() override { fs::current_path(outside_); }
+
+ private:
+  fs::path outside_ = fs::current_path();
 };
 
 TEST_P(BadScenarioTest, IsToldWhatIsWrong) {
@@ -75,11 +71,10 @@ INSTANTIATE_TEST_SUITE_P(Files, BadScenarioTest, testing::ValuesIn(BadNames(".js
 TEST(BadScenariosTest, AreThereForEveryRule) {
   EXPECT_GE(BadNames(".json").size(), 25U);
   EXPECT_EQ(BadNames(".json"), BadNames(".expected"));
-  fs::current_path(kSource);
   std::vector<std::string> rules;
   for (const std::string& name : BadNames(".json")) {
     try {
-      LoadScenario("scenario/bad/" + name + ".json");
+      LoadScenario(SourceDirectory() / "scenario/bad" / (name + ".json"));
     } catch (const ScenarioError& error) {
       for (const Mistake& mistake : error.mistakes()) rules.push_back(mistake.rule);
     }
@@ -91,45 +86,56 @@ TEST(BadScenariosTest, AreThereForEveryRule) {
 }
 
 TEST(CheckTest, ExitsWith2AndPrintsTheExpectedTextForABadFile) {
-  const Outcome outcome = RunCheck("scenario/bad/several_kinds_at_once.json", "2>&1 >/dev/null");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.output, FileText(kSource / "scenario/bad/several_kinds_at_once.expected"));
+  const Outcome outcome = RunCheck({"scenario/bad/several_kinds_at_once.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err,
+            FileText(SourceDirectory() / "scenario/bad/several_kinds_at_once.expected"));
 }
 
 TEST(CheckTest, SaysOkForTheShippedScenarios) {
-  const Outcome outcome = RunCheck("scenario/paper.json scenario/dense_fog.json", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.output, "scenario/paper.json: ok\nscenario/dense_fog.json: ok\n");
+  const Outcome outcome = RunCheck({"scenario/paper.json", "scenario/dense_fog.json"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "scenario/paper.json: ok\nscenario/dense_fog.json: ok\n");
+  EXPECT_EQ(outcome.err, "");
 }
 
 TEST(CheckTest, ChecksTheRemainingFilesAfterABadOne) {
-  const Outcome outcome =
-      RunCheck("scenario/bad/root_is_list.json scenario/paper.json", "2>/dev/null");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.output, "scenario/paper.json: ok\n");
+  const Outcome outcome = RunCheck({"scenario/bad/root_is_list.json", "scenario/paper.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "scenario/paper.json: ok\n");
 }
 
 TEST(CheckTest, PrintsTheSchemaThatIsCommitted) {
-  const Outcome outcome = RunCheck("--schema", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.output, FileText(kSource / "scenario/scenario.schema.json"));
+  const Outcome outcome = RunCheck({"--schema"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, FileText(SourceDirectory() / "scenario/scenario.schema.json"));
 }
 
 TEST(CheckTest, PrintsTheEffectiveScenario) {
   const Outcome outcome =
-      RunCheck("--print --set /arbitrator/threshold=0.8 scenario/paper.json", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 0);
+      RunCheck({"--print", "--set", "/arbitrator/threshold=0.8", "scenario/paper.json"});
+  EXPECT_EQ(outcome.code, 0);
   const Scenario scenario =
-      LoadScenario(kSource / "scenario/paper.json", {"/arbitrator/threshold=0.8"});
-  EXPECT_EQ(outcome.output, PrintScenario(scenario));
+      LoadScenario(SourceDirectory() / "scenario/paper.json", {"/arbitrator/threshold=0.8"});
+  EXPECT_EQ(outcome.out, PrintScenario(scenario));
   EXPECT_EQ(scenario.arbitrator.threshold, 0.8);
+}
+
+TEST(CheckTest, NamesAnOverrideThatIsWrong) {
+  const Outcome outcome =
+      RunCheck({"scenario/paper.json", "--set", "/fog/bias_m=-1", "--set", "/steps=10"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "--set /fog/bias_m=-1: error: /fog/bias_m: -1 is outside [0, 100] m\n"
+            "1 error; what is allowed: fogline check --explain /fog/bias_m\n");
 }
 
 TEST(CheckTest, PrintsMistakesAsJson) {
   const Outcome outcome =
-      RunCheck("--json scenario/paper.json scenario/bad/range_number_above.json", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.output,
+      RunCheck({"--json", "scenario/paper.json", "scenario/bad/range_number_above.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out,
             "[\n"
             "  {\n"
             "    \"file\": \"scenario/bad/range_number_above.json\",\n"
@@ -140,32 +146,34 @@ TEST(CheckTest, PrintsMistakesAsJson) {
             "    \"message\": \"320 is outside [0, 70] m/s\"\n"
             "  }\n"
             "]\n");
-  EXPECT_EQ(RunCheck("--json scenario/paper.json", "2>&1").output, "[]\n");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(RunCheck({"--json", "scenario/paper.json"}).out, "[]\n");
 }
 
 TEST(CheckTest, ExplainsAField) {
-  const Outcome outcome = RunCheck("--explain /fog/visibility_m", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.output, ExplainField("/fog/visibility_m"));
-  EXPECT_EQ(RunCheck("--explain /fog/no", "2>&1").exit_code, 2);
+  const Outcome outcome = RunCheck({"--explain", "/fog/visibility_m"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, ExplainField("/fog/visibility_m"));
+  EXPECT_EQ(RunCheck({"--explain", "/fog/no"}).code, 2);
 }
 
 TEST(CheckTest, RefusesACommandLineWithoutSense) {
-  EXPECT_EQ(RunCheck("", "2>&1").exit_code, 2);
-  EXPECT_EQ(RunCheck("--schema --print scenario/paper.json", "2>&1").exit_code, 2);
-  EXPECT_EQ(RunCheck("--print scenario/paper.json scenario/dense_fog.json", "2>&1").exit_code, 2);
+  EXPECT_EQ(RunCheck({}).code, 2);
+  EXPECT_EQ(RunCheck({"--schema", "--print", "scenario/paper.json"}).code, 2);
+  EXPECT_EQ(RunCheck({"--print", "scenario/paper.json", "scenario/dense_fog.json"}).code, 2);
 }
 
 TEST(CheckTest, HelpsWithin80ColumnsAndWithExamples) {
-  const Outcome outcome = RunCheck("--help", "2>&1");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.output, testing::HasSubstr("Examples:\n"));
-  EXPECT_THAT(outcome.output, testing::Not(testing::ContainsRegex("[^\n]{81}")));
+  const Outcome outcome = RunCheck({"--help"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, testing::HasSubstr("Examples:\n"));
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
 }
 
 TEST(RecordedLeadScenarioTest, HasTheRecordedSpeedAtEveryStep) {
-  const fs::path file = kSource / "scenario/recorded_lead.json";
-  const fs::path data = kSource.parent_path() / "shared/data/acc_platoon_a.csv";
+  const fs::path file = SourceDirectory() / "scenario/recorded_lead.json";
+  const fs::path data = SourceDirectory().parent_path() / "shared/data/acc_platoon_a.csv";
   if (!fs::exists(data)) GTEST_SKIP() << "the recording is not there: " << data;
   const Scenario scenario = LoadScenario(file);
   const std::vector<double>& speeds_mps = scenario.lead.recorded.speeds_mps;

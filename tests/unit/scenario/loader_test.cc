@@ -85,6 +85,11 @@ TEST(LoaderTest, ReportsAllMistakesInTheOrderOfTheFile) {
                                           "3:28 range /version"));
 }
 
+TEST(LoaderTest, RefusesAnEmptyKeyWithoutASuggestion) {
+  EXPECT_EQ(MistakesOf(R"({"version": 1, "measures": {"": 1}})")[0].message,
+            "unknown key; known here are \"safety_floor_m\"");
+}
+
 TEST(LoaderTest, PrintsTwentyMistakesAndTheNumberOfTheOthers) {
   std::string text = R"({"version": 1, "lead": {"recorded": {"speeds_mps": [0)";
   for (int i = 0; i < 25; ++i) text += ",\n-1";

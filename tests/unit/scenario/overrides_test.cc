@@ -74,6 +74,8 @@ TEST(OverrideTest, SuggestsTheFieldThatIsMeant) {
   EXPECT_EQ(ErrorOf("/visibility_m=50"),
             "--set /visibility_m=50: error: /visibility_m: no such field; did you mean "
             "\"/fog/visibility_m\"?");
+  EXPECT_THAT(ErrorOf("/lead/breakpoints/1/sped_mps=8"),
+              testing::HasSubstr("did you mean \"/lead/breakpoints/1/speed_mps\"?"));
   EXPECT_EQ(ErrorOf("fog.model=beam"),
             "--set fog.model=beam: error: must be /pointer=value, such as "
             "/arbitrator/threshold=0.8; did you mean \"/fog/model\"?");

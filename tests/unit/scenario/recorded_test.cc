@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"
+#include "tests/support/command.h"
 
 namespace fogline {
 namespace {
@@ -20,16 +21,13 @@ using testing::HasSubstr;
 // A folder with a scenario of a recorded leader (5 steps of 0.5 s from 10 s on) and its CSV file.
 class RecordedLeadTest : public testing::Test {
  protected:
-  RecordedLeadTest()
-      : folder_(std::filesystem::path(testing::TempDir()) /
-                testing::UnitTest::GetInstance()->current_test_info()->name()) {
+  RecordedLeadTest() : folder_(scratch_.path()) {
     std::filesystem::create_directories(folder_ / "data");
     Write("lead.json", R"({"version": 1, "steps": 5, "step_s": 0.5,
  "lead": {"profile": "recorded",
   "recorded": {"file": "data/lead.csv", "time_column": "t",
    "speed_column": "v", "start_s": 10}}})");
   }
-  ~RecordedLeadTest() override { std::filesystem::remove_all(folder_); }
 
   void Write(std::string_view name, std::string_view text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
@@ -54,7 +52,8 @@ class RecordedLeadTest : public testing::Test {
     }
   }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  const std::filesystem::path folder_;
 };
 
 TEST_F(RecordedLeadTest, HasOneSpeedForEachStep) {
