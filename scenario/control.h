@@ -28,6 +28,7 @@ struct AccSection {
   double min_gap_weight = 1000.0;
   std::int64_t max_iterations = 1000;
   double fallback_deceleration_mps2 = 2.0;
+  double max_track_std_m = 10.0;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
@@ -114,6 +115,13 @@ struct AccSection {
          .unit = "m/s2",
          .doc = "Braking when there is no track or no optimum, approached at max_jerk_mps3; "
                 "min_acceleration_mps2 limits it."});
+    visit.Number("max_track_std_m", self.max_track_std_m,
+                 {.min = 0.01,
+                  .max = 1e6,
+                  .unit = "m",
+                  .doc = "A track whose distance has a larger standard deviation counts as none. A "
+                         "following car sees its distance itself and has no track.",
+                  .source = "a third of the gap at 20 m/s"});
   }
 };
 

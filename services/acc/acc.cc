@@ -2,7 +2,9 @@
 
 namespace fogline {
 
-Acc::Acc(const Scenario& scenario) : controller_(scenario.acc, scenario.step_s) {}
+Acc::Acc(const Scenario& scenario)
+    : controller_(scenario.acc, scenario.step_s),
+      max_track_variance_m2_(scenario.acc.max_track_std_m * scenario.acc.max_track_std_m) {}
 
 const accel_command_t& Acc::Step(const ego_t& ego, const track_t& track) {
   const AccController::Output output = controller_.Step({
@@ -10,7 +12,7 @@ const accel_command_t& Acc::Step(const ego_t& ego, const track_t& track) {
       .relative_speed_mps = track.state[1],
       .speed_mps = ego.speed_mps,
       .acceleration_mps2 = ego.acceleration_mps2,
-      .has_target = track.valid != 0,
+      .has_target = track.valid != 0 && track.covariance[0][0] <= max_track_variance_m2_,
   });
   out_.header = ego.header;
   out_.acceleration_mps2 = output.acceleration_mps2;

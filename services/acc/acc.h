@@ -11,6 +11,7 @@ namespace fogline {
 
 /// Offers the automation's acceleration a_A in every step, whoever drives. Sees the host's own
 /// odometry and the track of the preceding car, never the truth; decides nothing about authority.
+/// A track that has become too uncertain, because the sensors have been silent, counts as none.
 class Acc {
  public:
   /// @throws InputError if the weights of scenario.acc make no well-conditioned problem.
@@ -20,6 +21,7 @@ class Acc {
 
  private:
   AccController controller_;
+  double max_track_variance_m2_;
   accel_command_t out_{};
 };
 

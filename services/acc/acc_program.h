@@ -38,8 +38,8 @@ struct AccSituation {
 /// allow it) at the fastest allowed change of u. It meets the first three limits whatever the
 /// situation, and s >= 0 can grow until the last two are met, so the program always has a solution.
 /// A car that is faster than v_max, because its driver was, is thereby brought back no later than
-/// by the fall-back plan. s, in m, is the shortfall of the gap that the plan allows itself; less and
-/// less of it is forgiven towards the end of the horizon, or a gap that is too small now would
+/// by the fall-back plan. s, in m, is the shortfall of the gap that the plan allows itself; less
+/// and less of it is forgiven towards the end of the horizon, or a gap that is too small now would
 /// excuse one that stays too small. s needs no sign, as no s < 0 is ever cheaper than 0.
 class AccProgram {
  public:

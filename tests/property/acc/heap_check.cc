@@ -22,7 +22,8 @@ extern "C" void* malloc(std::size_t size) {
 namespace fogline {
 namespace {
 
-// Allocations during random steps with and without target, calm and hopeless. Counts the solver's steps.
+// Allocations during random steps with and without target, calm and hopeless. Counts the steps in
+// which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
   AccController acc(AccSection{}, 0.1);

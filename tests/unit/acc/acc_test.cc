@@ -61,5 +61,15 @@ TEST(AccTest, FallsBackWithoutATrack) {
   EXPECT_EQ(command.safe_distance_m, 33);
 }
 
+TEST(AccTest, FallsBackOnceTheTrackIsTooUncertain) {
+  Scenario scenario;
+  scenario.acc.max_track_std_m = 5;
+  track_t track = Track(33, 0);
+  track.covariance[0][0] = 24.9;
+  EXPECT_EQ(Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::UNCONSTRAINED);
+  track.covariance[0][0] = 25.1;
+  EXPECT_EQ(Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::FALLBACK);
+}
+
 }  // namespace
 }  // namespace fogline
