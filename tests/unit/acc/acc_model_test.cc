@@ -32,7 +32,7 @@ DiscreteAccModel ClosedForm(const AccSection& section, double h) {
 
 TEST(AccModelTest, HasTheMatricesOfThePaper) {
   const AccModel model = MakeAccModel(Section(1.5, 0.5, 0.8));
-  EXPECT_EQ(model.a, (Eigen::Matrix3d() << 0, 1, -1.5, 0, 0, -1, 0, 0, -2).finished());
+  EXPECT_EQ(model.a, (Eigen::Matrix3d{{0, 1, -1.5}, {0, 0, -1}, {0, 0, -2}}));
   EXPECT_EQ(model.b, Eigen::Vector3d(0, 0, -1.6));
   EXPECT_EQ(model.c, Eigen::RowVector3d(0, 0, 1));
 }

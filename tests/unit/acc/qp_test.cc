@@ -66,7 +66,7 @@ TEST_F(PlaneTest, ProjectsOntoALine) {
 
 TEST_F(PlaneTest, DropsALimitThatIsNoLongerActiveAtTheOptimum) {
   // x + 100 y <= 50 is broken most, but x <= 0 and y <= 0.1 alone decide.
-  const MatrixXd constraints = (MatrixXd(3, 2) << 1, 100, 1, 0, 0, 1).finished();
+  const MatrixXd constraints{{1, 100}, {1, 0}, {0, 1}};
   const auto result =
       Solve(constraints, Vector({-kInfinity, -kInfinity, -kInfinity}), Vector({50, 0, 0.1}));
   EXPECT_EQ(result.status, Status::kOptimal);
@@ -76,7 +76,7 @@ TEST_F(PlaneTest, DropsALimitThatIsNoLongerActiveAtTheOptimum) {
 }
 
 TEST_F(PlaneTest, ToleratesLimitsThatRepeatEachOther) {
-  const MatrixXd constraints = (MatrixXd(4, 2) << 1, 0, 1, 0, 2, 0, 0, 1).finished();
+  const MatrixXd constraints{{1, 0}, {1, 0}, {2, 0}, {0, 1}};
   const auto result = Solve(constraints, Vector({-9, -9, -9, -9}), Vector({1, 1, 2, 9}));
   EXPECT_EQ(result.status, Status::kOptimal);
   EXPECT_TRUE(x_.isApprox(Vector({1, 2}), 1e-15));
@@ -84,7 +84,7 @@ TEST_F(PlaneTest, ToleratesLimitsThatRepeatEachOther) {
 
 TEST_F(PlaneTest, ToleratesMoreActiveLimitsThanVariables) {
   // Five lines through the origin, all of them active there.
-  const MatrixXd constraints = (MatrixXd(5, 2) << 1, 0, 0, 1, 1, 1, 1, 2, 2, 1).finished();
+  const MatrixXd constraints{{1, 0}, {0, 1}, {1, 1}, {1, 2}, {2, 1}};
   const auto result = Solve(constraints, VectorXd::Constant(5, -9), VectorXd::Zero(5));
   EXPECT_EQ(result.status, Status::kOptimal);
   EXPECT_LE(x_.norm(), 1e-14);
@@ -92,7 +92,7 @@ TEST_F(PlaneTest, ToleratesMoreActiveLimitsThanVariables) {
 }
 
 TEST_F(PlaneTest, ReportsContradictoryLimits) {
-  const MatrixXd constraints = (MatrixXd(3, 2) << 1, 0, 0, 1, 1, 1).finished();
+  const MatrixXd constraints{{1, 0}, {0, 1}, {1, 1}};
   // x <= 1 and y <= 1, but x + y >= 3
   const auto result =
       Solve(constraints, Vector({-kInfinity, -kInfinity, 3}), Vector({1, 1, kInfinity}));
@@ -111,8 +111,8 @@ TEST_F(PlaneTest, GivesUpAtTheIterationLimit) {
 }
 
 TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
-  const MatrixXd hessian = (MatrixXd(3, 3) << 4, 1, 0, 1, 3, 1, 0, 1, 2).finished();
-  const MatrixXd constraints = (MatrixXd(4, 3) << 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, -1, 1).finished();
+  const MatrixXd hessian{{4, 1, 0}, {1, 3, 1}, {0, 1, 2}};
+  const MatrixXd constraints{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, -1, 1}};
   const VectorXd lower = VectorXd::Constant(4, -1);
   const VectorXd upper = VectorXd::Constant(4, 1);
   QpSolver warm(hessian, constraints, {});
@@ -157,16 +157,16 @@ TEST(QpSolverTest, SolvesAFeasibleProblemAfterAnInfeasibleOne) {
 
 TEST(QpSolverTest, RefusesAHessianWithoutCurvature) {
   const MatrixXd constraints = MatrixXd::Identity(2, 2);
-  const MatrixXd flat = (MatrixXd(2, 2) << 1, 1, 1, 1).finished();
-  const MatrixXd saddle = (MatrixXd(2, 2) << 1, 0, 0, -1).finished();
+  const MatrixXd flat{{1, 1}, {1, 1}};
+  const MatrixXd saddle{{1, 0}, {0, -1}};
   EXPECT_THROW(QpSolver(flat, constraints, {}), std::domain_error);
   EXPECT_THROW(QpSolver(saddle, constraints, {}), std::domain_error);
 }
 
 TEST(QpSolverTest, SolvesWithTheHessianAlone) {
-  const MatrixXd hessian = (MatrixXd(2, 2) << 4, 1, 1, 3).finished();
+  const MatrixXd hessian{{4, 1}, {1, 3}};
   const QpSolver solver(hessian, MatrixXd::Identity(2, 2), {});
-  const MatrixXd columns = (MatrixXd(2, 2) << 1, 2, 3, 4).finished();
+  const MatrixXd columns{{1, 2}, {3, 4}};
   EXPECT_TRUE((hessian * solver.SolveHessian(columns)).isApprox(columns, 1e-14));
 }
 
