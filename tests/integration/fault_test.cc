@@ -71,7 +71,7 @@ TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAnd
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryRole, KilledRoleTest, testing::ValuesIn(kRoles),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& role) { return std::string(role.param.name); });
 
 TEST(FaultTest, NamesAProcessThatHangs) {
   PacedRun paced;
