@@ -66,7 +66,7 @@ TEST_P(BadScenarioTest, IsToldWhatIsWrong) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadScenarioTest, testing::ValuesIn(BadNames(".json")),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& file) { return file.param; });
 
 TEST(BadScenariosTest, AreThereForEveryRule) {
   EXPECT_GE(BadNames(".json").size(), 25U);
