@@ -1,0 +1,68 @@
+// A leader recorded on a road: the shipped scenario names a file that is not part of this
+// repository.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+class RecordedLeadTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto file = SourceDirectory() / "../shared/data/acc_platoon_a.csv";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded driving at " << file;
+  }
+
+  /// Runs the scenario to its end and returns its measures.
+  static nlohmann::json Run(const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline"), "run", "scenario/recorded_lead.json",
+                                     "--json", "--quiet"};
+    command.insert(command.end(), more.begin(), more.end());
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto result = nlohmann::json::parse(outcome.out, nullptr, false);
+    EXPECT_EQ(result["steps"], 7000);
+    return result["metrics"];
+  }
+
+  const std::vector<std::string> dense_fog_{
+      "--set", "/fog/model=beam",     "--set", "/fog/start_s=100",
+      "--set", "/fog/duration_s=100", "--set", "/fog/visibility_m=60"};
+};
+
+TEST_F(RecordedLeadTest, IsFollowedFor700SecondsInClearAirWithoutACollision) {
+  const ScratchFolder folder;
+  const nlohmann::json metrics = Run({"--transport", "udpm", "--log", folder.File("clear.lcm")});
+  EXPECT_EQ(metrics["collision"], 0);
+  EXPECT_GT(metrics["min_host_gap_m"], 2.0);
+  EXPECT_GT(metrics["min_follower_gap_m"], 2.0);
+}
+
+TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
+  // Fog from 300 s to 400 s of the recording, which begins at 200 s.
+  const ScratchFolder folder;
+  std::vector<std::string> more{"--transport", "udpm", "--log", folder.File("fog.lcm")};
+  more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
+  const nlohmann::json metrics = Run(more);
+  EXPECT_EQ(metrics["collision"], 0);
+  // The fog really deceived the LiDAR: by far more than the noise of the sensors.
+  EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
+}
+
+TEST_F(RecordedLeadTest, TravelsWithTheScenarioSoThatOtherMachinesNeedNoFile) {
+  // The 7,000 speeds go over LCM in parts; the digest is that of the run in this process.
+  const ScratchFolder folder;
+  const auto digest = [&](const std::string& transport) {
+    const Outcome outcome =
+        RunCommand({Program("fogline"), "run", "scenario/recorded_lead.json", "--json", "--quiet",
+                    "--transport", transport, "--log", folder.File(transport + ".lcm")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false)["digest"];
+  };
+  EXPECT_EQ(digest("memq"), digest("direct"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,84 @@
+// fogline graph: the roles and channels, from the table that everything is made from.
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/graph.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+std::string Consumers(const ChannelInfo& channel) {
+  if (channel.pace == Pace::kControl && channel.name != "STATUS") return "everyone";
+  std::string names;
+  for (const RoleInfo& info : kRoles) {
+    if (channel.to.Has(info.role))
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
+  }
+  if (channel.to.Has(Role::kRunner)) names += names.empty() ? "runner" : ", runner";
+  if (channel.pace == Pace::kStep) names += ", recorder";
+  return names;
+}
+
+std::string Producer(const ChannelInfo& channel) {
+  const bool many = channel.pace == Pace::kControl && channel.name != "RUN";
+  return many ? "everyone" : std::string(NameOf(channel.from));
+}
+
+template <class Visit>
+void ForEachChannel(Visit&& visit) {
+  std::size_t i = 0;
+  std::apply([&](const auto&... channel) { (visit(kChannels[i++], channel), ...); }, kGraph);
+}
+
+void PrintMarkdown() {
+  fmt::print("| role | program | does |\n|---|---|---|\n");
+  for (const RoleInfo& role : kRoles) {
+    fmt::print("| {0} | `fogline-{0}` | {1} |\n", role.name, role.purpose);
+  }
+  fmt::print("\n| channel | type | from | to | what |\n|---|---|---|---|---|\n");
+  ForEachChannel([](const ChannelInfo& info, const auto& channel) {
+    using M = typename std::decay_t<decltype(channel)>::Message;
+    fmt::print("| {} | `{}` | {} | {} | {} |\n", info.name, M::getTypeName(), Producer(info),
+               Consumers(info), info.what);
+  });
+}
+
+void PrintAsJson() {
+  nlohmann::ordered_json json{{"roles", nlohmann::ordered_json::array()},
+                              {"channels", nlohmann::ordered_json::array()}};
+  for (const RoleInfo& role : kRoles) {
+    json["roles"].push_back({{"name", role.name}, {"purpose", role.purpose}});
+  }
+  ForEachChannel([&json](const ChannelInfo& info, const auto& channel) {
+    using M = typename std::decay_t<decltype(channel)>::Message;
+    json["channels"].push_back({{"name", info.name},
+                                {"type", M::getTypeName()},
+                                {"from", Producer(info)},
+                                {"to", Consumers(info)},
+                                {"per_step", info.pace == Pace::kStep},
+                                {"logged", info.Logged()},
+                                {"what", info.what}});
+  });
+  PrintJson(json.dump(2));
+}
+
+}  // namespace
+
+void AddGraph(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("graph", "Print the roles and channels");
+  const auto json = std::make_shared<bool>(false);
+  verb->add_flag("--json", *json, "Print as JSON instead of Markdown tables");
+  verb->footer("Example:\n  fogline graph");
+  verb->callback([&action, json] {
+    action = [json] {
+      *json ? PrintAsJson() : PrintMarkdown();
+      return kDone;
+    };
+  });
+}
+
+}  // namespace fogline
