@@ -25,7 +25,15 @@ function(lcm_add_types target dir)
     DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/message_fields.cmake"
     COMMENT "Generating field visitors of the message types"
     VERBATIM)
-  add_custom_target(${target}_headers DEPENDS ${headers} "${fields}")
+  set(fingerprint "${out}/cpp/fogline/fingerprint.hpp")
+  add_custom_command(
+    OUTPUT "${fingerprint}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUT=${fingerprint}" "-DLCM_FILES=${lcm_files}"
+            -P "${PROJECT_SOURCE_DIR}/cmake/type_fingerprint.cmake"
+    DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/type_fingerprint.cmake"
+    COMMENT "Generating the fingerprint of the message types"
+    VERBATIM)
+  add_custom_target(${target}_headers DEPENDS ${headers} "${fields}" "${fingerprint}")
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
   target_include_directories(${target} SYSTEM INTERFACE "${out}/cpp")
