@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <csignal>
 #include <deque>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "services/recorder/run_log.h"
@@ -247,6 +249,36 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   // WHEN its own run stops, THEN it leaves
   say_run(7, run_t::STOP);
   EXPECT_EQ(driver.process().Wait(), 0);
+}
+
+TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
+  const Elsewhere elsewhere;
+  Bus bus(FreshMulticastUrl());
+  Heard<driver_command_t> commands(bus);
+  // GIVEN a run in real speed that is under way
+  ListeningDriver driver(elsewhere.BareDriver(), bus.url());
+  auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
+  command.insert(command.end(), {"--pace", "1", "--stall-timeout", "2"});
+  Background run(command);
+  EXPECT_TRUE(run.WaitForErr("waiting for the driver, which is started elsewhere\n"));
+  while (commands.WaitForNext().header.step < 10) {
+  }
+  // WHEN the driver is killed
+  driver.process().Signal(SIGKILL);
+  // THEN the run ends and says in one line who waited for him, in which step
+  EXPECT_EQ(run.Wait(std::chrono::seconds(10)), 3);
+  static const std::regex kLine(
+      "fogline: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
+      "\\(last heard: step ([0-9]+), [2-9]\\.[0-9] s ago\\)\n");
+  std::smatch line;
+  const std::string err = run.Err();
+  ASSERT_TRUE(std::regex_search(err, line, kLine)) << err;
+  EXPECT_EQ(std::stoi(line[1]), std::stoi(line[2]) + 1);
+  // AND keeps the steps that are complete
+  RunLogReader reader(elsewhere.File("run.lcm"));
+  while (reader.Next() != nullptr) {
+  }
+  EXPECT_EQ(reader.run().steps, std::stoi(line[1]));
 }
 
 TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
