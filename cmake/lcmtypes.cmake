@@ -25,10 +25,19 @@ function(lcm_add_types target dir)
     DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/message_fields.cmake"
     COMMENT "Generating field visitors of the message types"
     VERBATIM)
-  add_custom_target(${target}_headers DEPENDS ${headers} "${fields}")
+  set(fingerprint "${out}/cpp/fogline/fingerprint.hpp")
+  add_custom_command(
+    OUTPUT "${fingerprint}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUT=${fingerprint}" "-DLCM_FILES=${lcm_files}"
+            -P "${PROJECT_SOURCE_DIR}/cmake/type_fingerprint.cmake"
+    DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/type_fingerprint.cmake"
+    COMMENT "Generating the fingerprint of the message types"
+    VERBATIM)
+  add_custom_target(${target}_headers DEPENDS ${headers} "${fields}" "${fingerprint}")
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
-  target_include_directories(${target} SYSTEM INTERFACE "${out}/cpp")
+  target_include_directories(${target} SYSTEM INTERFACE "$<BUILD_INTERFACE:${out}/cpp>")
+  target_include_directories(${target} INTERFACE "$<INSTALL_INTERFACE:include>")
 
   find_program(JAVAC javac)
   find_program(JAR jar)
@@ -56,4 +65,5 @@ function(lcm_add_types target dir)
     COMMENT "Generating Python message types in ${out}/python")
 
   install(DIRECTORY "${out}/cpp/fogline" DESTINATION include)
+  install(FILES "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${target}.jar" DESTINATION share/java OPTIONAL)
 endfunction()

@@ -1,6 +1,7 @@
 #include "services/runtime/conductor.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <fmt/core.h>
@@ -151,8 +152,9 @@ void Conductor::Announce(std::int8_t phase, std::size_t part) {
 }
 
 std::string Conductor::Culprit(TimePoint now) const {
-  // From the world up along what each role waits for, to the first that does not say why.
-  const std::int64_t stuck = step() + 1;
+  // From the world up along what each role waits for, to the first that does not say why. The step
+  // is the one that the role in question works on: the world is a step ahead of the others.
+  std::int64_t stuck = step() + 1;
   Role waiting = Role::kWorld;
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
     const Member& consumer = member(waiting);
@@ -161,21 +163,25 @@ std::string Conductor::Culprit(TimePoint now) const {
                          NameOf(waiting), consumer.status ? consumer.status->header.step : -1,
                          Seconds(now - consumer.heard));
     }
+    stuck = consumer.status->header.step + 1;
     const ChannelInfo* channel = ChannelNamed(consumer.status->waiting_for);
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
     const bool passes_on = source.status && now - source.heard <= kSilent &&
                            !source.status->waiting_for.empty() && producer != waiting;
-    if (!passes_on) {
-      return fmt::format(
-          "step {}: {} waits for {} from {} (last heard: step {}, {:.1f} s ago)", stuck,
-          NameOf(waiting), channel != nullptr ? channel->name : "the log", NameOf(producer),
-          channel != nullptr ? consumer.status->last_heard_step
-                             : (source.status ? source.status->header.step : -1),
-          channel != nullptr ? static_cast<double>(consumer.status->last_heard_ms) * 1e-3
-                             : Seconds(now - source.heard));
+    if (passes_on) {
+      waiting = producer;
+      continue;
     }
-    waiting = producer;
+    // The consumer knows about the channel; about the log we know ourselves.
+    using Known = std::tuple<std::string_view, std::int64_t, Duration>;
+    const auto [what, last, age] =
+        channel != nullptr
+            ? Known(channel->name, consumer.status->last_heard_step,
+                    now - consumer.heard + milliseconds(consumer.status->last_heard_ms))
+            : Known("the log", source.status ? source.status->header.step : -1, now - source.heard);
+    return fmt::format("step {}: {} waits for {} from {} (last heard: step {}, {:.1f} s ago)",
+                       stuck, NameOf(waiting), what, NameOf(producer), last, Seconds(age));
   }
   return fmt::format("step {}: every role waits for another", stuck);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fogline/fields.hpp"
+#include "fogline/fingerprint.hpp"
 #include "services/graph.h"
 
 namespace fogline {
@@ -64,19 +65,6 @@ std::string_view FirstNonFiniteField(const M& message) {
     }
   });
   return found;
-}
-
-/// One number that two builds share only if all their message types agree.
-inline std::int64_t TypeFingerprint() {
-  std::uint64_t hash = 0;
-  std::apply(
-      [&hash](const auto&... channel) {
-        ((hash = std::rotl(hash, 5) ^
-                 static_cast<std::uint64_t>(std::decay_t<decltype(channel)>::Message::getHash())),
-         ...);
-      },
-      kGraph);
-  return static_cast<std::int64_t>(hash);
 }
 
 }  // namespace fogline

@@ -126,7 +126,9 @@ void RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id, const S
   if (options.announce) {
     fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
     if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
-    if (!options.external.empty()) fmt::print(stderr, "waiting for {}\n", conductor.NotReady());
+    for (const Role role : options.external) {
+      fmt::print(stderr, "waiting for the {}, which is started elsewhere\n", NameOf(role));
+    }
   }
   Progress progress("step", scenario.steps);
   while (conductor.phase() == Conductor::Phase::kJoining ||

@@ -21,7 +21,7 @@ its log, and gives exit code 130.
 Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
-  fogline run scenario/paper.json --pace 1       in real speed, to watch with lcm-spy
+  fogline run scenario/paper.json --pace 1       in real speed, to watch with tools/spy
   fogline run scenario/paper.json --transport memq --json
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 

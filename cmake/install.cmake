@@ -1,0 +1,29 @@
+# What `cmake --install build --prefix DIR` puts into DIR: the programs, the message types (C++
+# headers, and the jar if there is one), and what a role written elsewhere needs from C++:
+# find_package(fogline) gives it the target fogline::runtime.
+include(CMakePackageConfigHelpers)
+
+set(programs fogline fogline-recorder)
+foreach(service IN LISTS FOGLINE_SERVICES)
+  list(APPEND programs fogline-${service})
+endforeach()
+install(TARGETS ${programs} RUNTIME DESTINATION bin)
+
+foreach(part IN ITEMS lcmtypes scenario runtime)
+  set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
+endforeach()
+install(TARGETS fogline_lcmtypes fogline_scenario fogline_runtime EXPORT fogline-targets
+  ARCHIVE DESTINATION lib)
+install(EXPORT fogline-targets NAMESPACE fogline:: DESTINATION lib/cmake/fogline)
+install(FILES services/graph.h DESTINATION include/services)
+install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY scenario/ DESTINATION include/scenario
+  FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE)
+install(FILES scenario/paper.json scenario/dense_fog.json scenario/scenario.schema.json
+  DESTINATION share/fogline/scenario)
+
+set(config "${CMAKE_CURRENT_BINARY_DIR}/fogline-config")
+configure_package_config_file(cmake/fogline-config.cmake.in "${config}.cmake"
+  INSTALL_DESTINATION lib/cmake/fogline NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file("${config}-version.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${config}.cmake" "${config}-version.cmake" DESTINATION lib/cmake/fogline)

@@ -1,0 +1,31 @@
+# cmake -DOUT=FILE -DLCM_FILES="a.lcm;b.lcm" -P type_fingerprint.cmake
+# Writes a header with TypeFingerprint() over all message types, so that whoever has the types, and
+# nothing else of Fogline, can say which ones he was built with.
+set(includes "")
+set(hashes "")
+foreach(file IN LISTS LCM_FILES)
+  get_filename_component(type "${file}" NAME_WE)
+  string(APPEND includes "#include \"fogline/${type}.hpp\"\n")
+  string(APPEND hashes "      ${type}::getHash(),\n")
+endforeach()
+file(WRITE "${OUT}" "// Made from lcmtypes/*.lcm; do not edit.
+#pragma once
+
+#include <cstdint>
+
+${includes}
+namespace fogline {
+
+/// One number that two builds share only if all their message types agree.
+inline std::int64_t TypeFingerprint() {
+  const std::int64_t hashes[] = {
+${hashes}  };
+  std::uint64_t fingerprint = 0;
+  for (const std::int64_t hash : hashes) {
+    fingerprint = ((fingerprint << 5) | (fingerprint >> 59)) ^ static_cast<std::uint64_t>(hash);
+  }
+  return static_cast<std::int64_t>(fingerprint);
+}
+
+}  // namespace fogline
+")

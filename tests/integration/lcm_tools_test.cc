@@ -1,0 +1,304 @@
+// Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it,
+// lcm-spy shows it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+// A virtual machine starts, and a window opens, within this even when every processor is busy.
+constexpr seconds kPatience(60);
+
+using Payload = std::vector<std::uint8_t>;
+
+/// What a log or a network carried: payloads by channel, in order of arrival.
+using Traffic = std::map<std::string, std::vector<Payload>, std::less<>>;
+
+Traffic ReadTraffic(const std::string& log) {
+  Traffic traffic;
+  EventLogReader reader(log);
+  while (const auto event = reader.Next()) {
+    traffic[std::string(event->channel)].emplace_back(event->data.begin(), event->data.end());
+  }
+  EXPECT_EQ(reader.torn(), "");
+  return traffic;
+}
+
+/// Payloads by step. A repetition (a repair) is allowed if it is the same, byte by byte.
+std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
+  std::map<std::int64_t, Payload> steps;
+  for (const Payload& payload : payloads) {
+    const auto [at, is_new] = steps.emplace(ReadInt64(payload, kStepOffset), payload);
+    EXPECT_TRUE(is_new || at->second == payload) << "two messages of step " << at->first;
+  }
+  return steps;
+}
+
+/// The parts of the scenario that RUN messages carry.
+std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& payloads) {
+  std::map<std::int64_t, std::string> parts;
+  for (const Payload& payload : payloads) {
+    run_t run{};
+    EXPECT_TRUE(Decode(payload, run));
+    parts[run.header.step] = run.text;
+  }
+  return parts;
+}
+
+/// Publishes on a channel of no role until `seen`: whoever has seen it listens, and has got all
+/// that was sent before. False after kPatience.
+bool Mark(Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
+  const auto end = Clock::now() + kPatience;
+  while (!seen()) {
+    if (Clock::now() > end) return false;
+    bus.Publish(channel, Payload(kHeaderEnd));
+    bus.Wait(milliseconds(10));
+  }
+  return true;
+}
+
+/// Debian's lcm-logger.
+class Logger {
+ public:
+  Logger(Bus& bus, std::string file)
+      : bus_(bus),
+        file_(std::move(file)),
+        process_(
+            {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), file_}) {}
+
+  /// Waits until it has logged everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    return Mark(bus_, mark, [&] { return Content().find(mark) != std::string::npos; });
+  }
+  /// Ends it as a person does, with Ctrl-C. @return its exit code
+  int End() {
+    process_.Signal(SIGINT);
+    return process_.Wait();
+  }
+
+ private:
+  std::string Content() const {
+    std::ifstream in(file_, std::ios::binary);
+    std::ostringstream content;
+    content << in.rdbuf();
+    return content.str();
+  }
+
+  Bus& bus_;
+  const std::string file_;
+  Background process_;
+};
+
+/// Debian's lcm-spy as tools/spy starts it, on a screen of its own, with SpyProbe looking at it.
+class Spy {
+ public:
+  explicit Spy(Bus& bus)
+      : bus_(bus),
+        screen_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
+    EXPECT_TRUE(screen_.WaitForOut("\n", kPatience)) << "no X server: " << screen_.Err();
+    const std::string display = screen_.Out().substr(0, screen_.Out().find('\n'));
+    process_.emplace(std::vector<std::string>{
+        "env", "DISPLAY=:" + display, "JAVA_TOOL_OPTIONS=-javaagent:" + BuildProbe(), "tools/spy",
+        "--types", FOGLINE_BINARY_DIR "/lib/fogline_lcmtypes.jar", "--lcm-url", bus.url()});
+  }
+
+  /// Waits until it shows everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    return Mark(bus_, mark, [&] {
+      const std::string out = process_->Out();
+      const std::size_t row = out.find("row\t" + mark + "\t");
+      return row != std::string::npos && out.find("end of table", row) != std::string::npos;
+    });
+  }
+
+  struct Row {
+    std::string type;
+    std::int64_t messages = 0;
+    std::int64_t undecodable = 0;
+  };
+  /// The table in its window, by channel.
+  std::map<std::string, Row> Rows() const {
+    std::map<std::string, Row> rows;
+    std::istringstream lines(process_->Out());
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("row\t")) continue;
+      std::vector<std::string> cells;
+      std::istringstream words(line);
+      for (std::string cell; std::getline(words, cell, '\t');) cells.push_back(cell);
+      // "row", Channel, Type, Num Msgs, Hz, 1/Hz, Jitter, Bandwidth, Undecodable
+      if (cells.size() != 9) continue;
+      rows[cells[1]] = {cells[2], std::stoll(cells[3]), std::stoll(cells[8])};
+    }
+    return rows;
+  }
+  std::string Err() const { return process_->Err(); }
+
+ private:
+  /// @return the agent's jar
+  std::string BuildProbe() const {
+    const std::string source = (SourceDirectory() / "tests/integration/SpyProbe.java").string();
+    const std::string classes = folder_.File("classes");
+    const std::string jar = folder_.File("probe.jar");
+    std::ofstream(folder_.File("manifest")) << "Premain-Class: SpyProbe\n";
+    Outcome step = RunCommand({"javac", "-d", classes, source});
+    EXPECT_EQ(step.code, 0) << "is a JDK there? " << step.err;
+    step = RunCommand({"jar", "cfm", jar, folder_.File("manifest"), "-C", classes, "."});
+    EXPECT_EQ(step.code, 0) << step.err;
+    return jar;
+  }
+
+  Bus& bus_;
+  ScratchFolder folder_;
+  Background screen_;
+  std::optional<Background> process_;
+};
+
+/// Names of the message types, in the order of kChannels.
+std::vector<std::string> TypeNames() {
+  return std::apply(
+      [](const auto&... channel) {
+        return std::vector<std::string>{std::decay_t<decltype(channel)>::Message::getTypeName()...};
+      },
+      kGraph);
+}
+
+TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSpeed) {
+  // GIVEN lcm-logger and lcm-spy, which listen
+  const ScratchFolder folder;
+  const std::string own = folder.File("own.lcm");
+  const std::string debian = folder.File("debian.lcm");
+  Bus bus(FreshMulticastUrl());
+  Logger logger(bus, debian);
+  Spy spy(bus);
+  ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
+  ASSERT_TRUE(spy.CatchUp("BEFORE")) << spy.Err();
+  // WHEN a run goes on
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=150", "--pace",
+                  "1", "--json", "--lcm-url", bus.url(), "--log", own});
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_TRUE(logger.CatchUp("AFTER_LOG"));
+  ASSERT_TRUE(spy.CatchUp("AFTER")) << spy.Err();
+  ASSERT_EQ(logger.End(), 0);
+  // THEN lcm-logger has every message that our recorder has
+  const Traffic recorded = ReadTraffic(own);
+  Traffic logged = ReadTraffic(debian);
+  for (const ChannelInfo& channel : kChannels) {
+    SCOPED_TRACE(channel.name);
+    const auto expected = recorded.find(channel.name);
+    ASSERT_EQ(expected != recorded.end(), channel.Logged());
+    if (!channel.Logged()) continue;
+    std::vector<Payload>& got = logged[std::string(channel.name)];
+    if (channel.pace == Pace::kStep) {
+      EXPECT_EQ(expected->second.size(), 150U);
+      EXPECT_TRUE(BySteps(got) == BySteps(expected->second));
+    } else {
+      EXPECT_EQ(ScenarioTexts(got), ScenarioTexts(expected->second));
+    }
+  }
+  // AND its log is as good as ours
+  const Outcome metrics = RunCommand({Program("fogline"), "metrics", "--json", own, debian});
+  ASSERT_EQ(metrics.code, 0) << metrics.err;
+  const auto logs = nlohmann::json::parse(metrics.out);
+  EXPECT_EQ(logs[1]["complete"], true);
+  EXPECT_EQ(logs[1]["digest"], logs[0]["digest"]);
+  EXPECT_EQ(logs[1]["metrics"], logs[0]["metrics"]);
+  EXPECT_EQ(logs[0]["digest"], nlohmann::json::parse(run.out)["digest"]);
+  // AND lcm-spy shows every channel by its type; only RESEND may have had nothing to carry
+  const auto rows = spy.Rows();
+  const std::vector<std::string> types = TypeNames();
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    SCOPED_TRACE(kChannels[i].name);
+    const std::string channel(kChannels[i].name);
+    if (i == IndexOf<resend_t>() && !logged.contains(channel)) continue;
+    const auto row = rows.find(channel);
+    ASSERT_NE(row, rows.end());
+    EXPECT_EQ(row->second.type, types[i]);
+    EXPECT_EQ(row->second.undecodable, 0);
+    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? 150 : 1);
+  }
+}
+
+TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
+  // GIVEN a log, and a subscriber to every channel in it
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                  "memq", "--quiet", "--log", log});
+  ASSERT_EQ(run.code, 0) << run.err;
+  Bus bus(FreshMulticastUrl());
+  Traffic received;
+  std::map<std::string, int> undecodable;
+  const auto listen = [&]<class M>() {
+    const std::string channel(ChannelOf<M>().name);
+    bus.Subscribe(channel, [&received, &undecodable, channel](Bytes bytes) {
+      received[channel].emplace_back(bytes.begin(), bytes.end());
+      M message{};
+      if (!Decode(bytes, message)) ++undecodable[channel];
+    });
+  };
+  listen.operator()<run_t>();
+  ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
+  bool ended = false;
+  bus.Subscribe("END", [&ended](Bytes) { ended = true; });
+  // WHEN lcm-logplayer plays it, 25 times as fast as the 50 s that its event times span
+  Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
+  ASSERT_EQ(player.Wait(), 0) << player.Err();
+  ASSERT_TRUE(Mark(bus, "END", [&] {
+    bus.Drain();
+    return ended;
+  }));
+  // THEN everything has arrived, in order, and decodes
+  EXPECT_TRUE(received == ReadTraffic(log));
+  EXPECT_EQ(received["TRUTH"].size(), 500U);
+  EXPECT_TRUE(undecodable.empty());
+}
+
+TEST(LcmToolsTest, SpyStarterExplainsItself) {
+  const Outcome help = RunCommand({"tools/spy", "--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, HasSubstr("Example"));
+  const Outcome unknown = RunCommand({"tools/spy", "--url", "udpm://"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.err, "tools/spy: error: unknown argument --url; see tools/spy --help\n");
+  EXPECT_EQ(RunCommand({"tools/spy", "--lcm-url"}).code, 2);
+}
+
+TEST(LcmToolsTest, SpyStarterNamesThePackageThatIsMissing) {
+  const ScratchFolder empty;
+  const auto error = [&](std::vector<std::string> command) {
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    return outcome.err;
+  };
+  const std::string nowhere = empty.path().string();
+  EXPECT_THAT(error({"env", "JAVA_HOME=" + nowhere, "tools/spy"}),
+              HasSubstr("apt-get install default-jre"));
+  EXPECT_THAT(error({"tools/spy", "--jars", nowhere}), HasSubstr("apt-get install liblcm-java"));
+  std::ofstream(empty.File("lcm.jar")) << "";
+  EXPECT_THAT(error({"tools/spy", "--jars", nowhere}),
+              HasSubstr("apt-get install libjchart2d-java"));
+  EXPECT_THAT(error({"tools/spy", "--types", empty.File("types.jar")}),
+              HasSubstr("apt-get install default-jdk"));
+  std::ofstream(empty.File("types.jar")) << "";
+  EXPECT_THAT(error({"env", "--unset=DISPLAY", "tools/spy", "--types", empty.File("types.jar")}),
+              HasSubstr("DISPLAY is not set"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,314 @@
+// Roles that were built outside of this tree take the place of ours: as programs that know the
+// message types alone (bare_driver.cc), and as classes on Fogline's own runtime (my_driver.cc).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <deque>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "services/recorder/run_log.h"
+#include "services/runtime/bus.h"
+#include "services/runtime/scenario_parts.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Messages between processes of this machine take far less, even when every processor is busy.
+constexpr Duration kPatience = std::chrono::seconds(30);
+// Who asks in this test.
+constexpr const char* kTest = "test";
+
+/// A folder outside of the tree with Fogline installed, and what is built there with it alone.
+class Elsewhere {
+ public:
+  Elsewhere() {
+    Must({"cmake", "--install", FOGLINE_BINARY_DIR, "--prefix", folder_.File("fogline")});
+    std::filesystem::copy(SourceDirectory() / "tests/integration/external_driver",
+                          folder_.path() / "driver");
+  }
+
+  /// bare_driver.cc, with the compiler and nothing else.
+  /// @param other_types a folder of message types that take precedence over the installed ones
+  std::string BareDriver(const std::string& other_types = "") const {
+    const std::string program = folder_.File(other_types.empty() ? "bare" : "bare_other_types");
+    std::vector<std::string> command{"c++", "-O2", "-ffp-contract=off", "-Wall", "-Wextra"};
+    if (!other_types.empty()) command.insert(command.end(), {"-I", other_types});
+    command.insert(command.end(), {"-I", folder_.File("fogline/include"),
+                                   folder_.File("driver/bare_driver.cc"), "-llcm", "-o", program});
+    Must(command);
+    return program;
+  }
+
+  /// my_driver.cc, with CMake and find_package(fogline).
+  std::string MyDriver() const {
+    Must({"cmake", "-S", folder_.File("driver"), "-B", folder_.File("driver/build"), "-G", "Ninja",
+          "-DCMAKE_PREFIX_PATH=" + folder_.File("fogline")});
+    Must({"cmake", "--build", folder_.File("driver/build")});
+    return folder_.File("driver/build/my_driver");
+  }
+
+  /// C++ message types in which a LiDAR measurement has one field more than in ours.
+  std::string OtherTypes() const {
+    std::ifstream in(SourceDirectory() / "lcmtypes/lidar_t.lcm");
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string type = text.str();
+    type.insert(type.rfind('}'), "  double wavelength_m;\n");
+    std::ofstream(folder_.File("lidar_t.lcm")) << type;
+    Must({"lcm-gen", "-x", "--cpp-std", "c++11", "--cpp-hpath", folder_.File("types"),
+          folder_.File("lidar_t.lcm")});
+    return folder_.File("types");
+  }
+
+  /// A program of the installation.
+  std::string Installed(const std::string& name) const {
+    return folder_.File("fogline/bin/" + name);
+  }
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+ private:
+  static void Must(const std::vector<std::string>& command) {
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 0) << testing::PrintToString(command) << "\n"
+                               << outcome.out << outcome.err;
+  }
+
+  ScratchFolder folder_;
+};
+
+/// `fogline run scenario/paper.json` with a driver from elsewhere.
+std::vector<std::string> RunWithExternalDriver(const std::string& fogline, const std::string& url,
+                                               const std::string& log) {
+  return {fogline, "run", "scenario/paper.json", "--external", "driver", "--json", "--lcm-url", url,
+          "--log", log};
+}
+
+/// The result of a whole run with this driver, which must leave with code 0 when the run is over.
+nlohmann::json RunWith(const std::string& fogline, std::vector<std::string> driver,
+                       const std::string& url, const std::string& log) {
+  Background external(driver);
+  const Outcome run = RunCommand(RunWithExternalDriver(fogline, url, log));
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(external.Wait(), 0) << external.Err();
+  return nlohmann::json::parse(run.out, nullptr, false);
+}
+
+/// A bare driver that listens.
+class ListeningDriver {
+ public:
+  ListeningDriver(const std::string& program, const std::string& url) : process_({program, url}) {
+    EXPECT_TRUE(process_.WaitForOut("waiting for a run")) << process_.Err();
+  }
+  Background& process() { return process_; }
+  std::string pid() const { return std::to_string(process_.pid()); }
+
+ private:
+  Background process_;
+};
+
+/// What somebody else says on one channel.
+template <class M>
+class Heard {
+ public:
+  explicit Heard(Bus& bus) : bus_(bus) {
+    bus.Subscribe(ChannelOf<M>().name, [this](Bytes bytes) {
+      M message{};
+      EXPECT_TRUE(Decode(bytes, message));
+      if constexpr (std::is_same_v<M, resend_t>) {
+        if (message.requester == kTest) return;
+      }
+      messages_.push_back(std::move(message));
+    });
+  }
+
+  /// The next message. @throws std::runtime_error if none comes
+  M WaitForNext() {
+    const TimePoint end = Clock::now() + kPatience;
+    while (messages_.empty() && Clock::now() < end) bus_.Wait(milliseconds(100));
+    if (messages_.empty()) throw std::runtime_error("no message came");
+    M message = std::move(messages_.front());
+    messages_.pop_front();
+    return message;
+  }
+
+ private:
+  Bus& bus_;
+  std::deque<M> messages_;
+};
+
+template <class M>
+void Say(Bus& bus, const M& message) {
+  std::vector<std::uint8_t> bytes;
+  Encode(message, bytes);
+  bus.Publish(ChannelOf<M>().name, bytes);
+}
+
+TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSameArithmetic) {
+  const Elsewhere elsewhere;
+  const std::string bare = elsewhere.BareDriver();
+  const std::string fogline = Program("fogline");
+  const std::string url = FreshMulticastUrl();
+  // GIVEN a run with our own driver, whose headway is 1.5 s
+  const Outcome outcome =
+      RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto ours = nlohmann::json::parse(outcome.out);
+  // WHEN one from elsewhere takes its place
+  const auto same = RunWith(fogline, {bare, url, "1.5"}, url, elsewhere.File("same.lcm"));
+  // THEN nobody can tell
+  EXPECT_EQ(same["steps"], 500);
+  EXPECT_EQ(same["digest"], ours["digest"]);
+  // AND one with another headway drives differently
+  const auto other = RunWith(fogline, {bare, url, "1.2"}, url, elsewhere.File("other.lcm"));
+  EXPECT_EQ(other["steps"], 500);
+  EXPECT_NE(other["digest"], ours["digest"]);
+}
+
+TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
+  const Elsewhere elsewhere;
+  const std::string driver = elsewhere.MyDriver();
+  const std::string url = FreshMulticastUrl();
+  const std::string log = elsewhere.File("run.lcm");
+  const auto run = RunWith(elsewhere.Installed("fogline"), {driver, "--lcm-url", url}, url, log);
+  EXPECT_EQ(run["steps"], 500);
+  // THEN every command in the log is the one that this driver gives for the truth of its step
+  RunLogReader reader(log);
+  truth_t truth{};
+  driver_command_t command{};
+  while (const StepMessages* step = reader.Next()) {
+    ASSERT_TRUE(Decode((*step)[IndexOf<truth_t>()], truth));
+    ASSERT_TRUE(Decode((*step)[IndexOf<driver_command_t>()], command));
+    const double gap_error_m = truth.host_gap_m - (2.0 + 1.2 * truth.host_speed_mps);
+    const double closing_speed_mps = truth.host_speed_mps - truth.preceding_speed_mps;
+    ASSERT_EQ(command.acceleration_mps2, 0.125 * gap_error_m - 0.5 * closing_speed_mps);
+  }
+  EXPECT_EQ(reader.run().steps, 500);
+}
+
+TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
+  const Elsewhere elsewhere;
+  Bus bus(FreshMulticastUrl());
+  Heard<status_t> status(bus);
+  Heard<driver_command_t> commands(bus);
+  Heard<resend_t> requests(bus);
+  ListeningDriver driver(elsewhere.BareDriver(), bus.url());
+  const auto say_run = [&](std::int64_t run_id, std::int8_t phase) {
+    Say(bus, MakeRunPart(run_id, phase, 0, HashOf("{}"), SplitScenario("{}"), 0));
+  };
+  const auto say_truth = [&](std::int64_t run_id, std::int64_t step) {
+    truth_t truth{};
+    truth.header = {.run_id = run_id, .step = step, .utime = 0};
+    truth.host_gap_m = 40;
+    truth.host_speed_mps = 20;
+    Say(bus, truth);
+  };
+  const auto ask_for_command = [&](std::int64_t step) {
+    resend_t resend{};
+    resend.header = {.run_id = 7, .step = step, .utime = 0};
+    resend.channel = "DRIVER_COMMAND";
+    resend.requester = kTest;
+    Say(bus, resend);
+  };
+  // WHEN run 7 is announced, THEN it is ready for that
+  say_run(7, run_t::PREPARE);
+  const status_t ready = status.WaitForNext();
+  EXPECT_EQ(ready.header.run_id, 7);
+  EXPECT_EQ(ready.state, status_t::READY);
+  EXPECT_EQ(ready.scenario_hash, HashOf("{}"));
+  EXPECT_EQ(ready.type_fingerprint, TypeFingerprint());
+  // WHEN a step of another run comes, and a step, and that again, THEN it answers one time
+  say_truth(8, 0);
+  say_truth(7, 0);
+  say_truth(7, 0);
+  const driver_command_t first = commands.WaitForNext();
+  EXPECT_EQ(first.header.run_id, 7);
+  EXPECT_EQ(first.header.step, 0);
+  say_truth(7, 1);
+  EXPECT_EQ(commands.WaitForNext().header.step, 1);
+  // WHEN somebody has missed an answer, THEN it gives the same again
+  ask_for_command(0);
+  const driver_command_t again = commands.WaitForNext();
+  EXPECT_EQ(again.header.step, 0);
+  EXPECT_EQ(again.acceleration_mps2, first.acceleration_mps2);
+  // WHEN somebody wants an answer to a question that it has missed, THEN it asks for the question
+  ask_for_command(2);
+  const resend_t request = requests.WaitForNext();
+  EXPECT_EQ(request.channel, "TRUTH");
+  EXPECT_EQ(request.header.step, 2);
+  // WHEN another run stops, THEN it stays
+  say_run(8, run_t::STOP);
+  say_truth(7, 2);
+  EXPECT_EQ(commands.WaitForNext().header.step, 2);
+  // WHEN its own run stops, THEN it leaves
+  say_run(7, run_t::STOP);
+  EXPECT_EQ(driver.process().Wait(), 0);
+}
+
+TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
+  const Elsewhere elsewhere;
+  Bus bus(FreshMulticastUrl());
+  Heard<driver_command_t> commands(bus);
+  // GIVEN a run in real speed that is under way
+  ListeningDriver driver(elsewhere.BareDriver(), bus.url());
+  auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
+  command.insert(command.end(), {"--pace", "1", "--stall-timeout", "2"});
+  Background run(command);
+  EXPECT_TRUE(run.WaitForErr("waiting for the driver, which is started elsewhere\n"));
+  while (commands.WaitForNext().header.step < 10) {
+  }
+  // WHEN the driver is killed
+  driver.process().Signal(SIGKILL);
+  // THEN the run ends and says in one line who waited for him, in which step
+  EXPECT_EQ(run.Wait(std::chrono::seconds(10)), 3);
+  static const std::regex kLine(
+      "fogline: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
+      "\\(last heard: step ([0-9]+), [2-9]\\.[0-9] s ago\\)\n");
+  std::smatch line;
+  const std::string err = run.Err();
+  ASSERT_TRUE(std::regex_search(err, line, kLine)) << err;
+  EXPECT_EQ(std::stoi(line[1]), std::stoi(line[2]) + 1);
+  // AND keeps the steps that are complete
+  RunLogReader reader(elsewhere.File("run.lcm"));
+  while (reader.Next() != nullptr) {
+  }
+  EXPECT_EQ(reader.run().steps, std::stoi(line[1]));
+}
+
+TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
+  const Elsewhere elsewhere;
+  const std::string bare = elsewhere.BareDriver();
+  const std::string url = FreshMulticastUrl();
+  ListeningDriver one(bare, url);
+  ListeningDriver two(bare, url);
+  const Outcome run =
+      RunCommand(RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm")));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("error: two processes are the driver: pid "));
+  EXPECT_THAT(run.err, HasSubstr("pid " + one.pid() + " on "));
+  EXPECT_THAT(run.err, HasSubstr("pid " + two.pid() + " on "));
+  EXPECT_EQ(one.process().Wait(), 0) << "told to leave";
+  EXPECT_EQ(two.process().Wait(), 0) << "told to leave";
+}
+
+TEST(SwapTest, APartThatWasBuiltWithOtherMessageTypesIsRefusedByName) {
+  const Elsewhere elsewhere;
+  const std::string url = FreshMulticastUrl();
+  // GIVEN a driver whose LiDAR messages have a field more; it never reads any
+  ListeningDriver driver(elsewhere.BareDriver(elsewhere.OtherTypes()), url);
+  const Outcome run =
+      RunCommand(RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm")));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("error: driver (pid " + driver.pid() + " on "));
+  EXPECT_THAT(run.err, HasSubstr(") was built with other message types"));
+  EXPECT_EQ(driver.process().Wait(), 0) << "told to leave";
+}
+
+}  // namespace
+}  // namespace fogline::test
