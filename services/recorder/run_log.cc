@@ -77,8 +77,8 @@ class RunLogReader::Assembler {
           fmt::format("{}: error: the log has no complete scenario of a run", file_.string()));
     }
     if (!parts_.HashHolds()) {
-      throw InputError(
-          fmt::format("{}: error: the scenario in the log does not match its hash", file_.string()));
+      throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
+                                   file_.string()));
     }
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();

@@ -26,8 +26,8 @@ struct RunLog {
   std::string note;        // why it is not complete, or what was ignored; "" if nothing
 };
 
-/// Reads the run of a log that the recorder or lcm-logger wrote, step by step, in whatever order its
-/// events stand; within bounded memory when they are in order.
+/// Reads the run of a log that the recorder or lcm-logger wrote, step by step, in whatever order
+/// its events stand; within bounded memory when they are in order.
 class RunLogReader {
  public:
   /// @throws InputError when the file cannot be read or is no event log
