@@ -14,6 +14,11 @@ function(lcm_add_types target dir)
   add_custom_command(
     OUTPUT ${headers}
     COMMAND "${LCM_GEN}" -x --cpp-std c++11 --cpp-hpath "${out}/cpp" ${lcm_files}
+    # LCM's decoder believes the length of an array before it has seen the array: a message of 100
+    # bytes could claim 16 GB. No array has more elements than its message has bytes.
+    COMMAND sed -i -E
+            "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
+            ${headers}
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"
     VERBATIM)

@@ -38,11 +38,13 @@ constexpr Duration kLookEvery = milliseconds(20);
 constexpr int kStopRepeats = 5;
 
 ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
+  // A slow pace is no stall: a step is expected to take its time.
+  const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   return {.run_id = DrawRunId(),
           .scenario_text = PrintScenario(scenario),
           .pace = options.pace,
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
-          .stall_limit = options.stall_limit};
+          .stall_limit = options.stall_limit + duration_cast<Duration>(step)};
 }
 
 // ---- memq --------------------------------------------------------------------------------------

@@ -43,6 +43,21 @@ TEST(WireTest, DecodesOnlyExactlyOneMessageOfTheType) {
   EXPECT_FALSE(Decode(bytes, ego));
 }
 
+TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
+  follower_command_t command{};
+  command.num_followers = 1;
+  command.acceleration_mps2 = {0.5};
+  command.safe_distance_m = {33};
+  std::vector<std::uint8_t> bytes;
+  Encode(command, bytes);
+  for (const std::uint32_t claim : {0x7fffffffU, 0xffffffffU, 0x80000000U, 1000U, 2U}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[kHeaderEnd + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
+    }
+    EXPECT_FALSE(Decode(bytes, command)) << claim;
+  }
+}
+
 TEST(WireTest, FindsValuesThatAreNotFinite) {
   ego_t ego = SomeEgo();
   EXPECT_EQ(FirstNonFiniteField(ego), "");
