@@ -10,8 +10,12 @@
 namespace fogline {
 namespace {
 
-/// The most points of an axis "first:last:count".
+/// The most points of an axis "first:last:count", and the most rows of a sweep: far beyond any use,
+/// and far below where counting overflows.
 constexpr std::int64_t kMaxPoints = 1'000'000;
+constexpr std::int64_t kMaxRows = 1'000'000'000'000;
+/// Largest seed of a scenario.
+constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
 
 template <class T>
 bool Parse(std::string_view text, T& value) {
@@ -77,9 +81,9 @@ SeedRange ParseSeeds(const std::string& text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   SeedRange seeds;
   if (parts.size() > 2 || !Parse(parts.front(), seeds.first) || !Parse(parts.back(), seeds.last) ||
-      seeds.first < 0 || seeds.last < seeds.first) {
-    throw InputError(
-        fmt::format("error: --seeds {}: neither A:B with 0 <= A <= B nor one seed", text));
+      seeds.first < 0 || seeds.last < seeds.first || seeds.last > kMaxSeed) {
+    throw InputError(fmt::format(
+        "error: --seeds {}: neither A:B with 0 <= A <= B <= {} nor one seed", text, kMaxSeed));
   }
   return seeds;
 }
@@ -121,6 +125,13 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds)
     std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;
     stride_[i] = points;
     points *= static_cast<std::int64_t>(axes_[i].values.size());
+    if (points > kMaxRows) break;
+  }
+  if (outer_points_ > kMaxRows || inner_points_ > kMaxRows ||
+      static_cast<double>(outer_points_) * static_cast<double>(inner_points_) *
+              static_cast<double>(seeds_.count()) >
+          static_cast<double>(kMaxRows)) {
+    throw InputError(fmt::format("error: a sweep of more than {} rows", kMaxRows));
   }
 }
 
