@@ -1,7 +1,8 @@
 // fogline table: safety improvement against redundant human engagement, by threshold.
-#include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -10,46 +11,17 @@
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/progress.h"
+#include "tools/fogline/threshold_rows.h"
 #include "tools/fogline/verbs.h"
-#include "tools/sweep/engine.h"
 
 namespace fogline {
 namespace {
 
-/// Mean and standard deviation of what was added.
-class Statistics {
- public:
-  void Add(double value) {
-    ++count_;
-    const double delta = value - mean_;
-    mean_ += delta / static_cast<double>(count_);  // Welford 1962
-    squares_ += delta * (value - mean_);
-  }
-  std::int64_t count() const { return count_; }
-  std::optional<double> mean() const { return count_ > 0 ? std::optional(mean_) : std::nullopt; }
-  std::optional<double> deviation() const {
-    if (count_ < 2) return std::nullopt;
-    return std::sqrt(squares_ / static_cast<double>(count_ - 1));
-  }
-
- private:
-  std::int64_t count_ = 0;
-  double mean_ = 0;
-  double squares_ = 0;
-};
-
-struct Row {
-  double threshold = 0;
-  Statistics si_pct;  // of the seeds that have one: SI needs compromised safety in the paired run
-  Statistics rhe_pct;
-};
-
 struct TableArguments {
   explicit TableArguments(CLI::App& verb) : scenario(verb) {
     verb.add_option("--thresholds", thresholds,
-                    "DoC thresholds (default: the published ones, or 0.2,0.5,0.8)")
-        ->delimiter(',')
-        ->check(CLI::Range(0.0, 1.0));
+                    "DoC thresholds a,b,c or first:last:count (default: the published ones, or "
+                    "0.2,0.5,0.8)");
     verb.add_option("--seeds", seeds, "Seeds A:B, both included: mean and standard deviation");
     verb.add_option("--transport", transport, "direct, memq, udpm or an LCM URL, as of `run`")
         ->capture_default_str();
@@ -60,11 +32,12 @@ struct TableArguments {
         "Examples:\n  fogline table scenario/paper.json\n"
         "  fogline table scenario/paper.json --seeds 1:40\n"
         "  fogline table scenario/paper.json --transport udpm --logs logs/paper-table\n"
-        "  fogline table scenario/paper.json --thresholds 0.3,0.4,0.5 --json");
+        "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n\n"
+        "`fogline report --curves` draws them.");
   }
 
   ScenarioArguments scenario;
-  std::vector<double> thresholds;
+  std::string thresholds;
   std::string seeds;
   std::string transport = "direct";
   std::filesystem::path logs;
@@ -83,58 +56,35 @@ ExperimentResult RunOne(const TableArguments& arguments, const Scenario& scenari
   return RunExperiment(scenario, options);
 }
 
-void AddTo(Row& row, const std::optional<double>& si_pct, const RunMeasures& measures) {
-  if (measures.rhe_pct) row.rhe_pct.Add(*measures.rhe_pct);
-  if (si_pct) row.si_pct.Add(*si_pct);
-}
-
 /// Runs every pair on a transport, with logs if wanted.
-void FillByRuns(const TableArguments& arguments, Scenario scenario, const SeedRange& seeds,
-                std::vector<Row>& rows) {
+std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments, Scenario scenario,
+                                     std::span<const double> thresholds, const SeedRange& seeds) {
   if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
+  std::vector<ThresholdRow> rows;
+  for (const double threshold : thresholds) rows.push_back({threshold, {}, {}});
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
     const ExperimentResult baseline = RunOne(arguments, WithoutTradedControl(scenario), "none");
-    for (Row& row : rows) {
+    for (ThresholdRow& row : rows) {
       scenario.arbitrator.threshold = row.threshold;
       const ExperimentResult result =
           RunOne(arguments, scenario, fmt::format("{:g}", row.threshold));
-      AddTo(
-          row,
+      row.Add(
           SafetyImprovementPct(baseline.samples, result.samples, scenario.measures.safety_floor_m),
           result.measures);
     }
     progress.Show(seed - seeds.first + 1);
   }
-}
-
-/// The same in this process, on all cores.
-void FillBySweep(const Scenario& scenario, const SeedRange& seeds, std::vector<Row>& rows) {
-  Axis axis{.pointer = "/arbitrator/threshold", .values = {}};
-  for (const Row& row : rows) axis.values.push_back(fmt::format("{}", row.threshold));
-  const SweepPlan plan(scenario, {axis}, seeds);
-  Progress progress("seed", seeds.count());
-  RunSweep(plan, 0, plan.units(), AllCores(),
-           [&](std::int64_t unit, const std::vector<SweepRow>& results) {
-             for (std::size_t i = 0; i < rows.size(); ++i) {
-               AddTo(rows[i], results[i].si_pct, results[i].measures);
-             }
-             progress.Show(unit + 1);
-             return !WasInterrupted();
-           });
-  if (WasInterrupted()) throw Interrupted("interrupted");
-}
-
-std::vector<Row> MakeRows(const TableArguments& arguments, const Scenario& scenario) {
-  std::vector<double> thresholds = arguments.thresholds;
-  if (thresholds.empty()) {
-    for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
-  }
-  if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
-  std::vector<Row> rows;
-  for (const double threshold : thresholds) rows.push_back({.threshold = threshold});
   return rows;
+}
+
+std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario& scenario) {
+  if (!arguments.thresholds.empty()) return ParseThresholds(arguments.thresholds);
+  std::vector<double> thresholds;
+  for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
+  if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
+  return thresholds;
 }
 
 nlohmann::ordered_json OrNull(std::optional<double> value) {
@@ -149,18 +99,20 @@ const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
 }
 
 std::string ToJson(const TableArguments& arguments, const Scenario& scenario, std::int64_t seeds,
-                   const std::vector<Row>& rows) {
+                   const std::vector<ThresholdRow>& rows) {
   nlohmann::ordered_json json{{"scenario", arguments.scenario.file().string()},
                               {"transport", arguments.transport},
                               {"seeds", seeds},
                               {"rows", nlohmann::ordered_json::array()}};
-  for (const Row& row : rows) {
-    nlohmann::ordered_json out{{"threshold", row.threshold},
-                               {"si_pct", OrNull(row.si_pct.mean())},
-                               {"rhe_pct", OrNull(row.rhe_pct.mean())},
-                               {"si_std_pct", OrNull(row.si_pct.deviation())},
-                               {"rhe_std_pct", OrNull(row.rhe_pct.deviation())},
-                               {"si_seeds", row.si_pct.count()}};
+  for (const ThresholdRow& row : rows) {
+    const Summary si = row.si_pct.Result();
+    const Summary rhe = row.rhe_pct.Result();
+    nlohmann::ordered_json out{
+        {"threshold", row.threshold},           {"si_pct", OrNull(si.mean)},
+        {"rhe_pct", OrNull(rhe.mean)},          {"si_std_pct", OrNull(si.deviation)},
+        {"rhe_std_pct", OrNull(rhe.deviation)}, {"si_ci95_pct", OrNull(si.ci95)},
+        {"rhe_ci95_pct", OrNull(rhe.ci95)},     {"si_p5_pct", OrNull(si.p5)},
+        {"si_p95_pct", OrNull(si.p95)},         {"si_seeds", si.count}};
     if (const PublishedRow* published = PublishedOf(scenario, row.threshold)) {
       out["published_si_pct"] = published->si_pct;
       out["published_rhe_pct"] = published->rhe_pct;
@@ -170,26 +122,28 @@ std::string ToJson(const TableArguments& arguments, const Scenario& scenario, st
   return json.dump(2);
 }
 
-void PrintText(const Scenario& scenario, std::int64_t seeds, const std::vector<Row>& rows) {
+void PrintText(const Scenario& scenario, std::int64_t seeds,
+               const std::vector<ThresholdRow>& rows) {
   const auto cell = [](std::optional<double> value) {
     return value ? fmt::format("{:.2f}", *value) : std::string("-");
   };
-  const auto spread = [&](const Statistics& of) {
-    return of.deviation() ? fmt::format("{} +- {}", cell(of.mean()), cell(of.deviation()))
-                          : cell(of.mean());
+  const auto spread = [&](const Summary& of) {
+    return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
+                        : cell(of.mean);
   };
   fmt::print("{}\n", scenario.title);
   fmt::print("{} seed{}; mean +- standard deviation where there are several\n\n", seeds,
              seeds == 1 ? "" : "s");
   fmt::print("  DoC_th        SI (%)        RHE (%)      published SI   published RHE\n");
-  for (const Row& row : rows) {
+  for (const ThresholdRow& row : rows) {
+    const Summary si = row.si_pct.Result();
     const PublishedRow* published = PublishedOf(scenario, row.threshold);
-    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}\n", row.threshold, spread(row.si_pct),
-               spread(row.rhe_pct), published ? cell(published->si_pct) : "-",
+    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}\n", row.threshold, spread(si),
+               spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
                published ? cell(published->rhe_pct) : "-");
-    if (row.si_pct.count() < seeds) {
+    if (si.count < seeds) {
       fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
-                 row.si_pct.count());
+                 si.count);
     }
   }
 }
@@ -199,13 +153,11 @@ int RunTable(const TableArguments& arguments) {
   const SeedRange range = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
                                                   : ParseSeeds(arguments.seeds);
   const std::int64_t seeds = range.count();
-  std::vector<Row> rows = MakeRows(arguments, scenario);
+  const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
   WatchInterrupts();
-  if (arguments.transport == "direct" && arguments.logs.empty()) {
-    FillBySweep(scenario, range, rows);
-  } else {
-    FillByRuns(arguments, scenario, range, rows);
-  }
+  const std::vector<ThresholdRow> rows = arguments.transport == "direct" && arguments.logs.empty()
+                                             ? RowsOnAllCores(scenario, thresholds, range)
+                                             : RowsByRuns(arguments, scenario, thresholds, range);
   if (arguments.json) {
     PrintJson(ToJson(arguments, scenario, seeds, rows));
   } else {

@@ -33,7 +33,8 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
   }
 }
 
-/// "first:last:count" as values; empty if the text is something else.
+/// "first:last:count" as values; empty if the text is something else. Fifteen digits are what a
+/// double keeps of a decimal number, so that 0.3 reads 0.3.
 std::vector<std::string> Spaced(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   double first = 0;
@@ -46,12 +47,31 @@ std::vector<std::string> Spaced(std::string_view text) {
   std::vector<std::string> values;
   for (std::int64_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    values.push_back(fmt::format("{}", i == count - 1 ? last : first + (last - first) * share));
+    values.push_back(i == count - 1 ? fmt::format("{}", last)
+                                    : fmt::format("{:.15g}", first + (last - first) * share));
   }
   return values;
 }
 
 }  // namespace
+
+std::vector<std::string> ParseValues(const std::string& argument, std::string_view values) {
+  if (values.find(':') != std::string_view::npos) {
+    std::vector<std::string> spaced = Spaced(values);
+    if (spaced.empty()) {
+      throw InputError(
+          fmt::format("error: {}: not first:last:count with two numbers and a count from 2 to {}",
+                      argument, kMaxPoints));
+    }
+    return spaced;
+  }
+  std::vector<std::string> list;
+  for (const std::string_view value : Split(values, ',')) {
+    if (value.empty()) throw InputError(fmt::format("error: {}: an empty value", argument));
+    list.emplace_back(value);
+  }
+  return list;
+}
 
 Axis ParseAxis(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -59,22 +79,22 @@ Axis ParseAxis(const std::string& text) {
     throw InputError(fmt::format(
         "error: --grid {}: neither /pointer=a,b,c nor /pointer=first:last:count", text));
   }
-  Axis axis{.pointer = text.substr(0, equals), .values = {}};
   const std::string_view values = std::string_view(text).substr(equals + 1);
-  if (values.find(':') != std::string_view::npos) {
-    axis.values = Spaced(values);
-    if (axis.values.empty()) {
-      throw InputError(fmt::format(
-          "error: --grid {}: not first:last:count with two numbers and a count from 2 to {}", text,
-          kMaxPoints));
+  return {.pointer = text.substr(0, equals),
+          .values = ParseValues(fmt::format("--grid {}", text), values)};
+}
+
+std::vector<double> ParseThresholds(const std::string& text) {
+  const std::string argument = "--thresholds " + text;
+  std::vector<double> thresholds;
+  for (const std::string& value : ParseValues(argument, text)) {
+    double threshold = 0;
+    if (!Parse(std::string_view(value), threshold) || !(threshold >= 0 && threshold <= 1)) {
+      throw InputError(fmt::format("error: {}: {} is no number from 0 to 1", argument, value));
     }
-    return axis;
+    thresholds.push_back(threshold);
   }
-  for (const std::string_view value : Split(values, ',')) {
-    if (value.empty()) throw InputError(fmt::format("error: --grid {}: an empty value", text));
-    axis.values.emplace_back(value);
-  }
-  return axis;
+  return thresholds;
 }
 
 SeedRange ParseSeeds(const std::string& text) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenario/assignment.h"
@@ -17,9 +18,18 @@ struct Axis {
   std::vector<std::string> values;
 };
 
+/// Values as a person writes them: "a,b,c", or "first:last:count" for evenly spaced numbers.
+/// @param argument such as "--thresholds 1:2": what the message of an error begins with
+/// @throws InputError
+std::vector<std::string> ParseValues(const std::string& argument, std::string_view values);
+
 /// "/pointer=a,b,c", or "/pointer=first:last:count" for evenly spaced numbers.
 /// @throws InputError
 Axis ParseAxis(const std::string& text);
+
+/// Thresholds of the Degree of Conflict, written as the values of an axis, each in [0, 1].
+/// @throws InputError
+std::vector<double> ParseThresholds(const std::string& text);
 
 /// First and last seed of "A:B", or of "A".
 struct SeedRange {

@@ -1,0 +1,17 @@
+// The rows of `fogline table` and the curves of `fogline report`, computed for a person who waits.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tools/sweep/threshold_curve.h"
+
+namespace fogline {
+
+/// SweepThresholds() on all cores with a progress bar; needs WatchInterrupts() before.
+/// @throws Interrupted after Ctrl-C
+std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
+                                         std::span<const double> thresholds,
+                                         const SeedRange& seeds);
+
+}  // namespace fogline

@@ -1,0 +1,49 @@
+#include "tools/sweep/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <boost/math/distributions/students_t.hpp>
+
+namespace fogline {
+namespace {
+
+/// Half of what a confidence interval of 95 % leaves out.
+constexpr double kTail = 0.025;
+
+/// `sorted` at a share in [0, 1] of the way from its first to its last value.
+double At(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+}
+
+}  // namespace
+
+void Statistics::Add(double value) {
+  values_.push_back(value);
+  const double delta = value - mean_;
+  mean_ += delta / static_cast<double>(values_.size());  // Welford 1962
+  squares_ += delta * (value - mean_);
+}
+
+Summary Statistics::Result() const {
+  Summary summary{.count = static_cast<std::int64_t>(values_.size())};
+  if (values_.empty()) return summary;
+  summary.mean = mean_;
+  if (values_.size() < 2) return summary;
+  const auto count = static_cast<double>(values_.size());
+  const double deviation = std::sqrt(squares_ / (count - 1));
+  const boost::math::students_t distribution(count - 1);
+  summary.deviation = deviation;
+  summary.ci95 = quantile(complement(distribution, kTail)) * deviation / std::sqrt(count);
+  std::vector<double> sorted = values_;
+  std::sort(sorted.begin(), sorted.end());
+  summary.p5 = At(sorted, 0.05);
+  summary.p95 = At(sorted, 0.95);
+  return summary;
+}
+
+}  // namespace fogline

@@ -1,0 +1,32 @@
+#include "tools/sweep/threshold_curve.h"
+
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "tools/sweep/engine.h"
+
+namespace fogline {
+
+std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
+                                          std::span<const double> thresholds,
+                                          const SeedRange& seeds, int jobs, const SeedsDone& done) {
+  Axis axis{.pointer = "/arbitrator/threshold", .values = {}};
+  std::vector<ThresholdRow> rows;
+  for (const double threshold : thresholds) {
+    axis.values.push_back(fmt::format("{}", threshold));
+    rows.push_back({.threshold = threshold, .si_pct = {}, .rhe_pct = {}});
+  }
+  // A unit of this plan is a seed: its rows are the thresholds, and share their paired run.
+  const SweepPlan plan(scenario, {axis}, seeds);
+  RunSweep(plan, 0, plan.units(), jobs,
+           [&](std::int64_t unit, const std::vector<SweepRow>& results) {
+             for (std::size_t i = 0; i < rows.size(); ++i) {
+               rows[i].Add(results[i].si_pct, results[i].measures);
+             }
+             return done(unit + 1);
+           });
+  return rows;
+}
+
+}  // namespace fogline
