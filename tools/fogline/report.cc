@@ -1,14 +1,21 @@
 // fogline report: the figures and measures of runs as one HTML file, and as PNG files for papers.
 #include "tools/report/report.h"
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
+#include "tools/fogline/threshold_rows.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -16,6 +23,10 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::filesystem::path> logs;
+  std::filesystem::path curves;
+  std::vector<std::string> overrides;
+  std::string thresholds = "0.01:0.99:99";
+  std::string seeds = "1:200";
   std::filesystem::path output = "report.html";
   std::filesystem::path png;
 };
@@ -65,34 +76,75 @@ std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
   return table;
 }
 
-int RunReport(const ReportArguments& arguments) {
+/// The runs of the logs, those without traded control first: the others are compared with them.
+std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   std::vector<LoggedRun> runs;
-  for (const std::filesystem::path& log : arguments.logs) {
+  for (const std::filesystem::path& log : logs) {
     runs.push_back(ReadLoggedRun(log));
     if (!runs.back().note.empty()) {
       fmt::print(stderr, "{}: {}\n", log.string(), runs.back().note);
     }
   }
+  std::stable_partition(runs.begin(), runs.end(), [](const LoggedRun& run) {
+    return run.scenario.arbitrator.policy == Policy::kAutomation;
+  });
+  return runs;
+}
+
+ReportRun PageOf(LoggedRun& run, const std::optional<double>& si_pct) {
+  return {.name = NameOf(run),
+          .scenario_title = run.scenario.title,
+          .scenario_json = run.scenario_text,
+          .seed = run.result.seed,
+          .digest = run.result.digest,
+          .samples = std::move(run.result.samples),
+          .measures = MeasuresOf(run.result.measures),
+          .si_pct = si_pct};
+}
+
+ReportCurves ComputeCurves(const ReportArguments& arguments) {
+  const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
+  if (scenario.arbitrator.policy == Policy::kAutomation) {
+    throw InputError(
+        fmt::format("{}: error: --curves: /arbitrator/policy is automation: no threshold matters",
+                    arguments.curves.string()));
+  }
+  std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
+  std::sort(thresholds.begin(), thresholds.end());
+  thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
+  const SeedRange seeds = ParseSeeds(arguments.seeds);
+  ReportCurves curves{.scenario_title = scenario.title,
+                      .first_seed = seeds.first,
+                      .last_seed = seeds.last,
+                      .points = {},
+                      .published = scenario.published};
+  WatchInterrupts();
+  for (const ThresholdRow& row : RowsOnAllCores(scenario, thresholds, seeds)) {
+    curves.points.push_back({row.threshold, row.si_pct.Result(), row.rhe_pct.Result()});
+  }
+  return curves;
+}
+
+int RunReport(const ReportArguments& arguments) {
+  if (arguments.logs.empty() && arguments.curves.empty()) {
+    throw InputError("error: neither LOG nor --curves is given: nothing to report");
+  }
+  std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
   const std::optional<ReportTable> table = TableOf(runs, improvements);
   std::vector<ReportRun> pages;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    LoggedRun& run = runs[i];
-    pages.push_back({.name = NameOf(run),
-                     .scenario_title = run.scenario.title,
-                     .scenario_json = run.scenario_text,
-                     .seed = run.result.seed,
-                     .digest = run.result.digest,
-                     .samples = std::move(run.result.samples),
-                     .measures = MeasuresOf(run.result.measures),
-                     .si_pct = improvements[i]});
-  }
+  for (std::size_t i = 0; i < runs.size(); ++i) pages.push_back(PageOf(runs[i], improvements[i]));
+  std::optional<ReportCurves> curves;
+  if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
   std::ofstream file(arguments.output, std::ios::binary);
-  file << MakeReport(pages, table);
+  file << MakeReport(pages, table, curves);
   if (!file.flush()) {
     throw InputError(fmt::format("{}: error: --output: cannot write", arguments.output.string()));
   }
-  if (!arguments.png.empty()) WritePngFigures(arguments.png, pages);
+  if (!arguments.png.empty()) {
+    WritePngFigures(arguments.png, pages);
+    if (curves) WritePngCurves(arguments.png, *curves);
+  }
   return kDone;
 }
 
@@ -101,13 +153,28 @@ int RunReport(const ReportArguments& arguments) {
 void AddReport(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("report", "Figures and measures of logs as one HTML file");
   const auto arguments = std::make_shared<ReportArguments>();
-  verb->add_option("LOG", arguments->logs, "Event logs")->required();
+  verb->add_option("LOG", arguments->logs, "Event logs");
+  verb->add_option("--curves", arguments->curves,
+                   "Scenario file: add SI and RHE against the threshold, over seeds");
+  verb->add_option("--thresholds", arguments->thresholds,
+                   "Of the curves: a,b,c or first:last:count")
+      ->capture_default_str();
+  verb->add_option("--seeds", arguments->seeds, "Of the curves: A:B, both included")
+      ->capture_default_str();
+  verb->add_option("--set", arguments->overrides,
+                   "Override a field of the curves' scenario (repeatable)")
+      ->allow_extra_args(false);
   verb->add_option("-o,--output", arguments->output, "HTML file to write")->capture_default_str();
   verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");
   verb->footer(
       "The page needs no network. The table appears for runs whose pair without traded\n"
-      "control is among the logs.\n\nExamples:\n  fogline report logs/paper-1.lcm\n"
-      "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures");
+      "control is among the logs. Curves are computed on all cores: means of the seeds with\n"
+      "their 95 % confidence intervals, percentiles, and the Pareto front of SI and RHE.\n\n"
+      "Examples:\n  fogline report logs/paper-1.lcm\n"
+      "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures\n"
+      "  fogline report logs/demo/*.lcm --curves scenario/paper.json\n"
+      "  fogline report --curves scenario/paper.json --thresholds 0.3:0.6:61 --seeds 1:1000 \\\n"
+      "    --set /fog/bias_m=0.3");
   verb->callback([&action, arguments] { action = [arguments] { return RunReport(*arguments); }; });
 }
 

@@ -6,6 +6,8 @@ set(assets
   kModelJs=model.js
   kChartJs=chart.js
   kLegendJs=legend.js
+  kCurvesJs=curves.js
+  kFrontJs=front.js
   kPageJs=page.js
   kUplotJs=uplot/uPlot.iife.min.js
   kUplotCss=uplot/uPlot.min.css

@@ -10,6 +10,8 @@ extern const std::string_view kPageCss;
 extern const std::string_view kModelJs;
 extern const std::string_view kChartJs;
 extern const std::string_view kLegendJs;
+extern const std::string_view kCurvesJs;
+extern const std::string_view kFrontJs;
 extern const std::string_view kPageJs;
 extern const std::string_view kUplotJs;
 extern const std::string_view kUplotCss;

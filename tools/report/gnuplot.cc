@@ -12,6 +12,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 extern char** environ;
 
 namespace fogline {
@@ -107,6 +109,19 @@ void RunGnuplot(const std::string& script, const std::filesystem::path& output) 
     throw;
   }
 }
+
+std::string PngTerminal(std::size_t height_px) {
+  return fmt::format(
+      "set encoding utf8\nset minussign\n"
+      "set terminal pngcairo noenhanced size 1600,{} font 'sans,20' linewidth 2 "
+      "background rgb 'white'\n",
+      height_px);
+}
+
+const std::string_view kPngAxes =
+    "set border 3 linecolor rgb '#1b2127' linewidth 0.6\n"
+    "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
+    "set grid linecolor rgb '#e3e3de' linetype 1 linewidth 0.5\n";
 
 std::string GnuplotString(std::string_view text) {
   std::string quoted = "'";

@@ -8,20 +8,25 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** A short piece of the curve, as it is drawn. */
-function swatch(curve, overlaid, shared) {
-  const {palette, ink, shared: sharedColour} = state.theme;
+/** A short piece of a line. */
+function lineSwatch(stroke, dash, width) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
-  const attributes = {x1: 0, y1: 5, x2: 28, y2: 5, "stroke-width": curve.limit ? 2 : 2.5};
-  attributes.stroke = !overlaid ? palette[curve.colour] : shared ? sharedColour : ink;
-  if (overlaid || curve.limit) attributes["stroke-dasharray"] = curve.dash.join(" ");
+  const attributes = {x1: 0, y1: 5, x2: 28, y2: 5, stroke,
+                      "stroke-width": width, "stroke-dasharray": dash.join(" ")};
   for (const [name, value] of Object.entries(attributes)) line.setAttribute(name, value);
   for (const [name, value] of Object.entries({width: 28, height: 10, "aria-hidden": "true"})) {
     svg.setAttribute(name, value);
   }
   svg.append(line);
   return svg;
+}
+
+/** A short piece of the curve, as it is drawn. */
+function swatch(curve, overlaid, shared) {
+  const {palette, ink, shared: sharedColour} = state.theme;
+  const stroke = !overlaid ? palette[curve.colour] : shared ? sharedColour : ink;
+  return lineSwatch(stroke, overlaid || curve.limit ? curve.dash : [], curve.limit ? 2 : 2.5);
 }
 
 function shadeKeys(figure) {

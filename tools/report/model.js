@@ -25,6 +25,7 @@ function readTheme() {
   state.theme = {
     palette: Array.from({length: 8}, (_, i) => colour(`--p${i}`)),
     ink: colour("--ink"),
+    surface: colour("--surface"),
     muted: colour("--muted"),
     grid: colour("--grid"),
     fog: colour("--fog"),

@@ -110,6 +110,12 @@ function build() {
   showTime();
 }
 
+/** All figures again, such as in other colours. */
+function draw() {
+  build();
+  buildCurves();
+}
+
 /** After a change of what is compared. */
 function compare(change) {
   const wasOverlaid = isOverlaid();
@@ -133,10 +139,10 @@ function listen() {
   });
   page.slider.addEventListener("input", () => setTime(Number(page.slider.value)));
   page.whole.addEventListener("click", () => setSpan(wholeSpan()));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", build);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
   const paper = (on) => () => {
     document.documentElement.classList.toggle("paper", on);
-    build();
+    draw();
   };
   addEventListener("beforeprint", paper(true));
   addEventListener("afterprint", paper(false));
@@ -151,6 +157,7 @@ function start() {
   resetHidden();
   listen();
   compare(() => {});
+  startCurves();
 }
 
 start();

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/report/curves.h"
 #include "tools/report/figures.h"
 #include "tools/report/tables.h"
 
@@ -114,7 +115,7 @@ json WindowsJson(const std::vector<Window>& windows) {
 
 }  // namespace
 
-std::string PageData(std::span<const ReportRun> runs) {
+std::string PageData(std::span<const ReportRun> runs, const std::optional<ReportCurves>& curves) {
   json figures = json::array();
   for (const Figure& figure : Figures()) figures.push_back(FigureJson(figure));
   ColumnPool pool;
@@ -131,7 +132,8 @@ std::string PageData(std::span<const ReportRun> runs) {
                         {"human", WindowsJson(HumanWindows(samples))}});
   }
   return "{\"figures\":" + Dump(figures) + ",\n\"columns\":" + pool.Json() +
-         ",\n\"runs\":" + Dump(run_list) + "}";
+         ",\n\"runs\":" + Dump(run_list) +
+         ",\n\"curves\":" + (curves ? CurvesData(*curves) : "null") + "}";
 }
 
 }  // namespace fogline

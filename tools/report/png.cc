@@ -25,8 +25,6 @@ constexpr std::string_view kFog = "#e3e8ed";
 constexpr std::string_view kHumanTint = "#a0fbedd0";  // alpha first, 0 is opaque
 constexpr std::string_view kHumanLines = "#ebcb8d";
 constexpr std::string_view kShortfall = "#a0bd3a29";
-constexpr std::string_view kInk = "#1b2127";
-constexpr std::string_view kGrid = "#e3e3de";
 
 struct Span {
   double low;
@@ -216,10 +214,8 @@ std::string Key(const Figure& figure, const Layout& layout) {
       "{}unset border\nunset tics\nunset grid\n"
       "set key center center horizontal Left reverse samplen 2 width 1 font ',18'\n"
       "plot {}\n"
-      "unset key\nset border 3 linecolor rgb '{}' linewidth 0.6\n"
-      "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
-      "set grid linecolor rgb '{}' linetype 1 linewidth 0.5\n",
-      layout.PlaceOfKey(), fmt::join(parts, ", \\\n     "), kInk, kGrid);
+      "unset key\n{}",
+      layout.PlaceOfKey(), fmt::join(parts, ", \\\n     "), kPngAxes);
 }
 
 std::string AxisLabel(const Figure& figure) {
@@ -230,14 +226,11 @@ std::string AxisLabel(const Figure& figure) {
 std::string Heading(const Figure& figure, std::span<const ReportRun> runs, const Layout& layout) {
   const Span time = TimeSpanOf(runs);
   const Span values = Widened(SpanOf(runs, figure.curves), figure.least_span);
-  return fmt::format(
-      "set encoding utf8\nset minussign\n"
-      "set terminal pngcairo noenhanced size 1600,{} font 'sans,20' linewidth 2 "
-      "background rgb 'white'\n"
-      "set style fill solid noborder\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\n"
-      "set multiplot\n",
-      layout.height_px(), time.low, time.high, values.low, values.high);
+  return PngTerminal(layout.height_px()) + fmt::format(
+                                               "set style fill solid noborder\n"
+                                               "set xrange [{}:{}]\nset yrange [{}:{}]\n"
+                                               "set multiplot\n",
+                                               time.low, time.high, values.low, values.high);
 }
 
 std::string Panel(const Figure& figure, std::span<const ReportRun> runs, std::size_t index,

@@ -1,6 +1,7 @@
 #include "tools/report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string_view>
 
@@ -8,6 +9,7 @@
 
 #include "services/measures/measures.h"
 #include "tools/report/assets.h"
+#include "tools/report/curves.h"
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
 #include "tools/report/page_data.h"
@@ -16,8 +18,8 @@
 namespace fogline {
 namespace {
 
-std::string TitleOf(std::span<const ReportRun> runs) {
-  if (runs.empty()) return "No runs";
+std::string TitleOf(std::span<const ReportRun> runs, const std::optional<ReportCurves>& curves) {
+  if (runs.empty()) return curves ? curves->scenario_title : "No runs";
   const std::string& title = runs.front().scenario_title;
   const bool same = std::all_of(runs.begin(), runs.end(),
                                 [&](const ReportRun& run) { return run.scenario_title == title; });
@@ -92,6 +94,11 @@ std::string TableSection(const std::optional<ReportTable>& table) {
   return Section("table", "Safety and human engagement by threshold", content);
 }
 
+std::string CurvesSection(const std::optional<ReportCurves>& curves) {
+  if (!curves || curves->points.empty()) return "";
+  return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
+}
+
 /// "7", or "7 to 9" where the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
@@ -102,16 +109,25 @@ std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
 }
 
-std::string SummaryOf(std::span<const ReportRun> runs) {
-  if (runs.empty()) return "";
-  return fmt::format("{} {} of {} steps, seed {}", runs.size(), runs.size() == 1 ? "run" : "runs",
-                     RangeOf(runs, [](const ReportRun& run) { return run.samples.size(); }),
-                     RangeOf(runs, [](const ReportRun& run) { return run.seed; }));
+std::string SummaryOf(std::span<const ReportRun> runs, const std::optional<ReportCurves>& curves) {
+  std::string summary;
+  if (!runs.empty()) {
+    summary =
+        fmt::format("{} {} of {} steps, seed {}", runs.size(), runs.size() == 1 ? "run" : "runs",
+                    RangeOf(runs, [](const ReportRun& run) { return run.samples.size(); }),
+                    RangeOf(runs, [](const ReportRun& run) { return run.seed; }));
+  }
+  if (curves) {
+    summary += fmt::format("{}{} thresholds over {}", runs.empty() ? "" : "; ",
+                           curves->points.size(), SeedsText(*curves));
+  }
+  return summary;
 }
 
 }  // namespace
 
-std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table) {
+std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table,
+                       const std::optional<ReportCurves>& curves) {
   std::string cards;
   std::string scenarios;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -122,23 +138,26 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
   for (std::size_t i = 0; i < Figures().size(); ++i) {
     figures += FigureElement(Figures()[i], i + 1);
   }
-  const std::string script = fmt::format("{}\n{}\n{}\n{}", assets::kModelJs, assets::kChartJs,
-                                         assets::kLegendJs, assets::kPageJs);
+  const bool no_figures = runs.empty() && curves;
+  const std::array scripts{assets::kModelJs,  assets::kChartJs, assets::kLegendJs,
+                           assets::kCurvesJs, assets::kFrontJs, assets::kPageJs};
   return Fill(assets::kPageHtml,
-              {{"title", EscapeHtml(TitleOf(runs))},
+              {{"title", EscapeHtml(TitleOf(runs, curves))},
                {"style", fmt::format("{}\n{}", assets::kUplotCss, assets::kPageCss)},
-               {"summary", SummaryOf(runs)},
+               {"summary", SummaryOf(runs, curves)},
                {"runs", cards},
                {"table", TableSection(table)},
+               {"curves", CurvesSection(curves)},
+               {"figures_hidden", no_figures ? " hidden" : ""},
                {"figures", figures},
                {"measures", Section("measures", "Measures", MeasureTable(runs))},
                {"differences", Section("differences", "What differs between the scenarios",
                                        DifferenceTable(runs))},
                {"scenarios", Section("scenarios", "Scenarios", scenarios)},
-               {"data", EscapeScript(PageData(runs))},
+               {"data", EscapeScript(PageData(runs, curves))},
                {"uplot", std::string(assets::kUplotJs)},
                {"uplot_license", EscapeHtml(assets::kUplotLicense)},
-               {"script", script}});
+               {"script", fmt::format("{}", fmt::join(scripts, "\n"))}});
 }
 
 }  // namespace fogline

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "scenario/scenario.h"
 #include "services/measures/sample.h"
+#include "tools/sweep/statistics.h"
 
 namespace fogline {
 
@@ -50,12 +52,31 @@ struct ReportTable {
   std::string note;  // such as "mean and standard deviation over seeds 1 to 200"; "" if none
 };
 
+/// SI and RHE against the threshold, over seeds.
+struct ReportCurves {
+  struct Point {
+    double threshold = 0;
+    Summary si_pct;  // of the seeds that have one
+    Summary rhe_pct;
+  };
+  std::string scenario_title;
+  std::int64_t first_seed = 1;
+  std::int64_t last_seed = 1;
+  std::vector<Point> points;  // in ascending order of thresholds, which are distinct
+  std::vector<PublishedRow> published;
+};
+
 /// The whole page. It refers to nothing outside itself.
-std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table);
+std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table,
+                       const std::optional<ReportCurves>& curves = std::nullopt);
 
 /// Writes one PNG file for each figure into `dir` (made if missing), with gnuplot: a panel for each
 /// run, all with the same axes. Files are named figure-1-speeds.png and so on.
 /// @throws std::runtime_error with gnuplot's own words if it fails or is not installed
 void WritePngFigures(const std::filesystem::path& dir, std::span<const ReportRun> runs);
+
+/// The same for the curves: figure-a-thresholds.png and figure-b-front.png.
+/// @throws std::runtime_error likewise
+void WritePngCurves(const std::filesystem::path& dir, const ReportCurves& curves);
 
 }  // namespace fogline

@@ -56,6 +56,16 @@ std::string RowOf(const ReportTable::Row& row) {
                      PercentCell(row.published_rhe_pct.value_or(kNone)));
 }
 
+/// Mean, standard deviation, half of the confidence interval, and percentiles.
+std::string SummaryCells(const Summary& summary) {
+  std::string cells;
+  for (const std::optional<double>& value :
+       {summary.mean, summary.deviation, summary.ci95, summary.p5, summary.p95}) {
+    cells += PercentCell(value.value_or(kNone));
+  }
+  return cells;
+}
+
 /// Decimals that give the largest of `values` five significant digits.
 int DecimalsFor(const std::vector<std::optional<double>>& values) {
   constexpr int kSignificant = 5;
@@ -164,6 +174,32 @@ std::string ThresholdTable(const ReportTable& table) {
       "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th></tr>\n"
       "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
       "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th></tr>\n",
+      rows);
+}
+
+std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points) {
+  std::vector<bool> on_front(curves.points.size());
+  for (const FrontPoint& point : points) {
+    for (const std::size_t row : point.rows) on_front[row] = point.on_front;
+  }
+  std::string rows;
+  for (std::size_t i = 0; i < curves.points.size(); ++i) {
+    const ReportCurves::Point& point = curves.points[i];
+    rows += fmt::format(
+        "<tr><th scope=\"row\"><data value=\"{0}\">{0:g}</data></th>{1}{2}<td>{3}</td></tr>\n",
+        point.threshold, SummaryCells(point.si_pct), SummaryCells(point.rhe_pct),
+        on_front[i] ? "yes" : "");
+  }
+  constexpr std::string_view kMeasure =
+      "<th scope=\"col\">mean</th><th scope=\"col\">std. dev.</th><th scope=\"col\">95 % CI ±</th>"
+      "<th scope=\"col\">5th pct.</th><th scope=\"col\">95th pct.</th>";
+  return Scrolling(
+      "Safety improvement and redundant human engagement at every threshold",
+      fmt::format("<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>"
+                  "<th scope=\"colgroup\" colspan=\"5\">Safety improvement (%)</th>"
+                  "<th scope=\"colgroup\" colspan=\"5\">Redundant human engagement (%)</th>"
+                  "<th scope=\"col\" rowspan=\"2\">on the front</th></tr>\n<tr>{0}{0}</tr>\n",
+                  kMeasure),
       rows);
 }
 

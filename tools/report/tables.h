@@ -5,12 +5,16 @@
 #include <span>
 #include <string>
 
+#include "tools/report/curves.h"
 #include "tools/report/report.h"
 
 namespace fogline {
 
 /// The reproduced table beside the published one.
 std::string ThresholdTable(const ReportTable& table);
+
+/// All values of the curves, a row for each threshold; `points` say which are on the front.
+std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// Every measure that any run has, a row each, the runs side by side.
 std::string MeasureTable(std::span<const ReportRun> runs);

@@ -1,24 +1,18 @@
-// The report's page in headless Chromium: are the figures drawn, does it stay within the width of a
-// phone, does it do what the reader asks. Each test adds a script to a copy of the page; the script
-// puts what it finds into an attribute, which Chromium prints with the rest of the page.
-#include <chrono>
-#include <fstream>
+// The report of runs in a real browser: are the figures drawn, does it stay within the width of a
+// phone, does it do what the reader asks.
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/command.h"
+#include "tests/integration/report/browser.h"
 #include "tests/unit/report/example_runs.h"
 #include "tools/report/figures.h"
-#include "tools/report/html.h"
 #include "tools/report/report.h"
 
 namespace fogline {
@@ -28,112 +22,12 @@ using nlohmann::json;
 using ::testing::Each;
 using ::testing::SizeIs;
 
-struct ViewSize {
-  int width;
-  int height;
-};
-/// What the reader prefers, by Chromium's numbers.
-enum class Scheme { kDark = 0, kLight = 1 };
-
-constexpr ViewSize kDesktop{1280, 900};
-constexpr ViewSize kPhone{360, 740};
-
-/// The page in a frame of the wanted size (a window is never narrower than 500 pixels), and an
-/// unfinished document beside it: Chromium prints when everything is loaded, so the probe ends that
-/// document when it is done.
-constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
-<iframe id="hold" hidden></iframe>
-<script>document.getElementById("hold").contentDocument.open();</script>
-<iframe style="border:0;width:{}px;height:{}px" srcdoc="{}"></iframe>)";
-
-/// For a browser that starts on a busy machine; a page takes about a second.
-constexpr std::chrono::seconds kLimit(60);
-
-/// Runs before everything else in the page.
-constexpr std::string_view kWatch = R"(<script>
-const problems = [];
-addEventListener("error", (event) => problems.push(event.message));
-addEventListener("unhandledrejection", (event) => problems.push(String(event.reason)));
-addEventListener("securitypolicyviolation", (event) => problems.push(event.violatedDirective));
-</script>)";
-
-/// Runs last, with the test's own part in the middle.
-constexpr std::string_view kProbe = R"(<script>
-const frame = () => new Promise(requestAnimationFrame);
-const settled = async () => {{ for (let i = 0; i < 5; ++i) await frame(); }};
-const isDrawn = (canvas) => canvas.width > 0 &&
-    canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 0);
-const canvases = () => [...document.querySelectorAll("figure canvas")];
-const mouse = (type, element, x) => {{
-  const {{left, top}} = element.getBoundingClientRect();
-  element.dispatchEvent(new MouseEvent(type, {{bubbles: true, button: 0, clientX: left + x,
-                                              clientY: top + 40, movementX: 5, movementY: 1}}));
-}};
-const pointer = (index, x) => mouse("mousemove", page.charts[index].over, x);
-const click = (selector) => document.querySelector(selector).click();
-(async () => {{
-  await settled();
-  const found = {{}};
-  try {{
-    {}
-  }} catch (problem) {{
-    problems.push(String(problem));
-  }}
-  await settled();
-  found.problems = problems;
-  found.loaded = performance.getEntriesByType("resource").length;
-  top.document.documentElement.dataset.found = JSON.stringify(found);
-  top.document.getElementById("hold").contentDocument.close();
-}})();
-</script>)";
-
-std::string Replaced(std::string text, std::string_view what, std::string_view with) {
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + with.size())) {
-    text.replace(at, what.size(), with);
-  }
-  return text;
-}
-
-class ReportInBrowserTest : public ::testing::Test {
+class ReportInBrowserTest : public BrowserTest {
  protected:
-  /// Shows the report in a window and returns what `script` put into `found`, with "problems" and
-  /// the number of things "loaded" from outside.
   json Show(std::span<const ReportRun> runs, ViewSize window, std::string_view script,
             Scheme scheme = Scheme::kLight) {
-    std::string report = MakeReport(runs, ExampleTable());
-    report.insert(report.find("<meta"), kWatch);
-    report.insert(report.rfind("</body>"), fmt::format(kProbe, script));
-    const std::string file = folder_.File("page.html");
-    std::ofstream(file) << fmt::format(kFrame, window.width, window.height, EscapeHtml(report));
-    const test::Outcome outcome = test::RunCommand(
-        {FOGLINE_CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
-         "--no-first-run", "--disable-background-networking", "--disable-component-update",
-         "--disable-sync", "--user-data-dir=" + folder_.File("profile"),
-         fmt::format("--window-size={},{}", window.width, window.height),
-         fmt::format("--blink-settings=preferredColorScheme={}", static_cast<int>(scheme)),
-         "--dump-dom", "file://" + file},
-        kLimit);
-    return Found(outcome.out);
+    return BrowserTest::Show(MakeReport(runs, ExampleTable()), window, script, scheme);
   }
-
- private:
-  static json Found(const std::string& shown) {
-    constexpr std::string_view kAttribute = "data-found=\"";
-    const std::size_t begin = shown.find(kAttribute);
-    if (begin == std::string::npos) {
-      ADD_FAILURE() << "the page's script did not come to its end";
-      return {{"problems", {"no result"}}};
-    }
-    const std::size_t from = begin + kAttribute.size();
-    std::string text = shown.substr(from, shown.find('"', from) - from);
-    for (const auto& [entity, character] :
-         {std::pair{"&quot;", "\""}, {"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}}) {
-      text = Replaced(text, entity, character);
-    }
-    return json::parse(text);
-  }
-
-  test::ScratchFolder folder_;
 };
 
 TEST_F(ReportInBrowserTest, DrawsEveryFigureAndLoadsNothing) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/command.h"
+#include "tests/unit/report/example_curves.h"
 #include "tests/unit/report/example_runs.h"
 #include "tools/report/figures.h"
 #include "tools/report/gnuplot.h"
@@ -70,6 +71,29 @@ TEST_F(PngTest, DrawsRunsWithoutValuesToo) {
         std::numeric_limits<double>::quiet_NaN();
   }
   EXPECT_NO_THROW(WritePngFigures(dir_, std::vector<ReportRun>{empty, alone}));
+}
+
+TEST_F(PngTest, DrawsTheCurvesInTwoPictures) {
+  WritePngCurves(dir_ / "figures", ExampleCurves());
+  for (const char* name : {"figure-a-thresholds.png", "figure-b-front.png"}) {
+    const std::string picture = Read(dir_ / "figures" / name);
+    ASSERT_THAT(picture, StartsWith("\x89PNG")) << name;
+    EXPECT_EQ(NumberAt(picture, 16), 1600U);
+    EXPECT_EQ(NumberAt(picture, 20), 1000U);
+  }
+}
+
+TEST_F(PngTest, DrawsCurvesWithoutSpreadPublishedValuesOrSiToo) {
+  ReportCurves curves = ExampleCurves();
+  curves.published.clear();
+  for (ReportCurves::Point& point : curves.points) {
+    point.si_pct = {};
+    point.rhe_pct = {.count = 1, .mean = 0.0};
+  }
+  EXPECT_NO_THROW(WritePngCurves(dir_, curves));
+  curves.points.resize(1);
+  curves.points[0].si_pct = {.count = 1, .mean = 100.0};
+  EXPECT_NO_THROW(WritePngCurves(dir_, curves));
 }
 
 TEST_F(PngTest, TakesTheNameOfARunForNothingButAName) {

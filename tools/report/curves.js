@@ -1,0 +1,236 @@
+// Figure A: safety improvement and redundant human engagement against the threshold, with bands
+// over the seeds; and what figures A and B share: the threshold that the reader points at.
+
+const {curves} = report;
+
+const MEASURES = [
+  {key: "si", label: "SI", colour: 0, dash: []},
+  {key: "rhe", label: "RHE", colour: 1, dash: [7, 4]},
+];
+const BANDS = [
+  {alpha: 0.16, ends: ({p5, p95}, i) => [p5[i], p95[i]]},
+  {alpha: 0.42, ends: ({mean, ci95}, i) => around(mean[i], ci95[i])},
+];
+
+const curveState = {
+  row: 0,             // place of the threshold that the reader points at
+  hidden: new Set(),  // keys of the measures that figure A leaves out
+};
+
+const curvePage = {
+  charts: [],  // [{chart, element, wholeX, wholeY}], with what the axes show at first
+  show: [],    // functions that show a threshold, given its place
+  tools: document.getElementById("curve-tools"),
+  slider: document.getElementById("threshold"),
+  text: document.getElementById("threshold-text"),
+  whole: document.getElementById("whole-curves"),
+};
+
+/** [middle - half, middle + half], nulls if either is missing. */
+function around(middle, half) {
+  return middle == null || half == null ? [null, null] : [middle - half, middle + half];
+}
+
+/** Least and greatest number with a margin; a flat line fills no axis shorter than `least`. */
+function widened(values, least) {
+  const numbers = values.filter((value) => value != null);
+  if (numbers.length === 0) return [0, 1];
+  const low = numbers.reduce((a, b) => Math.min(a, b));
+  const high = numbers.reduce((a, b) => Math.max(a, b));
+  const margin = 0.05 * Math.max(high - low, least);
+  return [low - margin, high + margin];
+}
+
+function curveHeight(width) {
+  return Math.round(Math.min(340, Math.max(240, width * 0.5)));
+}
+
+/** The point of figure B that has this threshold among its own, if any. */
+function pointOf(row) {
+  return curves.points.find(({rows}) => rows.includes(row));
+}
+
+const showRow = oncePerFrame(() => {
+  for (const show of curvePage.show) show(curveState.row);
+  const threshold = String(curves.thresholds[curveState.row]);
+  curvePage.slider.value = curveState.row;
+  curvePage.slider.setAttribute("aria-valuetext", threshold);
+  curvePage.text.textContent = threshold;
+});
+
+function setRow(row) {
+  curveState.row = row;
+  showRow();
+}
+
+function showWholeCurves() {
+  for (const {chart, wholeX, wholeY} of curvePage.charts) {
+    chart.setScale("x", {min: wholeX[0], max: wholeX[1]});
+    chart.setScale("y", {min: wholeY[0], max: wholeY[1]});
+  }
+  curvePage.whole.disabled = true;
+  showRow();
+}
+
+/** Lets `draw` paint within the plot, in canvas pixels. */
+function withinPlot({ctx, bbox}, draw) {
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  draw(ctx);
+  ctx.restore();
+}
+
+/** A published value: a hollow diamond. */
+function drawDiamond(chart, x, y, colour) {
+  const {ctx} = chart;
+  const [left, top] = [chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)];
+  const r = 6 * devicePixelRatio;
+  ctx.beginPath();
+  ctx.moveTo(left, top - r);
+  for (const [dx, dy] of [[r, 0], [0, r], [-r, 0]]) ctx.lineTo(left + dx, top + dy);
+  ctx.closePath();
+  ctx.fillStyle = withAlpha(state.theme.surface, 0.7);
+  ctx.fill();
+  ctx.setLineDash([]);
+  ctx.strokeStyle = colour;
+  ctx.lineWidth = 1.75 * devicePixelRatio;
+  ctx.stroke();
+}
+
+/**
+ * A chart in a figure's place. `onPoint(chart)` is called when the reader points at it; a drag
+ * looks closer in both directions.
+ */
+function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cursor, draw, onPoint}) {
+  const element = make("div", {class: "chart", role: "img", "aria-labelledby": `${figure.id}-title`});
+  figure.querySelector(".panels").replaceChildren(make("div", {class: "panel"}, element));
+  const {muted, font} = state.theme;
+  const width = element.clientWidth;
+  const scale = ([low, high]) => ({auto: false, min: low, max: high, range: (_, min, max) => [min, max]});
+  const options = {
+    width,
+    height: curveHeight(width),
+    padding: [TOP, 12, 0, 0],
+    legend: {show: false},
+    series,
+    bands,
+    scales: {x: {...scale(wholeX), time: false}, y: scale(wholeY)},
+    axes: [
+      axisOptions(TICK_SPACE.time, tickTexts(""), {
+        size: 28, label: xLabel, labelSize: 20, labelGap: 0, labelFont: `12px ${font}`, stroke: muted}),
+      axisOptions(TICK_SPACE.value, tickTexts(""), {size: VALUE_AXIS_WIDTH}),
+    ],
+    cursor: {
+      ...cursor,
+      drag: {x: true, y: true, uni: 24, dist: 6, setScale: true},
+      bind: {mouseleave: () => null, dblclick: () => showWholeCurves},
+    },
+    hooks: {
+      draw: [(chart) => withinPlot(chart, () => draw(chart))],
+      setCursor: [(chart) => { if (chart.cursor.event) onPoint(chart); }],
+      setSelect: [(chart) => { if (chart.select.width > 0) curvePage.whole.disabled = false; }],
+      setScale: [() => showRow()],
+    },
+  };
+  const chart = new uPlot(options, data, element);
+  chart.over.addEventListener("touchmove", ({touches: [touch]}) => {
+    const {left, top} = chart.over.getBoundingClientRect();
+    chart.setCursor({left: touch.clientX - left, top: touch.clientY - top}, false);
+    onPoint(chart);
+  }, {passive: true});
+  curvePage.charts.push({chart, element, wholeX, wholeY});
+  return chart;
+}
+
+function shownMeasures() {
+  return MEASURES.filter(({key}) => !curveState.hidden.has(key));
+}
+
+/** Columns, series and bands of figure A: all bands, then all means on top of them. */
+function curveSeries() {
+  const data = [curves.thresholds];
+  const series = [{}];
+  const bands = [];
+  for (const {key, colour} of shownMeasures()) {
+    for (const {alpha, ends} of BANDS) {
+      const pairs = curves.thresholds.map((_, i) => ends(curves[key], i));
+      for (const end of [0, 1]) {
+        data.push(pairs.map((pair) => pair[end]));
+        series.push({isEdge: true, stroke: "transparent", width: 0, points: {show: false}});
+      }
+      const fill = withAlpha(state.theme.palette[colour], alpha);
+      bands.push({series: [series.length - 1, series.length - 2], fill});
+    }
+  }
+  for (const {key, colour, dash} of shownMeasures()) {
+    data.push(curves[key].mean);
+    series.push({stroke: state.theme.palette[colour], width: 2, dash, points: {show: false}});
+  }
+  return {data, series, bands};
+}
+
+function buildThresholds(figure) {
+  const parts = curveSeries();
+  const {thresholds, published} = curves;
+  const drawPublished = (chart) => {
+    for (const row of published) {
+      for (const {key, colour} of shownMeasures()) {
+        drawDiamond(chart, row.threshold, row[key], state.theme.palette[colour]);
+      }
+    }
+  };
+  const chart = makeCurveChart(figure, {
+    ...parts,
+    wholeX: widened([...thresholds, ...published.map(({threshold}) => threshold)], 0.01),
+    wholeY: widened([...parts.data.slice(1).flat(), ...published.flatMap(({si, rhe}) => [si, rhe])], 1),
+    xLabel: "DoC threshold",
+    cursor: {y: false, points: {size: (_, i) => parts.series[i].isEdge ? 0 : 7}},
+    draw: drawPublished,
+    onPoint: ({cursor}) => { if (cursor.idx != null) setRow(cursor.idx); },
+  });
+  const showValues = makeCurveLegend(figure);
+  curvePage.show.push((row) => {
+    pointAt(chart, thresholds[row]);
+    showValues(row);
+  });
+}
+
+/** A row for each measure with its values at a threshold. Returns a function that shows them. */
+function makeCurveLegend(figure) {
+  const clock = make("span");
+  const head = make("tr", {}, make("th", {scope: "col"}, clock));
+  for (const name of ["mean", "std. dev.", "95 % CI of mean", "5th to 95th pct."]) {
+    head.append(make("th", {scope: "col"}, name));
+  }
+  const rows = MEASURES.map((measure) => {
+    const button = make("button", {type: "button", "aria-pressed": !curveState.hidden.has(measure.key)},
+                        lineSwatch(state.theme.palette[measure.colour], measure.dash, 2.5), measure.label);
+    button.addEventListener("click", () => {
+      if (!curveState.hidden.delete(measure.key)) curveState.hidden.add(measure.key);
+      buildCurves();
+      [...figure.querySelectorAll(".legend button")].find(({textContent}) => textContent === measure.label).focus();
+    });
+    const cells = Array.from({length: 4}, () => make("td"));
+    return {measure, cells, element: make("tr", {}, make("th", {scope: "row"}, button), ...cells)};
+  });
+  const keys = [make("li", {}, make("span", {class: "key interval"}), "95 % CI of the mean"),
+                make("li", {}, make("span", {class: "key percentiles"}), "5th to 95th percentile of seeds")];
+  if (curves.published.length) keys.push(make("li", {}, make("span", {class: "key diamond"}), "published"));
+  figure.querySelector(".legend").replaceChildren(
+      make("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": "Values of figure A at the threshold"},
+           make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows.map(({element}) => element)))),
+      make("ul", {class: "keys"}, ...keys));
+  return (row) => {
+    clock.textContent = `at ${curves.thresholds[row]} in %`;
+    for (const {measure, cells} of rows) {
+      const {mean, deviation, ci95, p5, p95} = curves[measure.key];
+      const range = ([low, high]) => low == null ? "–" : `${decimal(low, 2)} to ${decimal(high, 2)}`;
+      cells[0].textContent = decimal(mean[row], 2);
+      cells[1].textContent = decimal(deviation[row], 2);
+      cells[2].textContent = range(around(mean[row], ci95[row]));
+      cells[3].textContent = range([p5[row], p95[row]]);
+    }
+  };
+}

@@ -1,0 +1,175 @@
+// Figures A and B as PNG files, for a paper.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tools/report/curves.h"
+#include "tools/report/figures.h"
+#include "tools/report/gnuplot.h"
+#include "tools/report/report.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kSi = kPalette[0];
+constexpr std::string_view kRhe = kPalette[1];
+constexpr std::string_view kLight = "d8";  // how transparent the bands are, of ff
+constexpr std::string_view kDark = "98";
+constexpr std::size_t kHeightPx = 1000;
+constexpr double kMargin = 0.04;  // beyond the outermost values, of an axis
+
+std::string Number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "NaN"; }
+
+/// "#aarrggbb" of "#rrggbb", as gnuplot has it.
+std::string Transparent(std::string_view colour, std::string_view alpha) {
+  return fmt::format("#{}{}", alpha, colour.substr(1));
+}
+
+/// Mean, ends of its confidence interval, ends of the percentiles.
+std::string Cells(const Summary& of) {
+  const double mean = of.mean.value_or(kNone);
+  const double half = of.ci95.value_or(kNone);
+  return fmt::format(" {} {} {} {} {}", Number(mean), Number(mean - half), Number(mean + half),
+                     Number(of.p5.value_or(kNone)), Number(of.p95.value_or(kNone)));
+}
+
+std::string CurvesBlock(const ReportCurves& curves) {
+  std::string block = "$curves << EOD\n";
+  for (const ReportCurves::Point& point : curves.points) {
+    block += fmt::format("{}{}{}\n", point.threshold, Cells(point.si_pct), Cells(point.rhe_pct));
+  }
+  return block + "EOD\n";
+}
+
+/// Threshold, SI and RHE of the published rows.
+std::string PublishedBlock(const ReportCurves& curves) {
+  std::string block = "$published << EOD\n";
+  for (const PublishedRow& row : curves.published) {
+    block += fmt::format("{} {} {}\n", row.threshold, row.si_pct, row.rhe_pct);
+  }
+  if (curves.published.empty()) block += "NaN NaN NaN\n";  // gnuplot refuses an empty block
+  return block + "EOD\n";
+}
+
+/// RHE, SI, and whether it is on the front.
+std::string PointsBlock(const std::vector<FrontPoint>& points) {
+  std::string block = "$points << EOD\n";
+  for (const FrontPoint& point : points) {
+    block += fmt::format("{} {} {}\n", point.rhe_pct, point.si_pct, point.on_front ? 1 : 0);
+  }
+  if (points.empty()) block += "NaN NaN NaN\n";
+  return block + "EOD\n";
+}
+
+/// Commands for the thresholds below and beside their points, where there is room.
+std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& points) {
+  constexpr double kWidePct = 9;  // least distance of labels, in engagement or safety
+  constexpr double kHighPct = 4;
+  std::vector<const FrontPoint*> labelled;
+  std::string commands;
+  for (const std::size_t i : LabelOrder(curves, points)) {
+    const FrontPoint& point = points[i];
+    const bool near = std::any_of(labelled.begin(), labelled.end(), [&](const FrontPoint* other) {
+      return std::fabs(other->rhe_pct - point.rhe_pct) < kWidePct &&
+             std::fabs(other->si_pct - point.si_pct) < kHighPct;
+    });
+    if (near) continue;
+    labelled.push_back(&point);
+    const bool is_right = point.rhe_pct > 90;
+    commands += fmt::format(
+        "set label {} at first {}, first {} {} offset {},{} front font ',15' textcolor rgb "
+        "'#5b6670'\n",
+        GnuplotString(point.thresholds), point.rhe_pct, point.si_pct, is_right ? "right" : "left",
+        is_right ? -0.6 : 0.9, point.beside && !is_right ? 0.0 : -0.7);
+  }
+  return commands;
+}
+
+/// Two bands of a measure whose mean is in `column`.
+std::string Bands(int column, std::string_view colour) {
+  return fmt::format(
+      "$curves using 1:{}:{} with filledcurves fillcolor rgb '{}' fillstyle solid noborder "
+      "notitle, \\\n     $curves using 1:{}:{} with filledcurves fillcolor rgb '{}' fillstyle "
+      "solid noborder notitle",
+      column + 3, column + 4, Transparent(colour, kLight), column + 1, column + 2,
+      Transparent(colour, kDark));
+}
+
+std::string Diamonds(std::string_view columns, std::string_view colour) {
+  return fmt::format(
+      "$published using {} with points pointtype 12 pointsize 2.4 linewidth 1.2 linecolor rgb '{}' "
+      "notitle",
+      columns, colour);
+}
+
+std::string Key(const std::vector<std::string>& entries) {
+  return fmt::format(
+      "set key outside top center horizontal Left reverse samplen 2 width 1 font ',18' maxrows 2\n"
+      "plot {}\n",
+      fmt::join(entries, ", \\\n     "));
+}
+
+std::string Heading(std::string_view x_label, std::string_view y_label) {
+  return PngTerminal(kHeightPx) + std::string(kPngAxes) +
+         fmt::format(
+             "set offsets graph {0}, graph {0}, graph {0}, graph {0}\nset autoscale fix\n"
+             "set xlabel '{1}' offset 0,0.3\nset ylabel '{2}'\n",
+             kMargin, x_label, y_label);
+}
+
+std::string ThresholdScript(const ReportCurves& curves) {
+  constexpr int kSiColumn = 2;
+  constexpr int kRheColumn = 7;
+  return CurvesBlock(curves) + PublishedBlock(curves) + Heading("DoC threshold", "SI, RHE (%)") +
+         Key({Bands(kSiColumn, kSi), Bands(kRheColumn, kRhe),
+              fmt::format("$curves using 1:{} with lines linewidth 1.5 linecolor rgb '{}' title "
+                          "'safety improvement (SI)'",
+                          kSiColumn, kSi),
+              fmt::format("$curves using 1:{} with lines linewidth 1.5 dashtype (8, 4) linecolor "
+                          "rgb '{}' title 'redundant human engagement (RHE)'",
+                          kRheColumn, kRhe),
+              Diamonds("1:2", kSi), Diamonds("1:3", kRhe),
+              fmt::format("keyentry with boxes fillcolor rgb '{}' fillstyle solid noborder title "
+                          "'95 % confidence interval of the mean'",
+                          Transparent(kSi, kDark)),
+              fmt::format("keyentry with boxes fillcolor rgb '{}' fillstyle solid noborder title "
+                          "'5th to 95th percentile of seeds'",
+                          Transparent(kSi, kLight)),
+              "keyentry with points pointtype 12 pointsize 2 linecolor rgb 'black' title "
+              "'published'"});
+}
+
+std::string FrontScript(const ReportCurves& curves) {
+  const std::vector<FrontPoint> points = FrontPoints(curves);
+  return PointsBlock(points) + PublishedBlock(curves) + Labels(curves, points) +
+         Heading("Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
+         Key({"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize 1.2 "
+              "linecolor "
+              "rgb '#6b757f' title 'another threshold is better'",
+              fmt::format("$points using ($3 == 1 ? $1 : NaN):2 with linespoints pointtype 7 "
+                          "pointsize 1.4 linewidth 1.2 linecolor rgb '{}' title 'Pareto front'",
+                          kSi),
+              Diamonds("3:2", kInk),
+              fmt::format("keyentry with points pointtype 12 pointsize 2 linecolor rgb '{}' title "
+                          "'published'",
+                          kInk)});
+}
+
+}  // namespace
+
+void WritePngCurves(const std::filesystem::path& dir, const ReportCurves& curves) {
+  std::filesystem::create_directories(dir);
+  RunGnuplot(ThresholdScript(curves), dir / "figure-a-thresholds.png");
+  RunGnuplot(FrontScript(curves), dir / "figure-b-front.png");
+}
+
+}  // namespace fogline
