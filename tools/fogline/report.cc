@@ -118,7 +118,6 @@ ReportCurves ComputeCurves(const ReportArguments& arguments) {
                       .last_seed = seeds.last,
                       .points = {},
                       .published = scenario.published};
-  WatchInterrupts();
   for (const ThresholdRow& row : RowsOnAllCores(scenario, thresholds, seeds)) {
     curves.points.push_back({row.threshold, row.si_pct.Result(), row.rhe_pct.Result()});
   }
@@ -129,6 +128,7 @@ int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
   }
+  if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
   const std::optional<ReportTable> table = TableOf(runs, improvements);

@@ -8,8 +8,8 @@ const MEASURES = [
   {key: "rhe", label: "RHE", colour: 1, dash: [7, 4]},
 ];
 const BANDS = [
-  {alpha: 0.16, ends: ({p5, p95}, i) => [p5[i], p95[i]]},
-  {alpha: 0.42, ends: ({mean, ci95}, i) => around(mean[i], ci95[i])},
+  {alpha: 0.2, ends: ({p5, p95}, i) => [p5[i], p95[i]]},
+  {alpha: 0.45, ends: ({mean, ci95}, i) => around(mean[i], ci95[i])},
 ];
 
 const curveState = {

@@ -25,7 +25,8 @@ constexpr std::string_view kRhe = kPalette[1];
 constexpr std::string_view kLight = "d8";  // how transparent the bands are, of ff
 constexpr std::string_view kDark = "98";
 constexpr std::size_t kHeightPx = 1000;
-constexpr double kMargin = 0.04;  // beyond the outermost values, of an axis
+constexpr double kLeastThresholdSpan = 0.01;  // of an axis, so that a flat line does not fill it
+constexpr double kLeastPercentSpan = 1;
 
 std::string Number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "NaN"; }
 
@@ -118,18 +119,63 @@ std::string Key(const std::vector<std::string>& entries) {
       fmt::join(entries, ", \\\n     "));
 }
 
-std::string Heading(std::string_view x_label, std::string_view y_label) {
-  return PngTerminal(kHeightPx) + std::string(kPngAxes) +
-         fmt::format(
-             "set offsets graph {0}, graph {0}, graph {0}, graph {0}\nset autoscale fix\n"
-             "set xlabel '{1}' offset 0,0.3\nset ylabel '{2}'\n",
-             kMargin, x_label, y_label);
+/// "set xrange" for all of `values` with a margin, NaN left out; a flat line fills no axis shorter
+/// than `least`.
+std::string Range(char axis, const std::vector<double>& values, double least) {
+  constexpr double kMargin = 0.04;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (low > high) return fmt::format("set {}range [0:1]\n", axis);
+  const double margin = kMargin * std::max(high - low, least);
+  return fmt::format("set {}range [{}:{}]\n", axis, low - margin, high + margin);
+}
+
+std::string Axes(std::string_view x_label, std::string_view y_label) {
+  return fmt::format("{}{}set xlabel '{}' offset 0,0.3\nset ylabel '{}'\n", PngTerminal(kHeightPx),
+                     kPngAxes, x_label, y_label);
+}
+
+std::string ThresholdRanges(const ReportCurves& curves) {
+  std::vector<double> thresholds;
+  std::vector<double> values;
+  for (const PublishedRow& row : curves.published) {
+    thresholds.push_back(row.threshold);
+    values.insert(values.end(), {row.si_pct, row.rhe_pct});
+  }
+  for (const ReportCurves::Point& point : curves.points) {
+    thresholds.push_back(point.threshold);
+    for (const Summary& of : {point.si_pct, point.rhe_pct}) {
+      values.insert(values.end(),
+                    {of.mean.value_or(kNone), of.p5.value_or(kNone), of.p95.value_or(kNone)});
+    }
+  }
+  return Range('x', thresholds, kLeastThresholdSpan) + Range('y', values, kLeastPercentSpan);
+}
+
+std::string FrontRanges(const ReportCurves& curves, const std::vector<FrontPoint>& points) {
+  std::vector<double> rhe;
+  std::vector<double> si;
+  for (const PublishedRow& row : curves.published) {
+    rhe.push_back(row.rhe_pct);
+    si.push_back(row.si_pct);
+  }
+  for (const FrontPoint& point : points) {
+    rhe.push_back(point.rhe_pct);
+    si.push_back(point.si_pct);
+  }
+  return Range('x', rhe, kLeastPercentSpan) + Range('y', si, kLeastPercentSpan);
 }
 
 std::string ThresholdScript(const ReportCurves& curves) {
   constexpr int kSiColumn = 2;
   constexpr int kRheColumn = 7;
-  return CurvesBlock(curves) + PublishedBlock(curves) + Heading("DoC threshold", "SI, RHE (%)") +
+  return CurvesBlock(curves) + PublishedBlock(curves) + Axes("DoC threshold", "SI, RHE (%)") +
+         ThresholdRanges(curves) +
          Key({Bands(kSiColumn, kSi), Bands(kRheColumn, kRhe),
               fmt::format("$curves using 1:{} with lines linewidth 1.5 linecolor rgb '{}' title "
                           "'safety improvement (SI)'",
@@ -151,7 +197,8 @@ std::string ThresholdScript(const ReportCurves& curves) {
 std::string FrontScript(const ReportCurves& curves) {
   const std::vector<FrontPoint> points = FrontPoints(curves);
   return PointsBlock(points) + PublishedBlock(curves) + Labels(curves, points) +
-         Heading("Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
+         Axes("Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
+         FrontRanges(curves, points) +
          Key({"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize 1.2 "
               "linecolor "
               "rgb '#6b757f' title 'another threshold is better'",

@@ -54,10 +54,10 @@ const isDrawn = (canvas) => canvas.width > 0 &&
     canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 0);
 const canvases = () => [...document.querySelectorAll("figure canvas")];
 const curveCanvases = () => [...document.querySelectorAll("#curves canvas")];
-const mouse = (type, element, x) => {{
+const mouse = (type, element, x, y = 40) => {{
   const {{left, top}} = element.getBoundingClientRect();
   element.dispatchEvent(new MouseEvent(type, {{bubbles: true, button: 0, clientX: left + x,
-                                              clientY: top + 40, movementX: 5, movementY: 1}}));
+                                              clientY: top + y, movementX: 5, movementY: 1}}));
 }};
 const pointer = (index, x) => mouse("mousemove", page.charts[index].over, x);
 const click = (selector) => document.querySelector(selector).click();

@@ -33,7 +33,7 @@ TEST_F(CurvesInBrowserTest, DrawsTheCurvesWithRunsAndWithout) {
     EXPECT_THAT(found["problems"], SizeIs(0)) << found;
     EXPECT_EQ(found["drawn"], json::parse("[true, true]"));
     EXPECT_THAT(found["values"], Each(::testing::Ne("")));
-    EXPECT_EQ(found["reading"], "Threshold 0.5: SI 53.85 %, RHE 0.00 %, on the front");
+    EXPECT_EQ(found["reading"], "Threshold 0.5: SI 55.56 %, RHE 0.00 %, on the front");
   }
   EXPECT_EQ(both["figures"], true);
   EXPECT_EQ(alone["figures"], false);
@@ -45,7 +45,7 @@ TEST_F(CurvesInBrowserTest, PointsAtTheSameThresholdInBothFigures) {
     mouse("mousemove", byThreshold.over, byThreshold.valToPos(0.7, "x"));
     await settled();
     found.byThreshold = [curvePage.text.textContent, document.querySelector(".spot").textContent];
-    mouse("mousemove", front.over, front.valToPos(100, "x"));
+    mouse("mousemove", front.over, front.valToPos(100, "x"), front.valToPos(100, "y"));
     await settled();
     found.byFront = [curvePage.text.textContent, document.querySelector(".spot").textContent];
     curvePage.slider.value = 49;

@@ -27,7 +27,7 @@ inline ReportCurves ExampleCurves() {
                       .published = {{0.2, 100.0, 100.0}, {0.5, 80.79, 0.0}, {0.8, 10.23, 0.0}}};
   for (int i = 1; i <= 99; ++i) {
     const double threshold = i / 100.0;
-    const double si = std::clamp((0.85 - threshold) / 0.0065, 0.0, 100.0);
+    const double si = std::clamp((0.85 - threshold) / 0.0063, 0.0, 100.0);
     const double rhe = threshold <= 0.2 ? 100.0 : 100.0 / (1.0 + std::exp(60 * (threshold - 0.3)));
     curves.points.push_back({.threshold = threshold,
                              .si_pct = ExampleSummary(si, si > 0 && si < 100 ? 3.0 : 0.0),

@@ -1,0 +1,123 @@
+// `fogline report` as a person uses it: pages of logs, and curves that need none.
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Outcome Report(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {Program("fogline"), "report"});
+  return RunCommand(arguments);
+}
+
+std::string Read(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// What the page's script is given.
+nlohmann::json DataOf(const std::string& page) {
+  constexpr std::string_view kBegin = "id=\"report-data\">";
+  const std::size_t from = page.find(kBegin) + kBegin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
+  // GIVEN the page of the curves, and the table of the same thresholds and seeds
+  const ScratchFolder folder;
+  const std::string file = folder.File("report.html");
+  const Outcome report = Report({"--curves", "scenario/paper.json", "--thresholds", "0.2:0.8:7",
+                                 "--seeds", "3:12", "--output", file});
+  ASSERT_EQ(report.code, 0) << report.err;
+  const Outcome table = RunCommand({Program("fogline"), "table", "scenario/paper.json",
+                                    "--thresholds", "0.2:0.8:7", "--seeds", "3:12", "--json"});
+  ASSERT_EQ(table.code, 0) << table.err;
+  // THEN they agree to the last bit
+  const nlohmann::json curves = DataOf(Read(file))["curves"];
+  const nlohmann::json rows = nlohmann::json::parse(table.out)["rows"];
+  ASSERT_EQ(rows.size(), 7U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(curves["thresholds"][i], rows[i]["threshold"]);
+    EXPECT_EQ(curves["si"]["mean"][i], rows[i]["si_pct"]);
+    EXPECT_EQ(curves["si"]["ci95"][i], rows[i]["si_ci95_pct"]);
+    EXPECT_EQ(curves["si"]["p5"][i], rows[i]["si_p5_pct"]);
+    EXPECT_EQ(curves["si"]["p95"][i], rows[i]["si_p95_pct"]);
+    EXPECT_EQ(curves["rhe"]["mean"][i], rows[i]["rhe_pct"]);
+    EXPECT_EQ(curves["rhe"]["ci95"][i], rows[i]["rhe_ci95_pct"]);
+    EXPECT_LE(rows[i]["si_p5_pct"], rows[i]["si_pct"]);
+    EXPECT_GE(rows[i]["si_p95_pct"], rows[i]["si_pct"]);
+  }
+}
+
+TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) {
+  const ScratchFolder folder;
+  const auto log = [&](const std::string& name, const std::string& override) {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                    "direct", "--set", "/steps=220", "--set", override, "--log",
+                                    folder.File(name), "--quiet"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return folder.File(name);
+  };
+  const Outcome report = Report(
+      {log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
+       log("c.lcm", "/arbitrator/policy=automation"), "--output", folder.File("report.html")});
+  ASSERT_EQ(report.code, 0) << report.err;
+  const nlohmann::json runs = DataOf(Read(folder.File("report.html")))["runs"];
+  ASSERT_EQ(runs.size(), 3U);
+  EXPECT_EQ(runs[0]["name"], "without traded control");
+  EXPECT_EQ(runs[1]["name"], "threshold 0.8");
+  EXPECT_EQ(runs[2]["name"], "threshold 0.2");
+}
+
+TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    const Outcome outcome = Report(arguments);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(error_of({}), StartsWith("error: neither LOG nor --curves is given"));
+  EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--thresholds", "0.2:0.8"}),
+              StartsWith("error: --thresholds 0.2:0.8: not first:last:count"));
+  EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--seeds", "9:1"}),
+              StartsWith("error: --seeds 9:1: neither A:B"));
+  EXPECT_THAT(
+      error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=automation"}),
+      HasSubstr("/arbitrator/policy is automation: no threshold matters"));
+}
+
+TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
+  // GIVEN a log that is cut off, which the report says before it computes, and curves that take
+  // minutes
+  const ScratchFolder folder;
+  const std::string log = folder.File("cut.lcm");
+  RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log",
+              log, "--quiet"});
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
+  const std::string file = folder.File("report.html");
+  Background report({Program("fogline"), "report", log, "--curves", "scenario/paper.json",
+                     "--seeds", "1:1000000", "--output", file});
+  ASSERT_TRUE(report.WaitForErr(log)) << report.Err();
+  // WHEN
+  report.Signal(SIGINT);
+  // THEN it says so and leaves nothing behind
+  EXPECT_EQ(report.Wait(), 130);
+  EXPECT_THAT(report.Err(), HasSubstr("fogline: interrupted"));
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+}  // namespace
+}  // namespace fogline::test
