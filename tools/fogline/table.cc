@@ -1,5 +1,4 @@
 // fogline table: safety improvement against redundant human engagement, by threshold.
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -12,31 +11,10 @@
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/engine.h"
+#include "tools/sweep/statistics.h"
 
 namespace fogline {
 namespace {
-
-/// Mean and standard deviation of what was added.
-class Statistics {
- public:
-  void Add(double value) {
-    ++count_;
-    const double delta = value - mean_;
-    mean_ += delta / static_cast<double>(count_);  // Welford 1962
-    squares_ += delta * (value - mean_);
-  }
-  std::int64_t count() const { return count_; }
-  std::optional<double> mean() const { return count_ > 0 ? std::optional(mean_) : std::nullopt; }
-  std::optional<double> deviation() const {
-    if (count_ < 2) return std::nullopt;
-    return std::sqrt(squares_ / static_cast<double>(count_ - 1));
-  }
-
- private:
-  std::int64_t count_ = 0;
-  double mean_ = 0;
-  double squares_ = 0;
-};
 
 struct Row {
   double threshold = 0;
