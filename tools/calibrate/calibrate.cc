@@ -13,8 +13,6 @@
 namespace fogline {
 namespace {
 
-// Of its random points: any number will do, as long as it stays.
-constexpr unsigned long kSearchSeed = 1;
 // The part of the evaluations that goes into the search of the whole range.
 constexpr double kGlobalPart = 0.6;
 // The table is met: every number within a thousandth of a point.
@@ -133,10 +131,11 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
   for (const FreeField& field : problem.fields) {
     start.push_back(field.ShareOf(field.Get(problem.scenario)));
   }
-  nlopt::srand(kSearchSeed);
   Search search(objective, go_on, progress);
   search.Begin(std::move(start));
-  search.Run(nlopt::GN_CRS2_LM, static_cast<int>(kGlobalPart * max_evaluations));
+  // DIRECT-L (Gablonsky & Kelley 2001) divides the range without chance; Subplex (Rowan 1990) bears
+  // the steps that J makes where one time step more or less is the human's.
+  search.Run(nlopt::GN_DIRECT_L, static_cast<int>(kGlobalPart * max_evaluations));
   search.Run(nlopt::LN_SBPLX, max_evaluations);
   if (search.found()) return search.TakeResult();
   if (!search.refusal().empty()) throw InputError("error: " + search.refusal());

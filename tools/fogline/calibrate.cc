@@ -96,49 +96,42 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
   return problem;
 }
 
-/// The scenario file with the overrides and the values that were found, all else as it stands.
-std::string ScenarioWith(const CalibrateArguments& arguments, const Objective& objective,
-                         const std::vector<double>& values) {
-  const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
-  if (!read.error.empty()) {
-    throw InputError(fmt::format("{}: error: {}", arguments.scenario.string(), read.error));
+/// Finds out before the search, not after it, that its result could not be kept. Returns the text
+/// of the scenario file with the overrides in it, all else as it stands.
+std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&](std::string_view why) {
+    throw InputError(fmt::format("{}: error: --out: {}", arguments.out.string(), why));
+  };
+  if (fs::exists(arguments.out) && !arguments.force) {
+    refuse("the file exists; --force replaces it");
   }
+  const fs::path folder = fs::absolute(arguments.out).parent_path();
+  if (!fs::is_directory(folder)) refuse(fmt::format("there is no folder {}", folder.string()));
+  const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
+  if (!read.error.empty()) refuse(fmt::format("{} {}", arguments.scenario.string(), read.error));
   std::string text = read.text;
   for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::string& pointer = objective.problem().fields[i].pointer();
-    text = WithValue(text, pointer, NumberText(values[i]));
-  }
   // A recorded leader's file is named relative to the scenario's folder.
-  const LeadSection& lead = objective.problem().scenario.lead;
-  const std::filesystem::path recorded = lead.recorded.file;
-  if (lead.profile == LeadProfile::kRecorded && recorded.is_relative() && !recorded.empty()) {
-    const auto there = std::filesystem::absolute(arguments.scenario).parent_path() / recorded;
-    const auto here = std::filesystem::absolute(arguments.out).parent_path();
-    text = WithValue(text, "/lead/recorded/file",
-                     Quote(std::filesystem::proximate(there, here).string()));
+  const fs::path recorded = scenario.lead.recorded.file;
+  if (scenario.lead.profile == LeadProfile::kRecorded && !recorded.empty() &&
+      recorded.is_relative()) {
+    const fs::path there = fs::absolute(arguments.scenario).parent_path() / recorded;
+    text = WithValue(text, "/lead/recorded/file", Quote(fs::proximate(there, folder).string()));
   }
-  ParseScenario(text, arguments.out.string());
   return text;
 }
 
-/// Finds out before the search, not after it, that its result cannot be kept.
-void PrepareOut(const CalibrateArguments& arguments) {
-  if (std::filesystem::exists(arguments.out) && !arguments.force) {
-    throw InputError(fmt::format("{}: error: --out: the file exists; --force replaces it",
-                                 arguments.out.string()));
+void WriteOut(const std::filesystem::path& file, std::string text,
+              const CalibrationProblem& problem, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text = WithValue(text, problem.fields[i].pointer(), NumberText(values[i]));
   }
-  const std::filesystem::path folder = std::filesystem::absolute(arguments.out).parent_path();
-  if (!std::filesystem::is_directory(folder)) {
-    throw InputError(
-        fmt::format("{}: error: --out: no folder {}", arguments.out.string(), folder.string()));
-  }
-}
-
-void WriteScenario(const std::filesystem::path& file, const std::string& text) {
+  ParseScenario(text, file.string());
   std::ofstream stream(file, std::ios::binary);
   stream << text << std::flush;
   if (!stream) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  fmt::print(stderr, "{}: written\n", file.string());
 }
 
 /// @throws Interrupted if nothing was found before the interrupt
@@ -148,6 +141,7 @@ Findings Search(const CalibrateArguments& arguments, const Objective& objective)
   {
     Progress progress("evaluation", arguments.evaluations);
     found = Calibrate(objective, arguments.evaluations, go_on, [&](int evaluations, double best) {
+      if (evaluations == 1) fmt::print(stderr, "objective at the start: {:.4g}\n", best);
       progress.Show(evaluations, fmt::format("objective {:.4g}", best));
     });
   }
@@ -161,7 +155,8 @@ Findings Search(const CalibrateArguments& arguments, const Objective& objective)
 
 int RunCalibrate(const CalibrateArguments& arguments) {
   const Objective objective(MakeProblem(arguments));
-  if (!arguments.out.empty()) PrepareOut(arguments);
+  const std::string text =
+      arguments.out.empty() ? "" : PrepareOut(arguments, objective.problem().scenario);
   WatchInterrupts();
   const Findings findings = Search(arguments, objective);
   const Calibration& found = findings.calibration;
@@ -171,8 +166,7 @@ int RunCalibrate(const CalibrateArguments& arguments) {
     fmt::print("{}", FindingsText(objective.problem(), findings));
   }
   if (!arguments.out.empty()) {
-    WriteScenario(arguments.out, ScenarioWith(arguments, objective, found.values));
-    fmt::print(stderr, "{}: written\n", arguments.out.string());
+    WriteOut(arguments.out, text, objective.problem(), found.values);
   }
   if (WasInterrupted()) {
     throw Interrupted(fmt::format(
