@@ -28,7 +28,7 @@ Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::Show(std::int64_t done) {
+void Progress::Show(std::int64_t done, std::string_view note) {
   if (!terminal_) return;
   const TimePoint now = Clock::now();
   if (now < next_) return;
@@ -42,6 +42,7 @@ void Progress::Show(std::int64_t done) {
              kBarWidth - filled, 100 * share, what_, done, total_,
              static_cast<double>(done) / spent);
   if (share > 0) fmt::print(stderr, "  {:.0f} s left", spent * (1 - share) / share);
+  if (!note.empty()) fmt::print(stderr, "  {}", note);
   std::fflush(stderr);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "services/runtime/clock.h"
 
@@ -18,7 +19,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void Show(std::int64_t done);
+  /// @param note how it goes, behind the rest
+  void Show(std::int64_t done, std::string_view note = "");
 
  private:
   std::string what_;

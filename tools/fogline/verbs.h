@@ -23,6 +23,7 @@ enum ExitCode : int {
 void AddRun(CLI::App& app, Action& action);
 void AddTable(CLI::App& app, Action& action);
 void AddSweep(CLI::App& app, Action& action);
+void AddCalibrate(CLI::App& app, Action& action);
 void AddMetrics(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddDigest(CLI::App& app, Action& action);

@@ -29,16 +29,21 @@ void Statistics::Add(double value) {
   squares_ += delta * (value - mean_);
 }
 
+std::optional<double> Statistics::mean() const {
+  return values_.empty() ? std::nullopt : std::optional(mean_);
+}
+
+std::optional<double> Statistics::deviation() const {
+  if (values_.size() < 2) return std::nullopt;
+  return std::sqrt(squares_ / static_cast<double>(values_.size() - 1));
+}
+
 Summary Statistics::Result() const {
-  Summary summary{.count = static_cast<std::int64_t>(values_.size())};
-  if (values_.empty()) return summary;
-  summary.mean = mean_;
+  Summary summary{.count = count(), .mean = mean(), .deviation = deviation()};
   if (values_.size() < 2) return summary;
-  const auto count = static_cast<double>(values_.size());
-  const double deviation = std::sqrt(squares_ / (count - 1));
-  const boost::math::students_t distribution(count - 1);
-  summary.deviation = deviation;
-  summary.ci95 = quantile(complement(distribution, kTail)) * deviation / std::sqrt(count);
+  const auto size = static_cast<double>(values_.size());
+  const boost::math::students_t distribution(size - 1);
+  summary.ci95 = quantile(complement(distribution, kTail)) * *summary.deviation / std::sqrt(size);
   std::vector<double> sorted = values_;
   std::sort(sorted.begin(), sorted.end());
   summary.p5 = At(sorted, 0.05);

@@ -28,7 +28,10 @@ struct Summary {
 class Statistics {
  public:
   void Add(double value);
-  /// Of the values so far. The last bits of the mean depend on their order.
+  std::int64_t count() const { return static_cast<std::int64_t>(values_.size()); }
+  std::optional<double> mean() const;
+  std::optional<double> deviation() const;
+  /// All of them, of the values so far. The last bits of the mean depend on their order.
   Summary Result() const;
 
  private:

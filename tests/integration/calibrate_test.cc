@@ -1,0 +1,216 @@
+// fogline calibrate: finds the parameters that a table was made with, and keeps them in a file.
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+
+// The experiment in 30 s, with a follower that closes up in seconds and no noise.
+constexpr const char* kScenario = R"({
+  "$schema": "scenario.schema.json",
+  "version": 1,
+  "title": "Without noise",
+  "steps": 300,
+  "fog": { "model": "bias", "profile": "half_sine", "start_s": 9, "duration_s": 11, "bias_m": 0.3 },
+  "radar": { "bias_m": 0.95, "range_std_m": 0, "range_rate_std_mps": 0 },
+  "lidar": { "range_std_m": 0 },
+  "follower": {
+    "headway_s": 1.5,
+    "weight_control": 1
+  }
+}
+)";
+
+class CalibrateTest : public testing::Test {
+ protected:
+  CalibrateTest() { std::ofstream(scenario_) << kScenario; }
+
+  static Outcome RunFogline(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), Program("fogline"));
+    return RunCommand(arguments);
+  }
+
+  /// Writes the table of the scenario with these fields.
+  void MakeTarget(const std::vector<std::string>& overrides, const std::string& seeds) const {
+    std::vector<std::string> arguments{"table",   scenario_, "--thresholds", "0.3,0.4,0.5,0.6,0.7",
+                                       "--seeds", seeds,     "--json"};
+    Append(arguments, "--set", overrides);
+    const Outcome outcome = RunFogline(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    std::ofstream(target_) << outcome.out;
+  }
+
+  /// Calibrates the scenario to that table.
+  json Calibrate(const std::vector<std::string>& free, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"calibrate", scenario_, "--target", target_, "--json"};
+    Append(arguments, "--free", free);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = RunFogline(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+
+  /// What a command line is told with exit code 2.
+  std::string ErrorOf(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"calibrate", scenario_});
+    const Outcome outcome = RunFogline(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    return outcome.err;
+  }
+
+  const ScratchFolder folder_;
+  const std::string scenario_ = folder_.File("scenario.json");
+  const std::string target_ = folder_.File("table.json");
+  const std::string out_ = folder_.File("found.json");
+
+ private:
+  static void Append(std::vector<std::string>& arguments, const char* option,
+                     const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      arguments.insert(arguments.end(), {option, value});
+    }
+  }
+};
+
+std::string TextOf(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Ends where every number of the table is within 0.001 points: by the sensitivities, which are
+// points for 1 % of a range, the fields are then within a thousandth of their ranges by far.
+constexpr double kShareOfRange = 1e-3;
+
+TEST_F(CalibrateTest, RecoversTheFogAndTheOffsetBetweenTheSensors) {
+  MakeTarget({"/fog/bias_m=0.377", "/radar/bias_m=0.9321"}, "1");
+  const json found = Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"}, {"--seeds", "1"});
+  EXPECT_NEAR(found["fields"][0]["value"], 0.377, kShareOfRange * 0.3);
+  EXPECT_NEAR(found["fields"][1]["value"], 0.9321, kShareOfRange * 0.08);
+  for (const json& row : found["rows"]) {
+    EXPECT_NEAR(row["si_difference_pct"], 0, 1e-3);
+    EXPECT_NEAR(row["rhe_difference_pct"], 0, 1e-3);
+  }
+}
+
+TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
+  MakeTarget({"/follower/headway_s=1.43", "/follower/weight_control=3"}, "1");
+  const json found = Calibrate(
+      {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
+  EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
+  // A thousandth of three decades is a factor of 1.007.
+  EXPECT_NEAR(found["fields"][1]["value"], 3, 0.007 * 3);
+}
+
+TEST_F(CalibrateTest, RecoversFogAndOffsetFromMeansOverNoisySeeds) {
+  const std::vector<std::string> noise{"/radar/range_std_m=0.02", "/lidar/range_std_m=0.01"};
+  std::vector<std::string> truth = noise;
+  truth.insert(truth.end(), {"/fog/bias_m=0.377", "/radar/bias_m=0.9321"});
+  MakeTarget(truth, "1:4");
+  // WHEN the seeds are those of the table, so that the table can be met to the last digit
+  const json found =
+      Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"},
+                {"--seeds", "1:4", "--spread-weight", "0", "--set", noise[0], "--set", noise[1]});
+  EXPECT_NEAR(found["fields"][0]["value"], 0.377, kShareOfRange * 0.3);
+  EXPECT_NEAR(found["fields"][1]["value"], 0.9321, kShareOfRange * 0.08);
+}
+
+TEST_F(CalibrateTest, WritesTheScenarioWithWhatItFound) {
+  MakeTarget({"/fog/bias_m=0.377"}, "1");
+  const json found = Calibrate({"/fog/bias_m=0.2:0.5"},
+                               {"--seeds", "1", "--out", out_, "--set", "/title=\"Found\""});
+  // THEN the file differs from the scenario by the found value and the override alone
+  std::string expected = kScenario;
+  expected.replace(expected.find("0.3 }"), 3, found["fields"][0]["value"].dump());
+  expected.replace(expected.find("Without noise"), 13, "Found");
+  EXPECT_EQ(TextOf(out_), expected);
+  EXPECT_EQ(RunFogline({"check", out_}).code, 0);
+  // AND its table is the one that was reported
+  const Outcome table =
+      RunFogline({"table", out_, "--thresholds", "0.3,0.4,0.5,0.6,0.7", "--seeds", "1", "--json"});
+  const json rows = json::parse(table.out)["rows"];
+  ASSERT_EQ(rows.size(), found["rows"].size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i]["si_pct"], found["rows"][i]["si_pct"]);
+    EXPECT_EQ(rows[i]["rhe_pct"], found["rows"][i]["rhe_pct"]);
+  }
+}
+
+TEST_F(CalibrateTest, HasTheSameResultOnAnyNumberOfThreads) {
+  MakeTarget({"/fog/bias_m=0.377"}, "1:3");
+  const std::vector<std::string> free{"/fog/bias_m=0.2:0.5"};
+  const std::vector<std::string> more{
+      "--seeds", "1:3", "--evaluations", "30", "--set", "/radar/range_std_m=0.02", "--jobs"};
+  const auto with_jobs = [&](const char* jobs) {
+    std::vector<std::string> arguments = more;
+    arguments.emplace_back(jobs);
+    return Calibrate(free, arguments);
+  };
+  const json one = with_jobs("1");
+  EXPECT_EQ(one["evaluations"], 30);
+  EXPECT_EQ(with_jobs("2"), one);
+}
+
+TEST_F(CalibrateTest, TakesThePublishedRowsAsTarget) {
+  const Outcome outcome =
+      RunFogline({"calibrate", "scenario/paper.json", "--free", "/fog/bias_m=0.2:0.5", "--seeds",
+                  "1:2", "--evaluations", "3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* text : {"3 evaluations", "/fog/bias_m", "[0.2, 0.5] m", "80.79", "10.23",
+                           "Points that 1 % of a field's range changes", "SI 0.5", "RHE 0.8"}) {
+    EXPECT_THAT(outcome.out, testing::HasSubstr(text));
+  }
+  EXPECT_THAT(outcome.err, testing::StartsWith("objective at the start: "));
+}
+
+TEST_F(CalibrateTest, EndsWithTheBestSoFarOnCtrlC) {
+  Background calibrate({Program("fogline"), "calibrate", "scenario/paper.json", "--free",
+                        "/fog/bias_m=0.2:0.5", "--free", "/radar/bias_m=0.9:1", "--evaluations",
+                        "1000000", "--out", out_, "--json"});
+  ASSERT_TRUE(calibrate.WaitForErr("objective at the start: ")) << calibrate.Err();
+  calibrate.Signal(SIGINT);
+  EXPECT_EQ(calibrate.Wait(), 130);
+  EXPECT_THAT(calibrate.Err(), testing::ContainsRegex("fogline: interrupted after [0-9]+ "
+                                                      "evaluations?; these are the best values"));
+  const json found = json::parse(calibrate.Out(), nullptr, false);
+  EXPECT_EQ(found["interrupted"], true);
+  EXPECT_LE(found["objective"], found["objective_at_start"]);
+  EXPECT_EQ(RunFogline({"check", out_}).code, 0);
+}
+
+TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {
+  std::ofstream(target_) << R"({"rows": [{"threshold": 0.5, "si_pct": 80}]})";
+  const std::vector<std::string> target{"--target", target_, "--free"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), target.begin(), target.end());
+    return ErrorOf(more);
+  };
+  EXPECT_EQ(with({"/fog/bias=0:1"}),
+            "error: --free /fog/bias=0:1: no such field; did you mean \"/fog/bias_m\"?\n");
+  EXPECT_EQ(with({"/fog/bias_m=0:200"}),
+            "error: --free /fog/bias_m=0:200: 200 is outside [0, 100] m\n");
+  EXPECT_EQ(with({"/fog/bias_m=0:1", "--seeds", "9:1"}),
+            "error: --seeds 9:1: neither A:B with 0 <= A <= B nor one seed\n");
+  EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", scenario_}),
+            scenario_ + ": error: --out: the file exists; --force replaces it\n");
+  EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", "/nowhere/x.json"}),
+            "/nowhere/x.json: error: --out: there is no folder /nowhere\n");
+  EXPECT_EQ(ErrorOf({"--free", "/fog/bias_m=0:1"}),
+            scenario_ + ": error: /published: no rows to meet; give a --target\n");
+  EXPECT_THAT(ErrorOf({}), testing::HasSubstr("--free is required"));
+  EXPECT_THAT(with({"/fog/bias_m=0:1", "--evaluations", "0"}),
+              testing::HasSubstr("--evaluations: Value 0 not in range [1 - 1000000]"));
+}
+
+}  // namespace
+}  // namespace fogline::test

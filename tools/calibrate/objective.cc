@@ -1,0 +1,88 @@
+#include "tools/calibrate/objective.h"
+
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "tools/sweep/engine.h"
+
+namespace fogline {
+namespace {
+
+// Of a seed whose runs do not have the measure: the range of a published SI is [-1000, 100] %.
+constexpr double kMissingResidualPts = 1000;
+
+double Square(double x) { return x * x; }
+
+/// Squared residual of the mean, seeds without the measure included.
+double Residual(const Statistics& reached, const std::optional<double>& target,
+                std::int64_t seeds) {
+  if (!target) return 0;
+  const double missing = static_cast<double>(seeds - reached.count()) / static_cast<double>(seeds);
+  const double present = reached.mean() ? Square(*reached.mean() - *target) : 0;
+  return (1 - missing) * present + missing * Square(kMissingResidualPts);
+}
+
+}  // namespace
+
+Objective::Objective(CalibrationProblem problem)
+    : problem_(std::move(problem)), thresholds_{.pointer = "/arbitrator/threshold", .values = {}} {
+  if (problem_.scenario.arbitrator.policy == Policy::kAutomation) {
+    throw InputError(
+        "error: /arbitrator/policy: without traded control there is no table to meet; "
+        "--set /arbitrator/policy=traded");
+  }
+  for (const TargetRow& row : problem_.target) {
+    thresholds_.values.push_back(NumberText(row.threshold));
+  }
+}
+
+Scenario Objective::With(std::span<const double> values) const {
+  Scenario scenario = problem_.scenario;
+  for (std::size_t i = 0; i < values.size(); ++i) problem_.fields[i].Set(scenario, values[i]);
+  return scenario;
+}
+
+std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
+                                              const GoOn& go_on) const {
+  const SweepPlan plan(With(values), {thresholds_}, problem_.seeds);
+  Evaluation evaluation;
+  evaluation.rows.resize(problem_.target.size());
+  bool complete = true;
+  try {
+    RunSweep(plan, 0, plan.units(), problem_.jobs,
+             [&](std::int64_t, const std::vector<SweepRow>& results) {
+               for (std::size_t i = 0; i < results.size(); ++i) {
+                 TableRow& row = evaluation.rows[i];
+                 if (results[i].si_pct) row.si_pct.Add(*results[i].si_pct);
+                 if (results[i].measures.rhe_pct) row.rhe_pct.Add(*results[i].measures.rhe_pct);
+               }
+               return complete = go_on();
+             });
+  } catch (const InputError& error) {
+    // Fields that are fine one by one can be impossible together, such as the weights of an ACC.
+    return Evaluation{
+        .rows = {}, .objective = std::numeric_limits<double>::max(), .refusal = error.what()};
+  }
+  if (!complete) return std::nullopt;
+  evaluation.objective = Sum(evaluation.rows);
+  return evaluation;
+}
+
+double Objective::Sum(const std::vector<TableRow>& rows) const {
+  const std::int64_t seeds = problem_.seeds.count();
+  double sum = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const TargetRow& target = problem_.target[i];
+    sum += Residual(rows[i].si_pct, target.si_pct, seeds);
+    sum += problem_.rhe_weight * Residual(rows[i].rhe_pct, target.rhe_pct, seeds);
+    if (target.si_pct) {
+      sum += problem_.spread_weight * Square(rows[i].si_pct.deviation().value_or(0));
+    }
+  }
+  return sum;
+}
+
+}  // namespace fogline

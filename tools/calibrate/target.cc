@@ -1,0 +1,137 @@
+#include "tools/calibrate/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "scenario/file.h"
+#include "scenario/json.h"
+#include "scenario/loader.h"
+#include "scenario/mistakes.h"
+#include "scenario/wording.h"
+
+namespace fogline {
+namespace {
+
+std::optional<double> AsNumber(const JsonValue& value) {
+  if (const auto* integer = value.As<std::int64_t>()) return static_cast<double>(*integer);
+  if (const auto* number = value.As<double>()) return *number;
+  return std::nullopt;
+}
+
+/// Visits the fields of a published row, whose ranges are those of a target's row too. What is not
+/// there becomes NaN.
+class RowReader {
+ public:
+  RowReader(const JsonObject& object, std::string pointer, MistakeList& mistakes)
+      : object_(object), pointer_(std::move(pointer)), mistakes_(mistakes) {}
+
+  void Number(std::string_view name, double& field, const NumberSpec& spec) {
+    field = std::nan("");
+    const JsonMember* member = FindMember(object_, name);
+    if (member == nullptr || member->value.As<std::monostate>() != nullptr) return;
+    const std::optional<double> number = AsNumber(member->value);
+    if (!number) {
+      Add(member->value, name,
+          fmt::format("must be {}, not {}", Allowed(spec), Describe(member->value)));
+    } else if (*number < spec.min || *number > spec.max) {
+      Add(member->value, name, fmt::format("{} is outside {}", NumberText(*number), Range(spec)));
+    } else {
+      field = *number;
+    }
+  }
+
+ private:
+  void Add(const JsonValue& value, std::string_view name, std::string message) {
+    mistakes_.Add(value.place, JoinPointer(pointer_, name), "range", std::move(message));
+  }
+
+  const JsonObject& object_;
+  std::string pointer_;
+  MistakeList& mistakes_;
+};
+
+std::optional<double> Present(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+std::optional<TargetRow> ReadRow(const JsonValue& value, const std::string& pointer,
+                                 MistakeList& mistakes) {
+  const auto* object = value.As<JsonObject>();
+  const JsonMember* threshold = object ? FindMember(*object, "threshold") : nullptr;
+  if (threshold == nullptr || !AsNumber(threshold->value)) {
+    mistakes.Add(value.place, pointer, "missing-key",
+                 "must be an object with a number \"threshold\"");
+    return std::nullopt;
+  }
+  PublishedRow row;
+  RowReader reader(*object, pointer, mistakes);
+  PublishedRow::Fields(row, reader);
+  return TargetRow{
+      .threshold = row.threshold, .si_pct = Present(row.si_pct), .rhe_pct = Present(row.rhe_pct)};
+}
+
+std::vector<TargetRow> ReadRows(const JsonValue& root, MistakeList& mistakes) {
+  const auto* object = root.As<JsonObject>();
+  const JsonMember* rows = object != nullptr ? FindMember(*object, "rows") : nullptr;
+  const auto* items = rows != nullptr ? rows->value.As<JsonArray>() : nullptr;
+  std::vector<TargetRow> target;
+  if (items == nullptr || items->empty()) {
+    mistakes.Add(rows != nullptr ? rows->value.place : root.place, "/rows", "missing-key",
+                 "a target needs a list of rows, each with threshold, si_pct and rhe_pct");
+    return target;
+  }
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    const std::string pointer = fmt::format("/rows/{}", i);
+    if (const auto row = ReadRow((*items)[i], pointer, mistakes)) target.push_back(*row);
+  }
+  return target;
+}
+
+/// Each mistake with its place, as of a scenario, but without what is said of scenarios' fields.
+[[noreturn]] void Throw(MistakeList& mistakes, const std::vector<Source>& sources) {
+  std::string text;
+  try {
+    mistakes.Throw(sources);
+  } catch (const ScenarioError& error) {
+    for (const Mistake& mistake : error.mistakes()) {
+      text += fmt::format("{}{}:{}:{}: error: {}{}{}", text.empty() ? "" : "\n", mistake.file,
+                          mistake.line, mistake.column, mistake.pointer,
+                          mistake.pointer.empty() ? "" : ": ", mistake.message);
+    }
+  }
+  throw InputError(text);
+}
+
+}  // namespace
+
+std::vector<TargetRow> ReadTarget(const std::filesystem::path& file) {
+  const FileText read = ReadFile(file, kMaxFileBytes);
+  if (!read.error.empty()) {
+    throw InputError(fmt::format("{}: error: --target: {}", file.string(), read.error));
+  }
+  MistakeList mistakes;
+  std::vector<TargetRow> target;
+  if (const auto root = ParseJson(read.text, 0, mistakes)) target = ReadRows(*root, mistakes);
+  if (!mistakes.empty()) Throw(mistakes, {{.name = file.string(), .text = read.text}});
+  const auto has_number = [](const TargetRow& row) { return row.si_pct || row.rhe_pct; };
+  if (std::none_of(target.begin(), target.end(), has_number)) {
+    throw InputError(fmt::format("{}: error: /rows: no row has si_pct or rhe_pct", file.string()));
+  }
+  return target;
+}
+
+std::vector<TargetRow> PublishedTarget(const Scenario& scenario) {
+  std::vector<TargetRow> target;
+  for (const PublishedRow& row : scenario.published) {
+    target.push_back({.threshold = row.threshold, .si_pct = row.si_pct, .rhe_pct = row.rhe_pct});
+  }
+  return target;
+}
+
+}  // namespace fogline

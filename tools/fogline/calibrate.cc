@@ -1,0 +1,187 @@
+// fogline calibrate: finds the values of a scenario's fields with which its table meets another.
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include <fmt/core.h>
+
+#include "scenario/file.h"
+#include "scenario/json.h"
+#include "scenario/wording.h"
+#include "tools/calibrate/calibrate.h"
+#include "tools/calibrate/findings.h"
+#include "tools/calibrate/scenario_text.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/progress.h"
+#include "tools/fogline/verbs.h"
+#include "tools/sweep/engine.h"
+
+namespace fogline {
+namespace {
+
+struct CalibrateArguments {
+  explicit CalibrateArguments(CLI::App& verb) {
+    verb.add_option("SCENARIO", scenario, "Scenario file")->required();
+    verb.add_option("--free", free,
+                    "Field to find and its bounds: /pointer=lowest:highest, with :log at the end "
+                    "for a logarithmic scale (repeatable)")
+        ->required()
+        ->allow_extra_args(false);
+    verb.add_option("--target", target,
+                    "Table to meet, as of `fogline table --json` (default: the scenario's own "
+                    "published rows)");
+    verb.add_option("--set", overrides, "Override a field: /steps=310 (repeatable)")
+        ->allow_extra_args(false);
+    verb.add_option("--seeds", seeds, "Seeds A:B, both included, of every evaluation")
+        ->capture_default_str();
+    verb.add_option("--evaluations", evaluations, "Most tables to compute")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
+    verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE, where that of SI is 1")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    verb.add_option("--spread-weight", spread_weight, "Weight of SI's variance over the seeds")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    verb.add_option("--jobs", jobs, "Threads; they change no result")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    verb.add_option("--out", out, "Write the scenario with the values that were found");
+    verb.add_flag("--force", force, "Replace the file of --out if it exists");
+    verb.add_flag("--json", json, "Print as JSON");
+    verb.footer(
+        "Makes small: the squared differences of mean SI and mean RHE from the target, in points,\n"
+        "and SI's variance over the seeds, weighted. Equal arguments give equal results. Ctrl-C\n"
+        "ends it with the best values so far. Sensitivity is the change, in points, for 1 % of a\n"
+        "field's range.\n\n"
+        "Examples:\n"
+        "  fogline calibrate scenario/paper.json --free /fog/bias_m=0.2:0.5\n"
+        "  fogline calibrate scenario/paper.json --free /radar/bias_m=0.92:0.98 \\\n"
+        "    --free /follower/weight_distance=0.001:10:log --seeds 1:40 --out found.json\n"
+        "  fogline table other.json --json > other-table.json\n"
+        "  fogline calibrate scenario/paper.json --target other-table.json \\\n"
+        "    --free /fog/bias_m=0.2:0.5 --json");
+  }
+
+  std::filesystem::path scenario;
+  std::vector<std::string> free;
+  std::filesystem::path target;
+  std::vector<std::string> overrides;
+  std::string seeds = "1:20";
+  int evaluations = 1000;
+  double rhe_weight = CalibrationProblem().rhe_weight;
+  double spread_weight = CalibrationProblem().spread_weight;
+  int jobs = AllCores();
+  std::filesystem::path out;
+  bool force = false;
+  bool json = false;
+};
+
+CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
+  CalibrationProblem problem{.scenario = LoadScenario(arguments.scenario, arguments.overrides),
+                             .fields = ParseFreeFields(arguments.free),
+                             .target = {},
+                             .seeds = ParseSeeds(arguments.seeds),
+                             .rhe_weight = arguments.rhe_weight,
+                             .spread_weight = arguments.spread_weight,
+                             .jobs = arguments.jobs};
+  problem.target =
+      arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
+  if (problem.target.empty()) {
+    throw InputError(fmt::format("{}: error: /published: no rows to meet; give a --target",
+                                 arguments.scenario.string()));
+  }
+  return problem;
+}
+
+/// Finds out before the search, not after it, that its result could not be kept. Returns the text
+/// of the scenario file with the overrides in it, all else as it stands.
+std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&](std::string_view why) {
+    throw InputError(fmt::format("{}: error: --out: {}", arguments.out.string(), why));
+  };
+  if (fs::exists(arguments.out) && !arguments.force) {
+    refuse("the file exists; --force replaces it");
+  }
+  const fs::path folder = fs::absolute(arguments.out).parent_path();
+  if (!fs::is_directory(folder)) refuse(fmt::format("there is no folder {}", folder.string()));
+  const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
+  if (!read.error.empty()) refuse(fmt::format("{} {}", arguments.scenario.string(), read.error));
+  std::string text = read.text;
+  for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
+  // A recorded leader's file is named relative to the scenario's folder.
+  const fs::path recorded = scenario.lead.recorded.file;
+  if (scenario.lead.profile == LeadProfile::kRecorded && !recorded.empty() &&
+      recorded.is_relative()) {
+    const fs::path there = fs::absolute(arguments.scenario).parent_path() / recorded;
+    text = WithValue(text, "/lead/recorded/file", Quote(fs::proximate(there, folder).string()));
+  }
+  return text;
+}
+
+void WriteOut(const std::filesystem::path& file, std::string text,
+              const CalibrationProblem& problem, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text = WithValue(text, problem.fields[i].pointer(), NumberText(values[i]));
+  }
+  ParseScenario(text, file.string());
+  std::ofstream stream(file, std::ios::binary);
+  stream << text << std::flush;
+  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  fmt::print(stderr, "{}: written\n", file.string());
+}
+
+/// @throws Interrupted if nothing was found before the interrupt
+Findings Search(const CalibrateArguments& arguments, const Objective& objective) {
+  const auto go_on = [] { return !WasInterrupted(); };
+  std::optional<Calibration> found;
+  {
+    Progress progress("evaluation", arguments.evaluations);
+    found = Calibrate(objective, arguments.evaluations, go_on, [&](int evaluations, double best) {
+      if (evaluations == 1) fmt::print(stderr, "objective at the start: {:.4g}\n", best);
+      progress.Show(evaluations, fmt::format("objective {:.4g}", best));
+    });
+  }
+  if (!found) throw Interrupted("interrupted before the first evaluation was complete");
+  Findings findings{.calibration = *std::move(found), .sensitivities = std::nullopt};
+  if (!findings.calibration.interrupted) {
+    findings.sensitivities = Sensitivities(objective, findings.calibration.values, go_on);
+  }
+  return findings;
+}
+
+int RunCalibrate(const CalibrateArguments& arguments) {
+  const Objective objective(MakeProblem(arguments));
+  const std::string text =
+      arguments.out.empty() ? "" : PrepareOut(arguments, objective.problem().scenario);
+  WatchInterrupts();
+  const Findings findings = Search(arguments, objective);
+  const Calibration& found = findings.calibration;
+  if (arguments.json) {
+    PrintJson(FindingsJson(objective.problem(), findings, arguments.scenario.string()));
+  } else {
+    fmt::print("{}", FindingsText(objective.problem(), findings));
+  }
+  if (!arguments.out.empty()) {
+    WriteOut(arguments.out, text, objective.problem(), found.values);
+  }
+  if (WasInterrupted()) {
+    throw Interrupted(fmt::format(
+        "interrupted after {} evaluations; these are the best values so far", found.evaluations));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("calibrate", "Find values of fields that meet a table");
+  const auto arguments = std::make_shared<CalibrateArguments>(*verb);
+  verb->callback(
+      [&action, arguments] { action = [arguments] { return RunCalibrate(*arguments); }; });
+}
+
+}  // namespace fogline
