@@ -80,7 +80,7 @@ bool Bus::Wait(Duration timeout) {
 }
 
 void Bus::Drain() {
-  while (Wait(Duration::zero())) {
+  for (int i = 0; i < kDrained && Wait(Duration::zero()); ++i) {
   }
 }
 

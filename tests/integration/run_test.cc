@@ -78,6 +78,14 @@ TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {
   EXPECT_EQ(diff.code, 0) << diff.out;
 }
 
+TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
+  const ScratchFolder folder;
+  const auto run = RunPaper(folder.File("long.lcm"), {"--transport", "memq", "--set",
+                                                      "/steps=60000", "--stall-timeout", "0.5"});
+  EXPECT_EQ(run["steps"], 60'000);
+  EXPECT_GT(run["wall_s"], 0.5) << "too short to say anything";
+}
+
 TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
   const ScratchFolder folder;
   // GIVEN a leader that stops dead and an ACC that may not brake

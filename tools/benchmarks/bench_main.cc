@@ -1,0 +1,94 @@
+// fogline-bench: Fogline beside what it is compared with, all in one run on this machine. What a
+// single Step costs is measured by fogline-bench-steps.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include "tools/benchmarks/comparisons.h"
+#include "tools/benchmarks/present.h"
+
+namespace fogline {
+namespace {
+
+enum ExitCode : int { kAllMet = 0, kMissed = 1, kBadUsage = 2, kFailed = 3 };
+
+struct Arguments {
+  bool quick = false;
+  bool json = false;
+  bool markdown = false;
+  int rounds = 0;
+  std::vector<std::string> only;
+};
+
+std::vector<Comparison> Wanted(const Arguments& arguments) {
+  const Effort effort = arguments.quick ? Effort::kQuick : Effort::kFull;
+  std::vector<Comparison> wanted;
+  for (const auto& family : {PeerComparisons, LockstepComparisons, DataComparisons}) {
+    for (Comparison& comparison : family(effort)) {
+      const auto& only = arguments.only;
+      if (!only.empty() && std::ranges::find(only, comparison.name) == only.end()) continue;
+      wanted.push_back(std::move(comparison));
+    }
+  }
+  return wanted;
+}
+
+int Run(const Arguments& arguments) {
+  constexpr int kFullRounds = 7;
+  constexpr int kQuickRounds = 3;
+  const int rounds = arguments.rounds > 0 ? arguments.rounds
+                     : arguments.quick    ? kQuickRounds
+                                          : kFullRounds;
+  const std::vector<Comparison> wanted = Wanted(arguments);
+  std::vector<Finding> findings;
+  for (const Comparison& comparison : wanted) {
+    fmt::print(stderr, "{} of {}: {}\n", findings.size() + 1, wanted.size(), comparison.name);
+    findings.push_back(Compare(comparison, rounds));
+  }
+  const Occasion occasion = ThisOccasion(rounds);
+  const auto present = arguments.json ? ToJson : arguments.markdown ? ToMarkdown : ToText;
+  fmt::print("{}", present(findings, occasion));
+  return std::ranges::all_of(findings, &Finding::met) ? kAllMet : kMissed;
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Measures Fogline beside what it is compared with, in alternating rounds.",
+               "fogline-bench"};
+  app.add_flag("--quick", arguments.quick, "Fewer and shorter rounds");
+  app.add_option("--rounds", arguments.rounds, "Rounds of each comparison")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--only", arguments.only,
+                 "octave, sumo, udpm, udpm-messages, udpm-graph, memq, log, cores, memory "
+                 "(repeatable)")
+      ->allow_extra_args(false);
+  app.add_flag("--json", arguments.json, "Print as JSON");
+  app.add_flag("--markdown", arguments.markdown, "Print a Markdown table");
+  app.footer(
+      "Run it in the folder of the sources. Exit codes: 0 every goal met, 1 one missed or "
+      "not measured,\n2 bad usage, 3 failed.\n\nExamples:\n  fogline-bench --quick\n"
+      "  fogline-bench --only udpm --only memq --rounds 11");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kAllMet : kBadUsage;
+  }
+  return Run(arguments);
+}
+
+}  // namespace
+}  // namespace fogline
+
+int main(int argc, char** argv) {
+  try {
+    return fogline::Main(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fogline-bench: error: {}\n", error.what());
+    return fogline::kFailed;
+  }
+}

@@ -1,0 +1,88 @@
+// Sweeps and logs: how a second core, the number of runs and the size of a log show.
+#include <nlohmann/json.hpp>
+
+#include "tools/benchmarks/bare_lcm.h"
+#include "tools/benchmarks/comparisons.h"
+#include "tools/benchmarks/program.h"
+
+namespace fogline {
+namespace {
+
+// Nine messages a step: a million messages and eight.
+constexpr int kLogSteps = 111'112;
+
+ProgramResult Sweep(int rows, int jobs) {
+  return RunProgram({ProgramPath("fogline"), "sweep", "scenario/paper.json", "--seeds",
+                     "1:" + std::to_string(rows), "--jobs", std::to_string(jobs), "--force",
+                     "--json", "--out",
+                     ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
+}
+
+/// Rows (a run and its pair without traded control) per second. A file that is there would be
+/// gone on with, so it goes first.
+double SweepRowsPerSecond(int rows, int jobs) {
+  for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {
+    if (entry.path().filename().string().starts_with("sweep-")) {
+      std::filesystem::remove(entry.path());
+    }
+  }
+  return rows / nlohmann::json::parse(Sweep(rows, jobs).out)["wall_s"].get<double>();
+}
+
+double SweepPeakMemory_mb(int rows) {
+  SweepRowsPerSecond(1, 1);  // clears
+  return Sweep(rows, 2).peak_memory_mb;
+}
+
+/// A log of a run of a million messages, made once. It is read once too, so that both sides find it
+/// in the page cache.
+const std::filesystem::path& LargeLog() {
+  static const std::filesystem::path file = [] {
+    const std::filesystem::path log = ScratchFolder() / "large.lcm";
+    RunProgram({ProgramPath("fogline"), "run", "scenario/paper.json", "--quiet", "--transport",
+                "direct", "--log", log, "--set", "/steps=" + std::to_string(kLogSteps)});
+    BareLogReadSeconds(log);
+    return log;
+  }();
+  return file;
+}
+
+double MetricsSeconds() {
+  return RunProgram({ProgramPath("fogline"), "metrics", LargeLog(), "--json"}).wall_s;
+}
+
+}  // namespace
+
+std::vector<Comparison> DataComparisons(Effort effort) {
+  const bool full = effort == Effort::kFull;
+  const int rows = full ? 4'000 : 1'000;
+  return {
+      {.name = "log",
+       .quantity = "time for a log of a million messages",
+       .unit = "s",
+       .ours = "`fogline metrics`, digest included",
+       .reference = "LCM's event log reader, doing nothing with them",
+       .goal = 1.5,
+       .measure_ours = [] { return MetricsSeconds(); },
+       .measure_reference = [] { return BareLogReadSeconds(LargeLog()); }},
+      {.name = "cores",
+       .quantity = "rows per second",
+       .unit = "1/s",
+       .ours = "`fogline sweep` on two cores",
+       .reference = "on one",
+       .bound = Bound::kAtLeast,
+       .goal = 1.9,
+       .measure_ours = [rows] { return SweepRowsPerSecond(rows, 2); },
+       .measure_reference = [rows] { return SweepRowsPerSecond(rows, 1); }},
+      {.name = "memory",
+       .quantity = "peak memory",
+       .unit = "MB",
+       .ours = "`fogline sweep` of 10,000 rows",
+       .reference = "of 1,000 rows",
+       .goal = 1.2,
+       .measure_ours = [] { return SweepPeakMemory_mb(10'000); },
+       .measure_reference = [] { return SweepPeakMemory_mb(1'000); }},
+  };
+}
+
+}  // namespace fogline

@@ -1,0 +1,101 @@
+// Runs in one process beside programs that others would use: a GNU Octave script of the paper, and
+// SUMO with three cars. Both peers are made in tests/peers.
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "scenario/loader.h"
+#include "services/closed_loop/closed_loop.h"
+#include "services/measures/measures.h"
+#include "tools/benchmarks/comparisons.h"
+#include "tools/benchmarks/program.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kCars = 3;
+
+/// Runs of the paper's experiment per second, measured, on the one core of this thread.
+double ClosedLoopRunsPerSecond(double duration_s) {
+  Scenario scenario = LoadScenario("scenario/paper.json");
+  std::int64_t runs = 0;
+  std::int64_t steps = 0;
+  double wall_s = 0;
+  while (wall_s < duration_s) {
+    wall_s += SecondsOf([&] {
+      constexpr int kBatch = 100;
+      for (int i = 0; i < kBatch; ++i) {
+        ++scenario.seed;
+        MeasureAccumulator measures;
+        ClosedLoop(scenario).Run(0, [&](const StepView& step) { measures.Add(step.ToSample()); });
+        steps += measures.Result().steps;
+      }
+      runs += kBatch;
+    });
+  }
+  if (steps != runs * scenario.steps) throw std::runtime_error("a run ended early");
+  return static_cast<double>(runs) / wall_s;
+}
+
+/// Runs of the same scenario per second by the Octave script, without its start.
+double OctaveRunsPerSecond(int runs) {
+  const std::filesystem::path scenario = ScratchFolder() / "paper.json";
+  std::ofstream(scenario) << PrintScenario(LoadScenario("scenario/paper.json"));
+  const ProgramResult result =
+      RunProgram({"octave-cli", "--norc", "tests/peers/paper.m", scenario, std::to_string(runs)});
+  const auto json = nlohmann::json::parse(result.out);
+  return json["runs"].get<double>() / json["wall_s"].get<double>();
+}
+
+/// Seconds of SUMO for so many steps of 0.1 s with three cars.
+double SumoSeconds(int steps) {
+  const std::filesystem::path folder = ScratchFolder() / "sumo";
+  if (!std::filesystem::exists(folder)) {
+    RunProgram({"tests/peers/three_cars_in_sumo", folder});
+  }
+  return RunProgram({"sumo", "--configuration-file", folder / "three_cars.sumocfg", "--end",
+                     std::to_string(steps / 10)})
+      .wall_s;
+}
+
+/// Two lengths: what loading costs cancels out.
+double SumoUpdatesPerSecond(int steps) {
+  constexpr int kShort = 1'000;
+  return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));
+}
+
+}  // namespace
+
+std::vector<Comparison> PeerComparisons(Effort effort) {
+  const bool full = effort == Effort::kFull;
+  const double duration_s = full ? 1.0 : 0.3;
+  const int sumo_steps = full ? 200'000 : 50'000;
+  return {
+      {.name = "octave",
+       .quantity = "runs per second",
+       .unit = "1/s",
+       .ours = "closed loop, paper scenario, one core",
+       .reference = "GNU Octave script of the paper (EKF, qp, IDM)",
+       .bound = Bound::kAtLeast,
+       .goal = 3000,
+       .measure_ours = [duration_s] { return ClosedLoopRunsPerSecond(duration_s); },
+       .measure_reference = [] { return OctaveRunsPerSecond(1); }},
+      {.name = "sumo",
+       .quantity = "vehicle updates per second",
+       .unit = "1/s",
+       .ours = "closed loop, sensors and controllers included, one core",
+       .reference = "SUMO, 3 cars, IDM and ACC, no sensors",
+       .bound = Bound::kAtLeast,
+       .goal = 3,
+       .measure_ours =
+           [duration_s] {
+             const auto steps = static_cast<double>(LoadScenario("scenario/paper.json").steps);
+             return kCars * steps * ClosedLoopRunsPerSecond(duration_s);
+           },
+       .measure_reference = [sumo_steps] { return SumoUpdatesPerSecond(sumo_steps); }},
+  };
+}
+
+}  // namespace fogline

@@ -1,0 +1,25 @@
+// Findings for people and programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/benchmarks/comparison.h"
+
+namespace fogline {
+
+/// Where and when something was measured.
+struct Occasion {
+  std::string cpu;  // model name, as the kernel tells it
+  unsigned cores = 0;
+  std::string date;  // 2024-12-31, UTC
+  int rounds = 0;
+};
+
+Occasion ThisOccasion(int rounds);
+
+std::string ToText(const std::vector<Finding>& findings, const Occasion& occasion);
+std::string ToMarkdown(const std::vector<Finding>& findings, const Occasion& occasion);
+std::string ToJson(const std::vector<Finding>& findings, const Occasion& occasion);
+
+}  // namespace fogline

@@ -1,0 +1,36 @@
+// Programs that a benchmark runs, and where their files go.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fogline {
+
+/// A program of this build, such as "fogline".
+std::string ProgramPath(const std::string& name);
+
+/// What a program that ended well leaves behind.
+struct ProgramResult {
+  std::string out;
+  double wall_s;          // from its start to its end
+  double peak_memory_mb;  // largest resident set, in MB of 10^6 bytes
+};
+
+/// Runs a program to its end; found by PATH if its name has no slash.
+/// @throws std::runtime_error with the end of its stderr if it cannot start or does not exit with 0
+ProgramResult RunProgram(const std::vector<std::string>& command);
+
+/// A folder of this process, removed at its end.
+const std::filesystem::path& ScratchFolder();
+
+/// Wall-clock seconds that `work` takes.
+template <class Work>
+double SecondsOf(Work&& work) {
+  const auto began = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+}  // namespace fogline

@@ -1,0 +1,180 @@
+// fogline-bench-steps: what each Step function costs, and the closed loop of all of them. The
+// inputs are those of a recorded run, over and over; the algorithms keep their state meanwhile.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "scenario/loader.h"
+#include "services/closed_loop/closed_loop.h"
+
+namespace fogline {
+namespace {
+
+/// The messages of a step, copied.
+struct Recorded {
+  truth_t truth;
+  ego_t ego;
+  radar_t radar;
+  lidar_t lidar;
+  track_t track;
+  accel_command_t acc;
+  driver_command_t driver;
+  arbitration_t host;
+  follower_command_t follower;
+};
+
+std::vector<Recorded> Record(const Scenario& scenario) {
+  std::vector<Recorded> steps;
+  ClosedLoop(scenario).Run(0, [&steps](const StepView& step) {
+    steps.push_back({step.truth, step.ego, step.radar, step.lidar, step.track, step.acc,
+                     step.driver, step.host, step.follower});
+  });
+  return steps;
+}
+
+const Scenario& Paper() {
+  static const Scenario scenario = LoadScenario("scenario/paper.json");
+  return scenario;
+}
+
+/// Fog as physics, with a LiDAR of many beams.
+const Scenario& DenseFog() {
+  static const Scenario scenario = LoadScenario("scenario/dense_fog.json");
+  return scenario;
+}
+
+const std::vector<Recorded>& PaperSteps() {
+  static const std::vector<Recorded> steps = Record(Paper());
+  return steps;
+}
+
+/// Steps in which the ACC's solver worked: behind a car that brakes hard, then stands.
+const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
+  static const std::vector<Recorded> steps = [&scenario] {
+    std::vector<Recorded> hard = Record(scenario);
+    std::erase_if(hard, [](const Recorded& step) {
+      return step.acc.solver != static_cast<std::int8_t>(AccController::Solver::kActiveSet);
+    });
+    return hard;
+  }();
+  return steps;
+}
+
+/// Times `call` on one recorded step after the other.
+template <class Call>
+void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& call) {
+  if (steps.empty()) return state.SkipWithError("no such step in the recorded run");
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(call(steps[i]));
+    if (++i == steps.size()) i = 0;
+  }
+}
+
+// Without commands the cars keep their distances, however long it takes.
+void WorldStep(benchmark::State& state) {
+  World world(Paper());
+  world.Start(0);
+  arbitration_t host{};
+  follower_command_t follower{};
+  follower.num_followers = 1;
+  follower.acceleration_mps2 = {0};
+  follower.safe_distance_m = {0};
+  for (auto _ : state) benchmark::DoNotOptimize(world.Step(host, follower));
+}
+BENCHMARK(WorldStep);
+
+void RadarStep(benchmark::State& state) {
+  Radar radar(Paper());
+  Replay(state, PaperSteps(), [&](const Recorded& in) { return &radar.Step(in.truth); });
+}
+BENCHMARK(RadarStep);
+
+void LidarStep(benchmark::State& state) {
+  Lidar lidar(Paper());
+  Replay(state, PaperSteps(), [&](const Recorded& in) { return &lidar.Step(in.truth); });
+}
+BENCHMARK(LidarStep);
+
+void LidarBeamStep(benchmark::State& state) {
+  Lidar lidar(DenseFog());
+  static const std::vector<Recorded> steps = Record(DenseFog());
+  Replay(state, steps, [&](const Recorded& in) { return &lidar.Step(in.truth); });
+}
+BENCHMARK(LidarBeamStep);
+
+void FusionStep(benchmark::State& state) {
+  Fusion fusion(Paper());
+  Replay(state, PaperSteps(),
+         [&](const Recorded& in) { return &fusion.Step(in.ego, in.radar, in.lidar); });
+}
+BENCHMARK(FusionStep);
+
+void AccUnconstrainedStep(benchmark::State& state) {
+  Acc acc(Paper());
+  std::vector<Recorded> steps = PaperSteps();
+  std::erase_if(steps, [](const Recorded& step) {
+    return step.acc.solver != static_cast<std::int8_t>(AccController::Solver::kUnconstrained);
+  });
+  Replay(state, steps, [&](const Recorded& in) { return &acc.Step(in.ego, in.track); });
+}
+BENCHMARK(AccUnconstrainedStep);
+
+void AccConstrainedStep(benchmark::State& state) {
+  Scenario scenario = Paper();
+  scenario.lead.profile = LeadProfile::kEmergencyBrake;
+  scenario.arbitrator.policy = Policy::kAutomation;
+  Acc acc(scenario);
+  double iterations = 0;
+  Replay(state, HardSteps(scenario), [&](const Recorded& in) {
+    const accel_command_t& out = acc.Step(in.ego, in.track);
+    iterations += out.iterations;
+    return &out;
+  });
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(AccConstrainedStep);
+
+void DriverStep(benchmark::State& state) {
+  Driver driver(Paper());
+  Replay(state, PaperSteps(), [&](const Recorded& in) { return &driver.Step(in.truth); });
+}
+BENCHMARK(DriverStep);
+
+void ArbitratorStep(benchmark::State& state) {
+  Arbitrator arbitrator(Paper());
+  Replay(state, PaperSteps(), [&](const Recorded& in) {
+    return &arbitrator.Step(in.ego, in.radar, in.lidar, in.track, in.acc, in.driver);
+  });
+}
+BENCHMARK(ArbitratorStep);
+
+void FollowerStep(benchmark::State& state) {
+  Follower follower(Paper());
+  Replay(state, PaperSteps(), [&](const Recorded& in) { return &follower.Step(in.truth); });
+}
+BENCHMARK(FollowerStep);
+
+/// A whole run: construction and every step.
+void ClosedLoopRun(benchmark::State& state) {
+  for (auto _ : state) {
+    ClosedLoop(Paper()).Run(0, [](const StepView& step) { benchmark::DoNotOptimize(&step); });
+  }
+  state.counters["per_step"] = benchmark::Counter(
+      static_cast<double>(Paper().steps),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(ClosedLoopRun);
+
+void ClosedLoopConstruction(benchmark::State& state) {
+  for (auto _ : state) {
+    ClosedLoop loop(Paper());
+    benchmark::DoNotOptimize(&loop);
+  }
+}
+BENCHMARK(ClosedLoopConstruction);
+
+}  // namespace
+}  // namespace fogline
+
+BENCHMARK_MAIN();
