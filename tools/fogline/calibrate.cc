@@ -169,8 +169,8 @@ int RunCalibrate(const CalibrateArguments& arguments) {
     WriteOut(arguments.out, text, objective.problem(), found.values);
   }
   if (WasInterrupted()) {
-    throw Interrupted(fmt::format(
-        "interrupted after {} evaluations; these are the best values so far", found.evaluations));
+    throw Interrupted(fmt::format("interrupted; these are the best values of {} evaluation{}",
+                                  found.evaluations, found.evaluations == 1 ? "" : "s"));
   }
   return kDone;
 }

@@ -20,8 +20,8 @@ int Main(int argc, char** argv) {
       "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 failure at run time, "
       "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.");
   Action action;
-  for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest, AddDiff,
-                         AddGraph, AddCheck}) {
+  for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest,
+                         AddDiff, AddGraph, AddCheck}) {
     add(app, action);
   }
   try {
