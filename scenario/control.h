@@ -30,6 +30,8 @@ struct AccSection {
   double fallback_deceleration_mps2 = 2.0;
   double max_track_std_m = 10.0;
 
+  bool operator==(const AccSection&) const = default;
+
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Number("headway_s", self.headway_s,

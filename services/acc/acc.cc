@@ -6,6 +6,11 @@ Acc::Acc(const Scenario& scenario)
     : controller_(scenario.acc, scenario.step_s),
       max_track_variance_m2_(scenario.acc.max_track_std_m * scenario.acc.max_track_std_m) {}
 
+void Acc::Restart(const Scenario& scenario) {
+  controller_.Restart(scenario.acc, scenario.step_s);
+  max_track_variance_m2_ = scenario.acc.max_track_std_m * scenario.acc.max_track_std_m;
+}
+
 const accel_command_t& Acc::Step(const ego_t& ego, const track_t& track) {
   const AccController::Output output = controller_.Step({
       .distance_m = track.state[0],

@@ -28,13 +28,27 @@ QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
 }  // namespace
 
 AccController::AccController(const AccSection& section, double step_s)
-    : section_(section), program_(section, step_s), solver_(MakeSolver(program_, section)) {
+    : section_(section),
+      step_s_(step_s),
+      program_(section, step_s),
+      solver_(MakeSolver(program_, section)) {
   const Eigen::Index n = program_.horizon();
   gain_ = -solver_.SolveHessian(program_.gradient()).bottomRows(n).transpose();
   linear_.setZero(n + 1);
   lower_.setZero(program_.constraints().rows());
   upper_.setZero(program_.constraints().rows());
   plan_.setZero(n);
+}
+
+void AccController::Restart(const AccSection& section, double step_s) {
+  if (section != section_ || step_s != step_s_) {
+    *this = AccController(section, step_s);
+    return;
+  }
+  solver_.Restart();
+  plan_.setZero();
+  control_ = 0;
+  acceleration_mps2_ = 0;
 }
 
 AccController::Output AccController::Step(const Input& input) {

@@ -49,6 +49,11 @@ class AccController {
 
   Output Step(const Input& input);
 
+  /// Begins anew, as AccController(section, step_s) would, and keeps what is computed once if these
+  /// are the parameters that it has: most of the cost of a short run.
+  /// @throws InputError as the constructor; it is then as it was.
+  void Restart(const AccSection& section, double step_s);
+
   /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet.
   std::span<const double> plan() const;
 
@@ -57,6 +62,7 @@ class AccController {
   bool Solve(const AccSituation& now, Output& output);
 
   AccSection section_;
+  double step_s_;
   AccProgram program_;
   QpSolver solver_;
   Eigen::Matrix4Xd gain_;  // 4 x N, unconstrained u_j = column j' [x; u_{-1}]

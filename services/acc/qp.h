@@ -59,6 +59,9 @@ class QpSolver {
   /// H^-1 times each column of `columns`: minus the unconstrained minimum for that linear term.
   Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
 
+  /// Forgets the calls before: the next Solve() starts from no active limit, as the first one did.
+  void Restart() { active_ = 0; }
+
   /// x of the last Solve().
   const Eigen::VectorXd& solution() const { return x_; }
 

@@ -12,4 +12,15 @@ ClosedLoop::ClosedLoop(const Scenario& scenario)
       arbitrator_(scenario),
       follower_(scenario) {}
 
+void ClosedLoop::Restart(const Scenario& scenario) {
+  acc_.Restart(scenario);
+  follower_.Restart(scenario);
+  world_ = World(scenario);
+  radar_ = Radar(scenario);
+  lidar_ = Lidar(scenario);
+  fusion_ = Fusion(scenario);
+  driver_ = Driver(scenario);
+  arbitrator_ = Arbitrator(scenario);
+}
+
 }  // namespace fogline

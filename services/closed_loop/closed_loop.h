@@ -28,6 +28,20 @@ struct StepView {
   const arbitration_t& host;
   const follower_command_t& follower;
 
+  /// Calls `visit(message)` for each, in the order of the graph table.
+  template <class Visit>
+  void ForEachMessage(Visit&& visit) const {
+    visit(truth);
+    visit(ego);
+    visit(radar);
+    visit(lidar);
+    visit(track);
+    visit(acc);
+    visit(driver);
+    visit(host);
+    visit(follower);
+  }
+
   Sample ToSample() const {
     return MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
   }
@@ -35,10 +49,16 @@ struct StepView {
 
 class ClosedLoop {
  public:
+  /// @throws InputError for an ACC whose weights make no well-conditioned problem.
   explicit ClosedLoop(const Scenario& scenario);
 
+  /// Makes it ready for another run: what follows is, bit by bit, what ClosedLoop(scenario) would
+  /// do. Cheaper than that, because an ACC whose section is the same keeps its precomputed gains.
+  /// @throws as the constructor; Restart() must then succeed before the next Run()
+  void Restart(const Scenario& scenario);
+
   /// Computes the steps from 0 to the last, calling `visit(const StepView&)` after each. Call it
-  /// once.
+  /// once after construction, and once after each Restart().
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
     const auto* made = &world_.Start(run_id);

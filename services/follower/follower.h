@@ -16,6 +16,11 @@ class Follower {
   /// @throws InputError if the weights of scenario.follower make no well-conditioned problem.
   explicit Follower(const Scenario& scenario);
 
+  /// Begins anew, as Follower(scenario) would; cheaper where its parameters are the same.
+  void Restart(const Scenario& scenario) {
+    controller_.Restart(scenario.follower, scenario.step_s);
+  }
+
   /// One command for the nearest following car; none if `truth` has no following car.
   const follower_command_t& Step(const truth_t& truth);
 

@@ -56,7 +56,6 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
-    log_->Flush();
     status().header.step = step;
     PublishStatus();
   }
@@ -64,10 +63,12 @@ void Recorder::Compute(std::int64_t step) {
 
 void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
   Expect(step);
-  if (next() > step) {
-    log_->Flush();
-    PublishStatus();
-  }
+  if (next() > step) PublishStatus();
+}
+
+void Recorder::BeforeStatus() {
+  // STATUS acknowledges every step up to its own: they must be out of this process by then.
+  if (log_) log_->Flush();
 }
 
 void Recorder::OnLeave() {

@@ -22,6 +22,7 @@ class Recorder final : public Node {
   std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) override;
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
+  void BeforeStatus() override;
   void OnLeave() override;
 
   void Write(std::int64_t step);

@@ -10,6 +10,8 @@ namespace fogline {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
+// While the run goes on: a sign of life, which roles that were started elsewhere wait for.
+constexpr Duration kRepeatEvery = milliseconds(1000);
 // Requests for the whole scenario that come together are answered together.
 constexpr Duration kPartsEvery = milliseconds(10);
 // A role without a STATUS for this long (five heartbeats) counts as silent.
@@ -56,11 +58,11 @@ TimePoint Conductor::Poll(TimePoint now) {
   if (now >= announce_at_ && phase_ == Phase::kJoining) {
     Announce(run_t::PREPARE, 0);
     announce_at_ = now + kAnnounceEvery;
-  } else if (now >= announce_at_ && !begun) {
+  } else if (now >= announce_at_ && phase_ == Phase::kRunning) {
     Announce(run_t::GO, 0);
-    announce_at_ = now + kAnnounceEvery;
+    announce_at_ = now + (begun ? kRepeatEvery : kAnnounceEvery);
   }
-  return begun ? now + kAnnounceEvery : announce_at_;
+  return std::min(announce_at_, now + kAnnounceEvery);
 }
 
 std::int64_t Conductor::step() const {

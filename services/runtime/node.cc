@@ -19,13 +19,15 @@ namespace {
 constexpr int kPatienceSteps = 4;
 constexpr Duration kMinPatience = milliseconds(2);
 constexpr Duration kMaxFirstPatience = milliseconds(50);
-constexpr Duration kMaxPatience = milliseconds(500);
+constexpr Duration kMaxPatience = milliseconds(50);
 // Being asked makes a node ask at once, but no more often than this.
 constexpr Duration kMinBetweenAsks = milliseconds(1);
 // Weight of the newest step in the smoothed duration of a step.
 constexpr int kSmoothing = 8;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
+// The runner repeats itself once a second; a role that hears nothing for so long is an orphan.
+constexpr Duration kRunnerSilence = milliseconds(5000);
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -60,6 +62,10 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
 
 TimePoint Node::Poll(TimePoint now) {
   if (left_) return now + kHeartbeat;
+  if (status_.state != status_t::WAITING && now - runner_heard_ > kRunnerSilence) {
+    Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
+    return now + kHeartbeat;
+  }
   TimePoint next = PollMore(now);
   if (Running()) {
     Advance(now);
@@ -99,6 +105,7 @@ void Node::PublishStatus() {
   const TimePoint now = Clock::now();
   status_at_ = now + kHeartbeat;
   if (!bound_) return;  // nobody has announced a run yet
+  BeforeStatus();
   status_.header.run_id = *run_id_;
   status_.scenario_hash = parts_.hash();
   const Input* missing = waiting_since_ ? FirstMissing() : nullptr;
@@ -147,6 +154,7 @@ void Node::OnRun(Bytes bytes) {
   }
   run_id_ = run.header.run_id;
   bound_ = true;
+  runner_heard_ = Clock::now();
   if (run.phase == run_t::STOP) {
     Leave();
   } else if (status_.state == status_t::WAITING) {
@@ -195,8 +203,8 @@ void Node::OnInput(std::size_t index, Bytes bytes) {
       ++status_.out_of_window;
       return;
     case StepRing::Verdict::kConflict:
-      Fail(fmt::format("step {}: {} came twice with different contents", step,
-                       kChannels[input.channel].name));
+      Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
+                       kChannels[input.channel].name, NameOf(kChannels[input.channel].from)));
       return;
     case StepRing::Verdict::kNew:
       break;
@@ -214,7 +222,15 @@ void Node::OnInput(std::size_t index, Bytes bytes) {
 
 void Node::OnResend(Bytes bytes) {
   resend_t resend{};
-  if (!Running() || !Decode(bytes, resend) || resend.header.run_id != *run_id_) return;
+  if (!Decode(bytes, resend)) {
+    ++status_.malformed;
+    return;
+  }
+  if (bound_ && resend.header.run_id != *run_id_) {
+    ++status_.foreign;
+    return;
+  }
+  if (!Running()) return;
   const TimePoint now = Clock::now();
   const std::int64_t step = resend.header.step;
   if (resend.channel == ChannelOf<status_t>().name) return OnStatusAsked(step, now);
@@ -253,7 +269,8 @@ void Node::Advance(TimePoint now) {
     }
     status_.header.step = next_;
     ++next_;
-    if (computed_at_ != TimePoint{}) {
+    // Steps that had to be repaired say nothing of how long a step takes (Karn & Partridge 1987).
+    if (computed_at_ != TimePoint{} && asked_ < computed_at_) {
       step_time_ += ((now - computed_at_) - step_time_) / kSmoothing;
     }
     computed_at_ = now;

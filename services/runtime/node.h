@@ -70,6 +70,8 @@ class Node {
   virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
   /// More to do in Poll(); returns when to be called again.
   virtual TimePoint PollMore(TimePoint now) { return now + kHeartbeat; }
+  /// Called before every STATUS: what it says must be true by then.
+  virtual void BeforeStatus() {}
   /// Called once when the node leaves.
   virtual void OnLeave() {}
   /// Someone asks for a STATUS that shows at least this step.
@@ -138,6 +140,7 @@ class Node {
   TimePoint computed_at_{};
   Duration step_time_{};  // smoothed
   TimePoint status_at_{};
+  TimePoint runner_heard_{};
 };
 
 }  // namespace fogline

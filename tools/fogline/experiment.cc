@@ -48,15 +48,7 @@ class StepWriter {
   StepWriter(Digest& digest, EventLogWriter* log) : digest_(digest), log_(log) {}
 
   void Add(const StepView& step) {
-    AddOne(step.truth);
-    AddOne(step.ego);
-    AddOne(step.radar);
-    AddOne(step.lidar);
-    AddOne(step.track);
-    AddOne(step.acc);
-    AddOne(step.driver);
-    AddOne(step.host);
-    AddOne(step.follower);
+    step.ForEachMessage([this](const auto& message) { AddOne(message); });
   }
 
  private:

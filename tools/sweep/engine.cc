@@ -8,8 +8,6 @@
 #include <atomic>
 #include <memory>
 
-#include "services/closed_loop/closed_loop.h"
-
 namespace fogline {
 namespace {
 
@@ -24,6 +22,16 @@ struct Batch {
 
 }  // namespace
 
+template <class Visit>
+void SweepWorker::Run(Visit&& visit) {
+  if (loop_) {
+    loop_->Restart(scenario_);
+  } else {
+    loop_.emplace(scenario_);
+  }
+  loop_->Run(0, visit);
+}
+
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
   baseline_.clear();
@@ -32,14 +40,13 @@ void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
     const Policy policy = scenario_.arbitrator.policy;
     if (baseline_.empty() && policy != Policy::kAutomation) {
       scenario_.arbitrator.policy = Policy::kAutomation;
-      ClosedLoop(scenario_).Run(
-          0, [this](const StepView& step) { baseline_.push_back(step.ToSample()); });
+      Run([this](const StepView& step) { baseline_.push_back(step.ToSample()); });
       scenario_.arbitrator.policy = policy;
     }
     MeasureAccumulator measures;
     SafetyImprovement improvement(scenario_.measures.safety_floor_m);
     std::size_t i = 0;
-    ClosedLoop(scenario_).Run(0, [&](const StepView& step) {
+    Run([&](const StepView& step) {
       const Sample sample = step.ToSample();
       measures.Add(sample);
       // Where one of the pair ended early, SI is over the steps of both.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "services/closed_loop/closed_loop.h"
 #include "services/measures/measures.h"
 #include "tools/sweep/plan.h"
 
@@ -28,8 +29,13 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
+  /// Runs scenario_ to its end.
+  template <class Visit>
+  void Run(Visit&& visit);
+
   const SweepPlan& plan_;
   Scenario scenario_;
+  std::optional<ClosedLoop> loop_;
   std::vector<Sample> baseline_;
 };
 

@@ -1,0 +1,117 @@
+// Checks that no step of the closed loop allocates memory after the first, nor do the measures: in
+// every shipped scenario, with every fog model, whoever drives; and in no step of the ACC, whatever
+// path its solver takes. A program of its own, because it replaces malloc. Exits with 1 and says
+// what allocated.
+#include <cstddef>
+#include <cstdio>
+
+#include "services/acc/acc_controller.h"
+#include "services/measures/measures.h"
+#include "tests/property/acc/draw.h"
+#include "tests/property/closed_loop/shipped.h"
+
+// The C library's own, which the replacements below call.
+extern "C" void* __libc_malloc(std::size_t size);                       // NOLINT
+extern "C" void* __libc_calloc(std::size_t count, std::size_t size);    // NOLINT
+extern "C" void* __libc_realloc(void* block, std::size_t size);         // NOLINT
+extern "C" void* __libc_memalign(std::size_t align, std::size_t size);  // NOLINT
+
+namespace {
+long allocations = 0;
+}  // namespace
+
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+extern "C" void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+extern "C" void* realloc(void* block, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(block, size);
+}
+extern "C" void* aligned_alloc(std::size_t align, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(align, size);
+}
+
+namespace fogline::test {
+namespace {
+
+// Allocations during random steps with and without target, calm and hopeless. Counts the steps in
+// which the solver ran.
+long ControllerAllocations(int& solver_steps) {
+  Draw draw(1);
+  AccController acc(AccSection{}, 0.1);
+  const long before = allocations;
+  for (int k = 0; k < 5000; ++k) {
+    const double scale = draw.LogUniform(0.01, 1);
+    const AccController::Output output =
+        acc.Step({.distance_m = 33 + scale * draw.Uniform(-33, 60),
+                  .relative_speed_mps = scale * draw.Uniform(-15, 15),
+                  .speed_mps = 20 + scale * draw.Uniform(-20, 30),
+                  .acceleration_mps2 = scale * draw.Uniform(-8, 5),
+                  .has_target = draw.Chance(0.9)});
+    if (output.solver == AccController::Solver::kActiveSet) ++solver_steps;
+  }
+  return allocations - before;
+}
+
+bool CheckController() {
+  int solver_steps = 0;
+  const long made = ControllerAllocations(solver_steps);
+  std::printf("controller: %ld allocations in 5000 steps, %d of them with solver\n", made,
+              solver_steps);
+  return made == 0 && solver_steps > 1000;
+}
+
+// Allocations from the end of step 0 to the end of the last step.
+long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
+  ClosedLoop loop(scenario);
+  MeasureAccumulator measures;
+  SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  long after_first = 0;
+  long after_last = 0;
+  steps = 0;
+  loop.Run(1, [&](const StepView& step) {
+    const Sample sample = step.ToSample();
+    measures.Add(sample);
+    improvement.Add(sample, sample);
+    after_last = allocations;
+    if (steps++ == 0) after_first = allocations;
+  });
+  return after_last - after_first;
+}
+
+bool CheckLoop(const Shipped& shipped) {
+  bool clean = true;
+  Scenario scenario = shipped.scenario;
+  for (std::size_t fog = 0; fog < ChoiceNames<FogModel>::kNames.size(); ++fog) {
+    scenario.fog.model = static_cast<FogModel>(fog);
+    for (std::size_t policy = 0; policy < ChoiceNames<Policy>::kNames.size(); ++policy) {
+      scenario.arbitrator.policy = static_cast<Policy>(policy);
+      std::int64_t steps = 0;
+      const long made = LoopAllocations(scenario, steps);
+      std::printf("%s, fog %s, %s: %ld allocations in %ld steps\n", shipped.name.c_str(),
+                  ChoiceNames<FogModel>::kNames[fog].data(),
+                  ChoiceNames<Policy>::kNames[policy].data(), made, static_cast<long>(steps));
+      clean = clean && made == 0 && steps > 100;
+    }
+  }
+  return clean;
+}
+
+bool Check() {
+  bool clean = CheckController();
+  const std::vector<Shipped> all = ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario");
+  for (const Shipped& shipped : all) clean = CheckLoop(shipped) && clean;
+  // A program without any allocation would not be counting.
+  return clean && all.size() >= 2 && allocations > 0;
+}
+
+}  // namespace
+}  // namespace fogline::test
+
+int main() { return fogline::test::Check() ? 0 : 1; }
