@@ -60,7 +60,7 @@ void EventLogWriter::Flush() {
   }
 }
 
-EventLogReader::EventLogReader(const std::filesystem::path& file) : file_(file) {
+EventLogReader::EventLogReader(const std::filesystem::path& file) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat info {};
   if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
@@ -93,8 +93,8 @@ std::optional<Event> EventLogReader::Next() {
   const Bytes rest = content_.subspan(offset_);
   if (rest.empty() || !torn_.empty()) return std::nullopt;
   const auto tear = [&](std::string_view what) {
-    torn_ = fmt::format("{}: {} after event {} (byte {}); {} bytes behind it are ignored",
-                        file_.string(), what, events_ - 1, offset_, rest.size());
+    torn_ = fmt::format("{} after event {} (byte {}); {} bytes behind it are ignored", what,
+                        events_ - 1, offset_, rest.size());
     return std::nullopt;
   };
   if (rest.size() < kEventHeader) return tear("cut off");

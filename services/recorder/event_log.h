@@ -66,7 +66,6 @@ class EventLogReader {
   std::size_t good_bytes() const { return offset_; }
 
  private:
-  std::filesystem::path file_;
   Bytes content_;
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;

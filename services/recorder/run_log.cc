@@ -1,5 +1,6 @@
 #include "services/recorder/run_log.h"
 
+#include <algorithm>
 #include <map>
 
 #include <fmt/core.h>
@@ -65,7 +66,12 @@ class RunLogReader::Assembler {
     const std::int64_t step = ReadInt64(event.data, kStepOffset);
     if (step < run_.steps) return;  // a repetition
     Pending& pending = pending_[step];
-    if (!pending.messages[channel].empty()) return;
+    if (!pending.messages[channel].empty()) {
+      if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], event.data)) {
+        conflict_ = fmt::format("step {} has two different {}", step, event.channel);
+      }
+      return;
+    }
     pending.messages[channel] = event.data;
     ++pending.count;
   }
@@ -83,7 +89,7 @@ class RunLogReader::Assembler {
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();
     run_.scenario = ParseScenario(run_.scenario_text, file_.string());
-    run_.complete = last_ && pending_.empty();
+    run_.complete = last_ && pending_.empty() && conflict_.empty();
     run_.note = reader_.torn();
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
@@ -92,6 +98,7 @@ class RunLogReader::Assembler {
     if (!pending_.empty()) {
       note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
     }
+    if (!conflict_.empty()) note(conflict_);
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
   }
 
@@ -130,6 +137,7 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
+  std::string conflict_;  // the first step that has two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool finished_ = false;

@@ -21,8 +21,8 @@ class Bus {
  public:
   using Handler = std::function<void(Bytes)>;
 
-  /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and a receive buffer of 2 MiB
-  ///     unless the URL says otherwise.
+  /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and asks for a receive buffer
+  ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise.
   /// @throws InputError when LCM cannot open it
   explicit Bus(const std::string& url);
   ~Bus();

@@ -203,8 +203,8 @@ void Node::OnInput(std::size_t index, Bytes bytes) {
       ++status_.out_of_window;
       return;
     case StepRing::Verdict::kConflict:
-      Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
-                       kChannels[input.channel].name, NameOf(kChannels[input.channel].from)));
+      Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?",
+                       step, kChannels[input.channel].name, NameOf(kChannels[input.channel].from)));
       return;
     case StepRing::Verdict::kNew:
       break;

@@ -42,8 +42,8 @@ void Encode(const M& message, std::vector<std::uint8_t>& buffer) {
   message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
 }
 
-/// Decodes a whole message; false if the bytes are not exactly one message of this type. Never throws:
-/// the generated decoders check every length before they use it (cmake/lcmtypes.cmake).
+/// Decodes a whole message; false if the bytes are not exactly one message of this type. Never
+/// throws: the generated decoders check every length before they use it (cmake/lcmtypes.cmake).
 template <class M>
 [[nodiscard]] bool Decode(Bytes bytes, M& message) {
   return bytes.size() >= kHeaderEnd &&

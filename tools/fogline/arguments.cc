@@ -1,5 +1,10 @@
 #include "tools/fogline/arguments.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <optional>
 #include <type_traits>
 
@@ -8,11 +13,23 @@
 
 namespace fogline {
 
-void PrepareLog(const std::filesystem::path& log, bool force) {
-  if (std::filesystem::exists(log) && !force) {
+namespace {
+
+/// Makes an empty file that was not there; false if it is there. @throws InputError
+bool Reserve(const std::filesystem::path& log) {
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0 && errno == EEXIST) return false;
+  if (file < 0) {
     throw InputError(
-        fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
+        fmt::format("{}: error: --log: cannot write: {}", log.string(), std::strerror(errno)));
   }
+  close(file);
+  return true;
+}
+
+}  // namespace
+
+void PrepareLog(const std::filesystem::path& log, bool force) {
   if (log.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(log.parent_path(), error);
@@ -21,15 +38,25 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
                                    error.message()));
     }
   }
+  if (Reserve(log)) return;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(log, ignored)) {
+    throw InputError(fmt::format("{}: error: --log: not a file", log.string()));
+  }
+  if (!force) {
+    throw InputError(
+        fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
+  }
 }
 
 std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
+  const std::filesystem::path folder = "logs";
+  std::error_code ignored;  // Reserve() says what is wrong
+  std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {
-    std::filesystem::path log = std::filesystem::path("logs") /
-                                fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
-    if (std::filesystem::exists(log)) continue;
-    PrepareLog(log, false);
-    return log;
+    std::filesystem::path log =
+        folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
+    if (Reserve(log)) return log;
   }
 }
 

@@ -133,16 +133,20 @@ void RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id, const S
     }
   }
   Progress progress("step", scenario.steps);
-  while (conductor.phase() == Conductor::Phase::kJoining ||
-         conductor.phase() == Conductor::Phase::kRunning) {
-    const TimePoint now = Clock::now();
-    const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
-    if (bus.Wait(next - now)) bus.Drain();
-    for (const ProcessGroup::Exit& exit : group.Collect()) {
-      conductor.Fail(Obituary(exit, conductor));
+  try {
+    while (conductor.phase() == Conductor::Phase::kJoining ||
+           conductor.phase() == Conductor::Phase::kRunning) {
+      const TimePoint now = Clock::now();
+      const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
+      if (bus.Wait(next - now)) bus.Drain();
+      for (const ProcessGroup::Exit& exit : group.Collect()) {
+        conductor.Fail(Obituary(exit, conductor));
+      }
+      progress.Show(conductor.step());
+      if (WasInterrupted()) break;
     }
-    progress.Show(conductor.step());
-    if (WasInterrupted()) break;
+  } catch (const std::exception& error) {
+    conductor.Fail(error.what());  // the processes are still ended in order
   }
   EndProcesses(bus, conductor, group, options);
 }
@@ -150,7 +154,9 @@ void RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id, const S
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
   if (transport == "udpm") return FreshMulticastUrl();
-  if (transport.find("://") != std::string::npos) return transport;
+  for (const char* provider : {"udpm://", "mpudpm://", "tcpq://", "memq://"}) {
+    if (transport.starts_with(provider)) return transport;
+  }
   throw InputError(
       fmt::format("error: --transport {}: neither direct, memq, udpm nor an LCM URL such as "
                   "\"udpm://239.255.76.67:7667?ttl=0\"",
@@ -182,11 +188,16 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     throw std::runtime_error(conductor.error() + (kept.empty() ? "" : "\n  " + kept));
   }
   if (conductor.phase() != Conductor::Phase::kDone) {
-    throw Interrupted(fmt::format("interrupted at step {}{}{}", conductor.step(),
-                                  kept.empty() ? "" : "; ", kept));
+    const std::string where = conductor.phase() == Conductor::Phase::kJoining
+                                  ? fmt::format("while waiting for {}", conductor.NotReady())
+                                  : fmt::format("at step {}", conductor.step());
+    throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
   }
   return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
-          .repairs = conductor.Total(&status_t::repairs_asked)};
+          .repairs = conductor.Total(&status_t::repairs_asked),
+          .foreign = conductor.Total(&status_t::foreign),
+          .malformed = conductor.Total(&status_t::malformed),
+          .out_of_window = conductor.Total(&status_t::out_of_window)};
 }
 
 }  // namespace fogline

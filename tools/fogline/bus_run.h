@@ -10,6 +10,9 @@ namespace fogline {
 struct BusRun {
   double wall_s = 0;
   std::int64_t repairs = 0;
+  std::int64_t foreign = 0;
+  std::int64_t malformed = 0;
+  std::int64_t out_of_window = 0;
 };
 
 /// A run id that no other run has.

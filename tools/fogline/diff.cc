@@ -130,7 +130,14 @@ int RunDiff(const DiffArguments& arguments) {
   } else {
     fmt::print("equal: {} steps\n", step);
   }
-  return difference ? kCheckFailed : kDone;
+  for (const RunLogReader* reader : {&reader_a, &reader_b}) {
+    if (!difference && !reader->run().note.empty()) {
+      fmt::print(stderr, "{}: {}\n", (reader == &reader_a ? arguments.a : arguments.b).string(),
+                 reader->run().note);
+    }
+  }
+  const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);
+  return difference || !complete ? kCheckFailed : kDone;
 }
 
 }  // namespace
@@ -143,7 +150,7 @@ void AddDiff(CLI::App& app, Action& action) {
   verb->add_option("B", arguments->b, "Event log")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
   verb->footer(
-      "Exit code 0 when the runs are equal, 1 when they differ.\n\n"
+      "Exit code 0 when the runs are equal, 1 when they differ or are not complete.\n\n"
       "Example:\n  fogline diff logs/paper-1.lcm logs/paper-2.lcm");
   verb->callback([&action, arguments] { action = [arguments] { return RunDiff(*arguments); }; });
 }

@@ -1,4 +1,5 @@
 // fogline metrics: the measures of runs, from their logs alone.
+#include <algorithm>
 #include <memory>
 
 #include <fmt/core.h>
@@ -38,7 +39,7 @@ int RunMetrics(const MetricsArguments& arguments) {
     fmt::print("{}", MeasuresText(run.result.measures));
   }
   if (arguments.json) PrintJson(rows.dump(2));
-  return kDone;
+  return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
 }
 
 }  // namespace

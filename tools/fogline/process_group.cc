@@ -57,6 +57,8 @@ ProcessGroup::~ProcessGroup() {
 
 void ProcessGroup::Start(Role role, const std::filesystem::path& program,
                          const std::vector<std::string>& arguments) {
+  // Inherited as ignored, it would keep the ends of processes from us.
+  std::signal(SIGCHLD, SIG_DFL);
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));

@@ -25,6 +25,9 @@ Examples:
   fogline run scenario/paper.json --transport memq --json
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
+// A step of 0.1 s then takes 100 s.
+constexpr double kMinPace = 1e-3;
+
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb) {
     verb.add_option("--transport", options.transport,
@@ -43,7 +46,7 @@ struct RunArguments {
         ->check(CLI::IsMember(RoleNames()));
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
@@ -77,13 +80,21 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   json["log"] = nullptr;
   if (!result.log.empty()) json["log"] = result.log.string();
   json["repairs"] = result.repairs;
+  json["refused"] = {{"foreign", result.foreign},
+                     {"malformed", result.malformed},
+                     {"out_of_window", result.out_of_window}};
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
 }
 
 int Run(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
-  if (!arguments.url.empty()) options.transport = arguments.url;
+  if (!arguments.url.empty()) {
+    if (options.transport != "udpm") {
+      throw InputError("error: --transport and --lcm-url exclude each other");
+    }
+    options.transport = arguments.url;
+  }
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(arguments.external, info.name) != arguments.external.end()) {
       options.external.push_back(info.role);
@@ -94,6 +105,16 @@ int Run(RunArguments& arguments) {
     throw InputError(fmt::format(
         "error: --external {}: nobody can join a run with --transport {}, which is one process",
         arguments.external.front(), options.transport));
+  }
+  if (!(options.pace == 0 || options.pace >= kMinPace)) {
+    throw InputError(
+        fmt::format("error: --pace {}: neither 0 nor from {} to 1000", options.pace, kMinPace));
+  }
+  if (direct && options.pace != 0) {
+    throw InputError("error: --pace: a run with --transport direct has no pace");
+  }
+  if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
+    throw InputError("error: --external recorder: the run's result is read from its own log");
   }
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
@@ -111,6 +132,10 @@ int Run(RunArguments& arguments) {
   }
   fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
              result.steps, result.wall_s, result.transport, result.repairs);
+  if (result.foreign + result.malformed + result.out_of_window > 0) {
+    fmt::print("refused messages: {} of other runs, {} broken, {} of impossible steps\n",
+               result.foreign, result.malformed, result.out_of_window);
+  }
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result.measures));
