@@ -154,15 +154,19 @@ void AddReport(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("report", "Figures and measures of logs as one HTML file");
   const auto arguments = std::make_shared<ReportArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs");
-  verb->add_option("--curves", arguments->curves,
-                   "Scenario file: add SI and RHE against the threshold, over seeds");
+  CLI::Option* curves =
+      verb->add_option("--curves", arguments->curves,
+                       "Scenario file: add SI and RHE against the threshold, over seeds");
   verb->add_option("--thresholds", arguments->thresholds,
                    "Of the curves: a,b,c or first:last:count")
+      ->needs(curves)
       ->capture_default_str();
   verb->add_option("--seeds", arguments->seeds, "Of the curves: A:B, both included")
+      ->needs(curves)
       ->capture_default_str();
   verb->add_option("--set", arguments->overrides,
                    "Override a field of the curves' scenario (repeatable)")
+      ->needs(curves)
       ->allow_extra_args(false);
   verb->add_option("-o,--output", arguments->output, "HTML file to write")->capture_default_str();
   verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");

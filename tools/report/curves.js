@@ -103,12 +103,15 @@ function drawDiamond(chart, x, y, colour) {
  * A chart in a figure's place. `onPoint(chart)` is called when the reader points at it; a drag
  * looks closer in both directions.
  */
-function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cursor, draw, onPoint}) {
-  const element = make("div", {class: "chart", role: "img", "aria-labelledby": `${figure.id}-title`});
+function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cursor, draw,
+                                 onPoint}) {
+  const element = make("div", {
+    class: "chart", role: "img", "aria-labelledby": `${figure.id}-title`});
   figure.querySelector(".panels").replaceChildren(make("div", {class: "panel"}, element));
-  const {muted, font} = state.theme;
+  const {font} = state.theme;
   const width = element.clientWidth;
-  const scale = ([low, high]) => ({auto: false, min: low, max: high, range: (_, min, max) => [min, max]});
+  const range = (_, min, max) => [min, max];
+  const scale = ([low, high]) => ({auto: false, min: low, max: high, range});
   const options = {
     width,
     height: curveHeight(width),
@@ -119,7 +122,7 @@ function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cu
     scales: {x: {...scale(wholeX), time: false}, y: scale(wholeY)},
     axes: [
       axisOptions(TICK_SPACE.time, tickTexts(""), {
-        size: 28, label: xLabel, labelSize: 20, labelGap: 0, labelFont: `12px ${font}`, stroke: muted}),
+        size: 28, label: xLabel, labelSize: 20, labelGap: 0, labelFont: `12px ${font}`}),
       axisOptions(TICK_SPACE.value, tickTexts(""), {size: VALUE_AXIS_WIDTH}),
     ],
     cursor: {
@@ -184,7 +187,8 @@ function buildThresholds(figure) {
   const chart = makeCurveChart(figure, {
     ...parts,
     wholeX: widened([...thresholds, ...published.map(({threshold}) => threshold)], 0.01),
-    wholeY: widened([...parts.data.slice(1).flat(), ...published.flatMap(({si, rhe}) => [si, rhe])], 1),
+    wholeY: widened([...parts.data.slice(1).flat(),
+                     ...published.flatMap(({si, rhe}) => [si, rhe])], 1),
     xLabel: "DoC threshold",
     cursor: {y: false, points: {size: (_, i) => parts.series[i].isEdge ? 0 : 7}},
     draw: drawPublished,
@@ -204,29 +208,34 @@ function makeCurveLegend(figure) {
   for (const name of ["mean", "std. dev.", "95 % CI of mean", "5th to 95th pct."]) {
     head.append(make("th", {scope: "col"}, name));
   }
-  const rows = MEASURES.map((measure) => {
-    const button = make("button", {type: "button", "aria-pressed": !curveState.hidden.has(measure.key)},
-                        lineSwatch(state.theme.palette[measure.colour], measure.dash, 2.5), measure.label);
+  const rows = MEASURES.map((measure, place) => {
+    const shown = !curveState.hidden.has(measure.key);
+    const button = make("button", {type: "button", "aria-pressed": shown},
+                        lineSwatch(state.theme.palette[measure.colour], measure.dash, 2.5),
+                        measure.label);
     button.addEventListener("click", () => {
       if (!curveState.hidden.delete(measure.key)) curveState.hidden.add(measure.key);
       buildCurves();
-      [...figure.querySelectorAll(".legend button")].find(({textContent}) => textContent === measure.label).focus();
+      figure.querySelectorAll(".legend button")[place].focus();
     });
     const cells = Array.from({length: 4}, () => make("td"));
     return {measure, cells, element: make("tr", {}, make("th", {scope: "row"}, button), ...cells)};
   });
-  const keys = [make("li", {}, make("span", {class: "key interval"}), "95 % CI of the mean"),
-                make("li", {}, make("span", {class: "key percentiles"}), "5th to 95th percentile of seeds")];
-  if (curves.published.length) keys.push(make("li", {}, make("span", {class: "key diamond"}), "published"));
+  const keys = [["interval", "95 % CI of the mean"],
+                ["percentiles", "5th to 95th percentile of seeds"]];
+  if (curves.published.length) keys.push(["diamond", "published"]);
+  const label = "Values of figure A at the threshold";
   figure.querySelector(".legend").replaceChildren(
-      make("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": "Values of figure A at the threshold"},
-           make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows.map(({element}) => element)))),
-      make("ul", {class: "keys"}, ...keys));
+      make("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": label},
+           make("table", {}, make("thead", {}, head),
+                make("tbody", {}, ...rows.map(({element}) => element)))),
+      makeKeys(keys));
   return (row) => {
     clock.textContent = `at ${curves.thresholds[row]} in %`;
     for (const {measure, cells} of rows) {
       const {mean, deviation, ci95, p5, p95} = curves[measure.key];
-      const range = ([low, high]) => low == null ? "–" : `${decimal(low, 2)} to ${decimal(high, 2)}`;
+      const range = ([low, high]) =>
+          low == null ? "–" : `${decimal(low, 2)} to ${decimal(high, 2)}`;
       cells[0].textContent = decimal(mean[row], 2);
       cells[1].textContent = decimal(deviation[row], 2);
       cells[2].textContent = range(around(mean[row], ci95[row]));

@@ -3,7 +3,8 @@
 /** The place of the point nearest to the cursor. */
 function nearestPoint(chart) {
   const {left, top} = chart.cursor;
-  const distance = ({rhe, si}) => Math.hypot(chart.valToPos(rhe, "x") - left, chart.valToPos(si, "y") - top);
+  const distance = ({rhe, si}) =>
+      Math.hypot(chart.valToPos(rhe, "x") - left, chart.valToPos(si, "y") - top);
   let best = 0;
   curves.points.forEach((point, i) => {
     if (distance(point) < distance(curves.points[best])) best = i;
@@ -57,8 +58,7 @@ function makeFrontLegend(figure) {
   const text = make("p", {class: "reading"});
   const keys = [["front", "on the front"], ["dominated", "another threshold is better"]];
   if (curves.published.length) keys.push(["diamond ink", "published"]);
-  figure.querySelector(".legend").replaceChildren(text, make("ul", {class: "keys"}, ...keys.map(([name, what]) =>
-      make("li", {}, make("span", {class: `key ${name}`}), what))));
+  figure.querySelector(".legend").replaceChildren(text, makeKeys(keys));
   return (row) => {
     const point = pointOf(row);
     text.textContent = `Threshold ${point ? point.thresholds : curves.thresholds[row]}: ` +

@@ -29,6 +29,12 @@ function swatch(curve, overlaid, shared) {
   return lineSwatch(stroke, overlaid || curve.limit ? curve.dash : [], curve.limit ? 2 : 2.5);
 }
 
+/** What marks and shades mean: [[class of the mark, text]]. */
+function makeKeys(keys) {
+  return make("ul", {class: "keys"}, ...keys.map(([name, text]) =>
+      make("li", {}, make("span", {class: `key ${name}`}), text)));
+}
+
 function shadeKeys(figure) {
   const overlaid = isOverlaid();
   const keys = [];
@@ -38,8 +44,7 @@ function shadeKeys(figure) {
                        : ["human", "the human drives"]);
   }
   if (figure.shortfall) keys.push([overlaid ? "short neutral" : "short", "safety compromised"]);
-  return make("ul", {class: "keys"}, ...keys.map(([name, text]) =>
-      make("li", {}, make("span", {class: `key ${name}`}), text)));
+  return makeKeys(keys);
 }
 
 /**
