@@ -31,6 +31,15 @@ struct ReportArguments {
   std::filesystem::path png;
 };
 
+/// Only an HTML file may be replaced: "-o *.lcm" must not cost a log. @throws InputError
+void RefuseToReplaceOther(const std::filesystem::path& output) {
+  std::ifstream file(output, std::ios::binary);
+  if (file.is_open() && file.peek() != std::ifstream::traits_type::eof() && file.get() != '<') {
+    throw InputError(fmt::format("{}: error: --output: the file is no HTML page and stays as it is",
+                                 output.string()));
+  }
+}
+
 std::string NameOf(const LoggedRun& run) {
   const ArbitratorSection& arbitrator = run.scenario.arbitrator;
   if (arbitrator.policy == Policy::kAutomation) return "without traded control";
@@ -136,6 +145,7 @@ int RunReport(const ReportArguments& arguments) {
   for (std::size_t i = 0; i < runs.size(); ++i) pages.push_back(PageOf(runs[i], improvements[i]));
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
+  RefuseToReplaceOther(arguments.output);
   std::ofstream file(arguments.output, std::ios::binary);
   file << MakeReport(pages, table, curves);
   if (!file.flush()) {
