@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
+#include <mutex>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/channel_filter.h"
 
 namespace fogline {
 namespace {
@@ -40,8 +43,14 @@ std::string Escaped(std::string_view channel) {
 
 }  // namespace
 
-Bus::Bus(const std::string& url) : url_(WithDefaults(url)), lcm_(lcm_create(url_.c_str())) {
+Bus::Bus(const std::string& url) : url_(WithDefaults(url)) {
+  // LCM keeps its sockets to itself. They are those that opening it adds; one opens at a time.
+  static std::mutex opening;
+  const std::lock_guard lock(opening);
+  const std::vector<int> before = UdpSockets();
+  lcm_ = lcm_create(url_.c_str());
   if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
+  std::ranges::set_difference(UdpSockets(), before, std::back_inserter(sockets_));
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
@@ -56,6 +65,8 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &subscription);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
   lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  channels_.emplace_back(channel);
+  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(channels_));
 }
 
 void Bus::Publish(std::string_view channel, Bytes bytes) {

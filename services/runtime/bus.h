@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "services/runtime/clock.h"
 #include "services/runtime/wire.h"
@@ -58,6 +59,8 @@ class Bus {
   std::string url_;
   _lcm_t* lcm_ = nullptr;
   int fd_ = -1;
+  std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
+  std::vector<std::string> channels_;
   std::deque<Subscription> subscriptions_;  // stable addresses: LCM keeps pointers to them
   std::exception_ptr parked_;               // may not pass through LCM's C code
 };
