@@ -1,9 +1,8 @@
 // LCM event logs, read by mapping the file. A log of Fogline is a standard LCM event log whose
 // event times are simulated times. LCM's own library takes seven calls and a copy of everything for
-// each event, written or read; it is not needed for a format as simple as this:
-//
-// all big endian (LCM, eventlog.c): sync word 0xEDA1DA01, int64 event number, int64
-// timestamp in us, int32 channel length, int32 data length, channel, data.
+// each event, written or read, and is not needed for a format as simple as this (LCM, eventlog.c),
+// all big endian: sync word 0xEDA1DA01, int64 event number, int64 timestamp in us, int32 channel
+// length, int32 data length, channel, data.
 #pragma once
 
 #include <cstdint>
