@@ -1,7 +1,6 @@
 #include "services/recorder/event_log.h"
 
 #include <fcntl.h>
-#include <lcm/eventlog.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -27,37 +26,45 @@ std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
   return value;
 }
 
+template <class Unsigned>
+void AppendBigEndian(Unsigned value, std::vector<std::uint8_t>& bytes) {
+  constexpr int kByteBits = 8;
+  for (int shift = kByteBits * (sizeof(value) - 1); shift >= 0; shift -= kByteBits) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+  }
+}
+
 }  // namespace
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& file)
-    : file_(file), log_(lcm_eventlog_create(file.c_str(), "w")) {
-  if (log_ == nullptr) {
+    : file_(file), out_(std::fopen(file.c_str(), "wb")) {
+  if (out_ == nullptr) {
     throw InputError(
         fmt::format("{}: error: cannot write the log: {}", file.string(), std::strerror(errno)));
   }
 }
 
-EventLogWriter::~EventLogWriter() { lcm_eventlog_destroy(log_); }
+EventLogWriter::~EventLogWriter() { std::fclose(out_); }
 
 void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes data) {
-  channel_ = channel;
-  lcm_eventlog_event_t event{};
-  event.timestamp = utime;
-  event.channellen = static_cast<std::int32_t>(channel_.size());
-  event.channel = channel_.data();
-  event.datalen = static_cast<std::int32_t>(data.size());
-  event.data = const_cast<std::uint8_t*>(data.data());  // read only; LCM's C struct has no const
-  if (lcm_eventlog_write_event(log_, &event) != 0) {
-    throw std::runtime_error(
-        fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
-  }
+  event_.clear();
+  AppendBigEndian(kSyncWord, event_);
+  AppendBigEndian(static_cast<std::uint64_t>(events_++), event_);
+  AppendBigEndian(static_cast<std::uint64_t>(utime), event_);
+  AppendBigEndian(static_cast<std::uint32_t>(channel.size()), event_);
+  AppendBigEndian(static_cast<std::uint32_t>(data.size()), event_);
+  event_.insert(event_.end(), channel.begin(), channel.end());
+  event_.insert(event_.end(), data.begin(), data.end());
+  if (std::fwrite(event_.data(), 1, event_.size(), out_) != event_.size()) FailToWrite();
 }
 
 void EventLogWriter::Flush() {
-  if (std::fflush(log_->f) != 0) {
-    throw std::runtime_error(
-        fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
-  }
+  if (std::fflush(out_) != 0) FailToWrite();
+}
+
+void EventLogWriter::FailToWrite() const {
+  throw std::runtime_error(
+      fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
 }
 
 EventLogReader::EventLogReader(const std::filesystem::path& file) {

@@ -1,20 +1,20 @@
-// LCM event logs: written by LCM's own library, read by mapping the file. A log of Fogline is a
-// standard LCM event log whose event times are simulated times.
-//
-// Format (LCM, eventlog.h), all big endian: sync word 0xEDA1DA01, int64 event number, int64
-// timestamp in us, int32 channel length, int32 data length, channel, data.
+// LCM event logs, read by mapping the file. A log of Fogline is a standard LCM event log whose
+// event times are simulated times. LCM's own library takes seven calls and a copy of everything for
+// each event, written or read, and is not needed for a format as simple as this (LCM, eventlog.c),
+// all big endian: sync word 0xEDA1DA01, int64 event number, int64 timestamp in us, int32 channel
+// length, int32 data length, channel, data.
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "services/runtime/wire.h"
-
-struct _lcm_eventlog_t;
 
 namespace fogline {
 
@@ -35,9 +35,12 @@ class EventLogWriter {
   void Flush();
 
  private:
+  [[noreturn]] void FailToWrite() const;
+
   std::filesystem::path file_;
-  _lcm_eventlog_t* log_;
-  std::string channel_;
+  std::FILE* out_;
+  std::int64_t events_ = 0;
+  std::vector<std::uint8_t> event_;  // one, encoded
 };
 
 /// One event; views into the mapped file.

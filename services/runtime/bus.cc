@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
+#include <mutex>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/channel_filter.h"
 
 namespace fogline {
 namespace {
@@ -40,8 +43,14 @@ std::string Escaped(std::string_view channel) {
 
 }  // namespace
 
-Bus::Bus(const std::string& url) : url_(WithDefaults(url)), lcm_(lcm_create(url_.c_str())) {
+Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+  // LCM keeps its sockets to itself. They are those that opening it adds; one opens at a time.
+  static std::mutex opening;
+  const std::lock_guard lock(opening);
+  const std::vector<int> before = UdpSockets();
+  lcm_ = lcm_create(url_.c_str());
   if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
+  std::ranges::set_difference(UdpSockets(), before, std::back_inserter(sockets_));
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
@@ -56,6 +65,10 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &subscription);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
   lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  channels_.emplace(channel);
+  for (const int socket : sockets_) {
+    AttachFilter(socket, ChannelFilter({channels_.begin(), channels_.end()}));
+  }
 }
 
 void Bus::Publish(std::string_view channel, Bytes bytes) {
@@ -64,19 +77,28 @@ void Bus::Publish(std::string_view channel, Bytes bytes) {
   if (lcm_publish(lcm_, name.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
     throw std::runtime_error(fmt::format("LCM cannot publish {} bytes on {}", bytes.size(), name));
   }
+  if (in_memory_ && channels_.contains(channel)) ++waiting_;
 }
 
 bool Bus::Wait(Duration timeout) {
+  if (waiting_ > 0) {
+    --waiting_;  // no need to ask the kernel
+  } else if (!Readable(timeout)) {
+    return false;
+  }
+  if (lcm_handle(lcm_) != 0) throw std::runtime_error(fmt::format("LCM lost {}", url_));
+  if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
+  return true;
+}
+
+bool Bus::Readable(Duration timeout) const {
   pollfd waited{.fd = fd_, .events = POLLIN, .revents = 0};
   const auto left = std::max(Duration::zero(), timeout);
   const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
                        .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
   const int ready = ppoll(&waited, 1, &limit, nullptr);
   if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
-  if (ready <= 0) return false;
-  if (lcm_handle(lcm_) != 0) throw std::runtime_error(fmt::format("LCM lost {}", url_));
-  if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
-  return true;
+  return ready > 0;
 }
 
 void Bus::Drain() {

@@ -2,11 +2,14 @@
 // queues without LCM's limit of 30, and handlers that may throw.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "services/runtime/clock.h"
 #include "services/runtime/wire.h"
@@ -53,11 +56,17 @@ class Bus {
     Bus* bus;
     Handler handler;
   };
+  bool Readable(Duration timeout) const;
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* subscription);
 
   std::string url_;
   _lcm_t* lcm_ = nullptr;
   int fd_ = -1;
+  std::vector<int> sockets_;                     // LCM's UDP sockets; it owns them
+  std::set<std::string, std::less<>> channels_;  // subscribed
+  // Of memq, which nobody but this object publishes on: messages that wait to be handled.
+  bool in_memory_;
+  std::int64_t waiting_ = 0;
   std::deque<Subscription> subscriptions_;  // stable addresses: LCM keeps pointers to them
   std::exception_ptr parked_;               // may not pass through LCM's C code
 };

@@ -1,0 +1,108 @@
+#include "services/runtime/channel_filter.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace fogline {
+namespace {
+
+// A filter of a UDP socket sees the datagram from the UDP header on.
+constexpr std::uint32_t kMagicOffset = 8;
+constexpr std::uint32_t kChannelOffset = kMagicOffset + 8;
+constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian as all of it
+
+constexpr std::uint32_t kWholeDatagram = 0xffffffff;
+constexpr std::uint32_t kNothing = 0;
+
+sock_filter Load(std::size_t size, std::size_t offset) {
+  const unsigned width = size == 4 ? BPF_W : size == 2 ? BPF_H : BPF_B;
+  return BPF_STMT(static_cast<std::uint16_t>(BPF_LD | BPF_ABS | width),
+                  static_cast<std::uint32_t>(offset));
+}
+
+/// Skips `skip` instructions unless the value loaded last is this one.
+sock_filter SkipUnless(std::uint32_t value, std::size_t skip) {
+  return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, static_cast<std::uint8_t>(skip));
+}
+
+sock_filter Take(std::uint32_t bytes) { return BPF_STMT(BPF_RET | BPF_K, bytes); }
+
+std::uint32_t BigEndian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char byte : bytes) value = (value << 8) | static_cast<std::uint8_t>(byte);
+  return value;
+}
+
+/// Takes the datagram if its channel is this one; otherwise the program goes on behind.
+void AppendChannel(const std::string& channel, std::vector<sock_filter>& program) {
+  const std::string_view name(channel.c_str(), channel.size() + 1);  // with its final 0
+  struct Piece {
+    std::size_t offset;
+    std::size_t size;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t offset = 0; offset < name.size();) {
+    const std::size_t left = name.size() - offset;
+    const std::size_t size = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    pieces.push_back({offset, size});
+    offset += size;
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto [offset, size] = pieces[i];
+    const std::size_t rest = 2 * (pieces.size() - 1 - i) + 1;
+    program.push_back(Load(size, kChannelOffset + offset));
+    program.push_back(SkipUnless(BigEndian(name.substr(offset, size)), rest));
+  }
+  program.push_back(Take(kWholeDatagram));
+}
+
+bool IsUdp(int fd) {
+  int type = 0;
+  int domain = 0;
+  socklen_t size = sizeof(type);
+  if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) return false;
+  size = sizeof(domain);
+  return getsockopt(fd, SOL_SOCKET, SO_DOMAIN, &domain, &size) == 0 && domain == AF_INET;
+}
+
+}  // namespace
+
+std::vector<int> UdpSockets() {
+  std::vector<int> sockets;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const std::string name = entry.path().filename().string();
+    int fd = -1;
+    std::from_chars(name.data(), name.data() + name.size(), fd);
+    if (IsUdp(fd)) sockets.push_back(fd);
+  }
+  std::ranges::sort(sockets);
+  return sockets;
+}
+
+std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels) {
+  std::vector<sock_filter> program{
+      Load(4, kMagicOffset),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kSmallMessage, 1, 0),  // goes on with the channels
+      Take(kWholeDatagram),
+  };
+  // A program that looks beyond the end of a datagram drops it. From short names to long ones, none
+  // looks further than the name that matches.
+  std::ranges::stable_sort(channels, {}, &std::string::size);
+  for (const std::string& channel : channels) AppendChannel(channel, program);
+  program.push_back(Take(kNothing));
+  return program;
+}
+
+void AttachFilter(int socket, std::vector<sock_filter> program) {
+  const sock_fprog filter{.len = static_cast<unsigned short>(program.size()),
+                          .filter = program.data()};
+  setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter));
+}
+
+}  // namespace fogline

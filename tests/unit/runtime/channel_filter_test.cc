@@ -1,0 +1,120 @@
+#include "services/runtime/channel_filter.h"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "services/runtime/bus.h"
+
+namespace fogline {
+namespace {
+
+using namespace std::string_literals;
+
+/// An LCM datagram of a message that fits into one.
+std::string Datagram(const std::string& channel, const std::string& data = "12345678") {
+  return "LC02\0\0\0\7"s + channel + '\0' + data;
+}
+
+/// A receiving socket behind a filter, and one that sends to it.
+class FilteredSocket {
+ public:
+  explicit FilteredSocket(const std::vector<std::string>& channels) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* where = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(bind(receiver_, where, size), 0);
+    EXPECT_EQ(getsockname(receiver_, where, &size), 0);
+    EXPECT_EQ(connect(sender_, where, size), 0);
+    AttachFilter(receiver_, ChannelFilter(channels));
+  }
+  ~FilteredSocket() {
+    close(receiver_);
+    close(sender_);
+  }
+  FilteredSocket(const FilteredSocket&) = delete;
+  FilteredSocket& operator=(const FilteredSocket&) = delete;
+
+  void Send(const std::string& datagram) const {
+    ASSERT_EQ(send(sender_, datagram.data(), datagram.size(), 0),
+              static_cast<ssize_t>(datagram.size()));
+  }
+  /// The next datagram that gets through.
+  std::string Receive() const {
+    std::array<char, 100> buffer{};
+    const ssize_t size = recv(receiver_, buffer.data(), buffer.size(), 0);
+    return size < 0 ? "nothing" : std::string(buffer.data(), static_cast<std::size_t>(size));
+  }
+
+ private:
+  int receiver_ = socket(AF_INET, SOCK_DGRAM, 0);
+  int sender_ = socket(AF_INET, SOCK_DGRAM, 0);
+};
+
+TEST(ChannelFilterTest, TakesWhatIsSubscribedWholeAndInOrder) {
+  const std::vector<std::string> channels{"FOLLOWER_COMMAND", "A", "TRUTH", "RUN", "RADAR", "AB"};
+  const FilteredSocket socket(channels);
+  for (const std::string& channel : channels) socket.Send(Datagram(channel));
+  for (const std::string& channel : channels) EXPECT_EQ(socket.Receive(), Datagram(channel));
+}
+
+TEST(ChannelFilterTest, TakesAMessageWithoutData) {
+  // GIVEN a longer channel too, whose name a datagram as short as this one cannot hold
+  const FilteredSocket socket({"RUN_OF_LONGER_NAME", "RUN"});
+  socket.Send(Datagram("RUN", ""));
+  EXPECT_EQ(socket.Receive(), Datagram("RUN", ""));
+}
+
+TEST(ChannelFilterTest, DropsEveryOtherChannel) {
+  const FilteredSocket socket({"RADAR", "TRUTH"});
+  for (const char* other :
+       {"RADA", "RADAR2", "TRUT", "TRUTHS", "radar", "LIDAR", "", "RADAR TRUTH"}) {
+    socket.Send(Datagram(other));
+  }
+  socket.Send(Datagram("TRUTH"));
+  EXPECT_EQ(socket.Receive(), Datagram("TRUTH"));
+}
+
+TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
+  const FilteredSocket socket({});
+  socket.Send(Datagram("RADAR"));
+  socket.Send("LC03 a fragment");
+  EXPECT_EQ(socket.Receive(), "LC03 a fragment");
+}
+
+TEST(ChannelFilterTest, TakesFragmentsOfWhateverChannel) {
+  const FilteredSocket socket({"RADAR"});
+  const std::string second = "LC03\0\0\0\7 no channel in here"s;
+  socket.Send(second);
+  EXPECT_EQ(socket.Receive(), second);
+}
+
+TEST(ChannelFilterTest, FindsTheSocketsThatLcmOpens) {
+  const std::size_t before = UdpSockets().size();
+  const Bus memory("memq://");
+  EXPECT_EQ(UdpSockets().size(), before);
+  const Bus network(FreshMulticastUrl());
+  EXPECT_GT(UdpSockets().size(), before);
+}
+
+TEST(ChannelFilterTest, LeavesMessagesOfManyFragmentsAlone) {
+  Bus bus(FreshMulticastUrl());
+  std::size_t received = 0;
+  bus.Subscribe("SMALL", [](Bytes) {});
+  bus.Subscribe("LARGE", [&received](Bytes bytes) { received = bytes.size(); });
+  const std::vector<std::uint8_t> large(300'000);
+  bus.Publish("LARGE", large);
+  while (received == 0 && bus.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(received, large.size());
+}
+
+}  // namespace
+}  // namespace fogline
