@@ -35,7 +35,8 @@ TEST(ReadmeTest, IsShortAndNamesOnlyFilesThatAreThere) {
   const std::string readme = ReadSource("README.md");
   EXPECT_LE(std::ranges::count(readme, '\n'), 180);
   std::size_t links = 0;
-  for (std::size_t at = readme.find("]("); at != std::string::npos; at = readme.find("](", at + 1)) {
+  for (std::size_t at = readme.find("]("); at != std::string::npos;
+       at = readme.find("](", at + 1)) {
     const std::string link = readme.substr(at + 2, readme.find(')', at) - at - 2);
     EXPECT_TRUE(std::filesystem::exists(SourceDirectory() / link)) << link;
     ++links;

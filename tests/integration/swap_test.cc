@@ -155,13 +155,13 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
   const std::string bare = elsewhere.BareDriver();
   const std::string fogline = Program("fogline");
   const std::string url = FreshMulticastUrl();
-  // GIVEN a run with our own driver, whose headway is 1.5 s
+  // GIVEN a run with our own driver, whose headway is 1.6 s
   const Outcome outcome =
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto ours = nlohmann::json::parse(outcome.out);
   // WHEN one from elsewhere takes its place
-  const auto same = RunWith(fogline, {bare, url, "1.5"}, url, elsewhere.File("same.lcm"));
+  const auto same = RunWith(fogline, {bare, url, "1.6"}, url, elsewhere.File("same.lcm"));
   // THEN nobody can tell
   EXPECT_EQ(same["steps"], 500);
   EXPECT_EQ(same["digest"], ours["digest"]);

@@ -32,7 +32,7 @@ struct ExperimentResult {
   std::int64_t steps = 0;
   std::string digest;
   double wall_s = 0;
-  std::int64_t repairs = 0;   // requests to publish something again
+  std::int64_t repairs = 0;  // requests to publish something again
   // Messages that the roles refused: of another run; broken; of a step that cannot be.
   std::int64_t foreign = 0;
   std::int64_t malformed = 0;

@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   }
   lcm::LCM lcm(argv[1]);
   if (!lcm.good()) return 3;  // LCM has said why
-  BareDriver driver(lcm, argc > 2 ? std::atof(argv[2]) : 1.5);
+  BareDriver driver(lcm, argc > 2 ? std::atof(argv[2]) : 1.6);
   std::cout << "waiting for a run on " << argv[1] << std::endl;
   while (!driver.stopped()) {
     const int handled = lcm.handleTimeout(50);  // ms
