@@ -1,4 +1,5 @@
 // fogline sweep: a scenario over a grid of fields and a range of seeds, on all cores.
+#include <algorithm>
 #include <memory>
 
 #include <fmt/core.h>
@@ -9,6 +10,7 @@
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/csv.h"
+#include "tools/sweep/merge.h"
 
 namespace fogline {
 namespace {
@@ -25,7 +27,11 @@ struct SweepArguments {
     verb.add_option("--jobs", jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
     verb.add_option("--out", out, "CSV file (default: SCENARIO-sweep.csv in this folder)");
     verb.add_option("--shard", shard, "Only part I of N equal parts, as I/N");
-    verb.add_option("--merge", merge, "Put the files of all shards together into --out");
+    CLI::Option* put_together =
+        verb.add_option("--merge", merge, "Put the files of all shards together into --out");
+    for (const char* other : {"SCENARIO", "--set", "--grid", "--seeds", "--shard"}) {
+      put_together->excludes(other);
+    }
     verb.add_flag("--force", force, "Replace the file even if it is of another sweep");
     verb.add_flag("--json", json, "Print runs, time and rate as JSON");
     verb.footer(
@@ -67,8 +73,13 @@ SweepPlan MakePlan(const SweepArguments& arguments) {
 
 int Merge(const SweepArguments& arguments) {
   if (arguments.out.empty()) throw InputError("error: --merge needs --out");
-  MergeShards(arguments.merge, arguments.out, arguments.force);
-  if (!arguments.json) fmt::print("{}\n", arguments.out.string());
+  const std::int64_t rows = MergeShards(arguments.merge, arguments.out, arguments.force);
+  if (arguments.json) {
+    const nlohmann::ordered_json json{{"rows", rows}, {"out", arguments.out.string()}};
+    PrintJson(json.dump(2));
+  } else {
+    fmt::print("{} rows\n{}\n", rows, arguments.out.string());
+  }
   return kDone;
 }
 
@@ -100,7 +111,8 @@ int RunSweepVerb(const SweepArguments& arguments) {
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   // Each unit computes the paired run without traded control besides its rows.
-  const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / arguments.jobs : 0;
+  const int cores = std::min(arguments.jobs, AllCores());
+  const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / cores : 0;
   if (arguments.json) {
     const nlohmann::ordered_json json{
         {"runs", rows}, {"wall_s", wall_s}, {"runs_per_s_per_core", rate}, {"out", out.string()}};

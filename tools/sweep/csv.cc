@@ -1,22 +1,23 @@
 #include "tools/sweep/csv.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "tools/sweep/description.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string HeaderLine(const SweepPlan& plan) {
   std::string line;
@@ -27,16 +28,21 @@ std::string HeaderLine(const SweepPlan& plan) {
   return line + "\n";
 }
 
-void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, const SweepRow& row,
-               std::string& text) {
-  const auto number = [&text](const std::optional<double>& value) {
-    if (value) text += fmt::format("{}", *value);
-  };
+/// What a row begins with: the values of its axes and its seed.
+void AppendKey(const SweepPlan& plan, std::int64_t unit, std::int64_t index, std::string& text) {
   for (const std::string_view value : plan.ValuesOf(unit, index)) {
     text += value;
     text += ',';
   }
   text += fmt::format("{},", plan.SeedOf(unit));
+}
+
+void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, const SweepRow& row,
+               std::string& text) {
+  const auto number = [&text](const std::optional<double>& value) {
+    if (value) text += fmt::format("{}", *value);
+  };
+  AppendKey(plan, unit, index, text);
   number(row.si_pct);
   VisitMeasures(row.measures,
                 [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
@@ -50,95 +56,97 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
   text += '\n';
 }
 
-/// What a sweep is, apart from the shard.
-Json Describe(const SweepPlan& plan) {
-  Json grid = Json::array();
-  for (const Axis& axis : plan.axes())
-    grid.push_back({{"field", axis.pointer}, {"values", axis.values}});
-  return {{"grid", grid},
-          {"seeds", {plan.seeds().first, plan.seeds().last}},
-          {"rows", plan.rows()},
-          {"scenario", Json::parse(PrintScenario(plan.base()))}};
-}
-
-Json DescribeShard(const SweepPlan& plan, const Shard& shard) {
-  return {{"sweep", Describe(plan)},
-          {"shard", {shard.index, shard.count}},
-          {"shard_rows", (plan.ShardEnd(shard) - plan.ShardBegin(shard)) * plan.rows_per_unit()}};
-}
-
-std::string Content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void WriteWhole(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) {
-    throw InputError(
-        fmt::format("{}: error: cannot write: {}", file.string(), std::strerror(errno)));
+/// Whether a file is that of this shard, by its description.
+bool IsOf(const std::filesystem::path& file, const Description& description) {
+  try {
+    return ReadDescription(file) == description;
+  } catch (const InputError&) {
+    return false;
   }
+}
+
+InputError CannotOpen(const std::filesystem::path& file, const char* why) {
+  return InputError(fmt::format("{}: error: --out: cannot write: {}", file.string(), why));
 }
 
 }  // namespace
 
-std::filesystem::path DescriptionFile(const std::filesystem::path& csv) {
-  return csv.string() + ".json";
-}
-
 SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
                      bool force)
     : path_(file), plan_(plan), next_unit_(plan.ShardBegin(shard)) {
-  const std::string description = DescribeShard(plan, shard).dump(1) + "\n";
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const bool there = std::filesystem::exists(file);
-  if (there && !force && Content(DescriptionFile(file)) != description) {
+  MakeFolderOf(path_);
+  Open();
+  const bool empty = lseek(file_.fd, 0, SEEK_END) == 0;
+  if (!empty && !force && !IsOf(path_, Describe(plan, shard))) {
     throw InputError(
         fmt::format("{}: error: --out: the file is there and is not of this sweep; "
                     "--force replaces it",
-                    file.string()));
+                    path_.string()));
   }
-  if (there && !force) {
-    Resume();
+  if (empty || force) {
+    Start(shard);
   } else {
-    WriteWhole(DescriptionFile(file), description);
-    Start();
+    Resume(shard);
   }
 }
 
-void SweepFile::Start() {
-  file_.reset(std::fopen(path_.c_str(), "wb"));
-  if (!file_) {
-    throw InputError(
-        fmt::format("{}: error: --out: cannot write: {}", path_.string(), std::strerror(errno)));
+SweepFile::Handle::~Handle() {
+  if (fd >= 0) close(fd);
+}
+
+// One writer at a time: two that append would mix their rows. A job that a cluster has started
+// again, while its first incarnation was only cut off, is told so.
+void SweepFile::Open() {
+  file_.fd = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file_.fd < 0) throw CannotOpen(path_, std::strerror(errno));
+  if (flock(file_.fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw CannotOpen(path_, "another sweep is writing it");
   }
+}
+
+void SweepFile::Cut(std::int64_t size) {
+  if (lseek(file_.fd, 0, SEEK_END) != size && ftruncate(file_.fd, size) != 0) {
+    throw CannotOpen(path_, std::strerror(errno));
+  }
+}
+
+// The description comes while the file is empty, so no row is ever taken for one of another sweep.
+void SweepFile::Start(const Shard& shard) {
+  Cut(0);
+  WriteDescription(path_, Describe(plan_, shard));
   Write(HeaderLine(plan_));
 }
 
-void SweepFile::Resume() {
+void SweepFile::Resume(const Shard& shard) {
+  const std::int64_t all_rows =
+      (plan_.ShardEnd(shard) - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
   // Line by line, so that a file of any size takes no memory.
   std::ifstream in(path_, std::ios::binary);
   std::string line;
-  std::uintmax_t position = 0;
-  std::uintmax_t whole = 0;  // end of the last whole unit, or of the header
-  std::int64_t rows = -1;    // the header is not one
-  while (std::getline(in, line) && !in.eof()) {
-    position += line.size() + 1;
-    ++rows;
-    if (rows % plan_.rows_per_unit() == 0) whole = position;
+  std::int64_t whole = 0;  // end of the last whole unit, or of the header
+  std::int64_t position = 0;
+  std::int64_t row = -1;  // the header is none
+  for (; std::getline(in, line) && !in.eof(); ++row) {
+    std::int64_t index = row < 0 ? 0 : row % plan_.rows_per_unit();
+    text_.clear();
+    if (row < 0) {
+      text_ = HeaderLine(plan_);
+      text_.pop_back();
+    } else if (row < all_rows) {
+      AppendKey(plan_, next_unit_, index, text_);
+    }
+    if (text_.empty() || !line.starts_with(text_)) {
+      throw InputError(
+          fmt::format("{}:{}: error: --out: not the line that this sweep writes there; "
+                      "--force begins anew",
+                      path_.string(), row + 2));
+    }
+    position += static_cast<std::int64_t>(line.size()) + 1;
+    if (row >= 0 && ++index == plan_.rows_per_unit()) ++next_unit_;
+    if (row < 0 || index == plan_.rows_per_unit()) whole = position;
   }
-  in.close();
-  if (rows < 0) return Start();
-  next_unit_ += rows / plan_.rows_per_unit();
-  std::filesystem::resize_file(path_, whole);
-  file_.reset(std::fopen(path_.c_str(), "ab"));
-  if (!file_) {
-    throw InputError(
-        fmt::format("{}: error: --out: cannot write: {}", path_.string(), std::strerror(errno)));
-  }
+  if (row < 0) return Start(shard);
+  Cut(whole);
 }
 
 void SweepFile::Append(const std::vector<SweepRow>& rows) {
@@ -151,67 +159,16 @@ void SweepFile::Append(const std::vector<SweepRow>& rows) {
 }
 
 void SweepFile::Write(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() ||
-      std::fflush(file_.get()) != 0) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)));
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(file_.fd, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      throw std::runtime_error(
+          fmt::format("{}: cannot write: {}; call it again to go on where the file ends",
+                      path_.string(), std::strerror(errno)));
+    }
+    done += static_cast<std::size_t>(written);
   }
-}
-
-void MergeShards(const std::vector<std::filesystem::path>& shards,
-                 const std::filesystem::path& merged, bool force) {
-  if (std::filesystem::exists(merged) && !force) {
-    throw InputError(
-        fmt::format("{}: error: --out: the file exists; --force replaces it", merged.string()));
-  }
-  std::map<std::int64_t, std::filesystem::path> ordered;
-  Json sweep;
-  std::int64_t count = 0;
-  for (const std::filesystem::path& shard : shards) {
-    const Json description = Json::parse(Content(DescriptionFile(shard)), nullptr, false);
-    if (description.is_discarded() || !description.contains("shard")) {
-      throw InputError(fmt::format("{}: error: no sweep: {} is missing or damaged", shard.string(),
-                                   DescriptionFile(shard).string()));
-    }
-    if (ordered.empty()) {
-      sweep = description["sweep"];
-      count = description["shard"][1];
-    }
-    if (description["sweep"] != sweep || description["shard"][1] != count) {
-      throw InputError(fmt::format("{}: error: not of the same sweep as {}", shard.string(),
-                                   shards.front().string()));
-    }
-    if (!ordered.emplace(description["shard"][0], shard).second) {
-      throw InputError(fmt::format("{}: error: shard {} is given twice", shard.string(),
-                                   description["shard"][0].get<std::int64_t>()));
-    }
-  }
-  for (std::int64_t index = 1; index <= count; ++index) {
-    if (!ordered.contains(index)) {
-      throw InputError(fmt::format("error: shard {} of {} is missing", index, count));
-    }
-  }
-  std::ofstream out(merged, std::ios::binary);
-  for (const auto& [index, shard] : ordered) {
-    std::ifstream in(shard, std::ios::binary);
-    const Json description = Json::parse(Content(DescriptionFile(shard)));
-    std::string line;
-    std::int64_t rows = -1;
-    while (std::getline(in, line) && !in.eof()) {
-      if (++rows > 0 || index == 1) out << line << '\n';
-    }
-    if (rows != description["shard_rows"].get<std::int64_t>()) {
-      throw InputError(fmt::format("{}: error: has {} of {} rows: run its sweep again to finish it",
-                                   shard.string(), std::max<std::int64_t>(0, rows),
-                                   description["shard_rows"].get<std::int64_t>()));
-    }
-  }
-  if (!out.flush()) {
-    throw InputError(
-        fmt::format("{}: error: --out: cannot write: {}", merged.string(), std::strerror(errno)));
-  }
-  const Json whole{{"sweep", sweep}, {"shard", {1, 1}}, {"shard_rows", sweep["rows"]}};
-  WriteWhole(DescriptionFile(merged), whole.dump(1) + "\n");
 }
 
 }  // namespace fogline

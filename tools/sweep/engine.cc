@@ -6,7 +6,13 @@
 #include <oneapi/tbb/parallel_pipeline.h>
 
 #include <atomic>
+#include <exception>
 #include <memory>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
 
 namespace fogline {
 namespace {
@@ -18,7 +24,17 @@ constexpr int kTokensPerJob = 4;
 struct Batch {
   std::int64_t unit;
   std::vector<SweepRow> rows;
+  std::exception_ptr failure;  // instead of rows
 };
+
+/// What cannot be computed fails in its turn, so that it is the same whatever `jobs` is.
+void Fill(SweepWorker& worker, Batch& batch) {
+  try {
+    worker.Compute(batch.unit, batch.rows);
+  } catch (...) {
+    batch.failure = std::current_exception();
+  }
+}
 
 }  // namespace
 
@@ -36,26 +52,36 @@ void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
   baseline_.clear();
   for (std::int64_t row = 0; row < plan_.rows_per_unit(); ++row) {
-    plan_.Configure(unit, row, scenario_);
-    const Policy policy = scenario_.arbitrator.policy;
-    if (baseline_.empty() && policy != Policy::kAutomation) {
-      scenario_.arbitrator.policy = Policy::kAutomation;
-      Run([this](const StepView& step) { baseline_.push_back(step.ToSample()); });
-      scenario_.arbitrator.policy = policy;
+    try {
+      plan_.Configure(unit, row, scenario_);
+      rows.push_back(ComputeRow());
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("error: {}: {}", plan_.NameOf(unit, row), error.what()));
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("{}: {}", plan_.NameOf(unit, row), error.what()));
     }
-    MeasureAccumulator measures;
-    SafetyImprovement improvement(scenario_.measures.safety_floor_m);
-    std::size_t i = 0;
-    Run([&](const StepView& step) {
-      const Sample sample = step.ToSample();
-      measures.Add(sample);
-      // Where one of the pair ended early, SI is over the steps of both.
-      if (policy != Policy::kAutomation && i < baseline_.size()) {
-        improvement.Add(baseline_[i++], sample);
-      }
-    });
-    rows.push_back({.measures = measures.Result(), .si_pct = improvement.Pct()});
   }
+}
+
+SweepRow SweepWorker::ComputeRow() {
+  const Policy policy = scenario_.arbitrator.policy;
+  if (baseline_.empty() && policy != Policy::kAutomation) {
+    scenario_.arbitrator.policy = Policy::kAutomation;
+    Run([this](const StepView& step) { baseline_.push_back(step.ToSample()); });
+    scenario_.arbitrator.policy = policy;
+  }
+  MeasureAccumulator measures;
+  SafetyImprovement improvement(scenario_.measures.safety_floor_m);
+  std::size_t i = 0;
+  Run([&](const StepView& step) {
+    const Sample sample = step.ToSample();
+    measures.Add(sample);
+    // Where one of the pair ended early, SI is over the steps of both.
+    if (policy != Policy::kAutomation && i < baseline_.size()) {
+      improvement.Add(baseline_[i++], sample);
+    }
+  });
+  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
@@ -74,15 +100,20 @@ void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int j
                                        flow.stop();
                                        return nullptr;
                                      }
-                                     return std::make_shared<Batch>(Batch{next++, {}});
+                                     return std::make_shared<Batch>(Batch{next++, {}, {}});
                                    }) &
           tbb::make_filter<Item, Item>(tbb::filter_mode::parallel,
                                        [&](Item batch) {
-                                         workers.local().Compute(batch->unit, batch->rows);
+                                         if (go_on) Fill(workers.local(), *batch);
                                          return batch;
                                        }) &
           tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order, [&](const Item& batch) {
-            if (go_on) go_on = consume(batch->unit, batch->rows);
+            if (!go_on) return;
+            if (batch->failure) {
+              go_on = false;
+              std::rethrow_exception(batch->failure);
+            }
+            go_on = consume(batch->unit, batch->rows);
           }));
 }
 

@@ -25,10 +25,12 @@ class SweepWorker {
  public:
   explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}
 
-  /// The rows of a unit, in order.
+  /// The rows of a unit, in order. @throws InputError, std::runtime_error that name the row
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
+  /// The row of scenario_, and before the first one of a unit its pair without traded control.
+  SweepRow ComputeRow();
   /// Runs scenario_ to its end.
   template <class Visit>
   void Run(Visit&& visit);
@@ -43,7 +45,8 @@ class SweepWorker {
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
 /// Computes units `begin` to before `end` on `jobs` threads. What the consumer sees does not depend
-/// on `jobs`. Exceptions of the consumer come out.
+/// on `jobs`. Exceptions of the consumer come out, and that of the first row that cannot be
+/// computed, when the units before have been handed on.
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume);
 

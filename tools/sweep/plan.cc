@@ -10,12 +10,17 @@
 namespace fogline {
 namespace {
 
-/// The most points of an axis "first:last:count", and the most rows of a sweep: far beyond any use,
-/// and far below where counting overflows.
+/// The most points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
-constexpr std::int64_t kMaxRows = 1'000'000'000'000;
 /// Largest seed of a scenario.
 constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
+
+/// The most rows of a sweep: more would take one core for years. Products with the number of a
+/// shard stay far within 64 bits.
+constexpr std::int64_t kMaxRows = 100'000'000'000;
+
+/// The most shards of a sweep.
+constexpr std::int64_t kMaxShards = 1'000'000;
 
 template <class T>
 bool Parse(std::string_view text, T& value) {
@@ -51,6 +56,20 @@ std::vector<std::string> Spaced(std::string_view text) {
                                     : fmt::format("{:.15g}", first + (last - first) * share));
   }
   return values;
+}
+
+/// Checks a value of a field by the rules of scenario files. `argument` is where it comes from.
+/// @throws InputError
+void CheckSetting(const std::string& argument, const std::string& base, const std::string& pointer,
+                  const std::string& value) {
+  try {
+    ParseScenario(base, "scenario", {fmt::format("{}={}", pointer, value)});
+  } catch (const ScenarioError& error) {
+    const Mistake& mistake = error.mistakes().front();
+    throw InputError(fmt::format("error: {}: {}{}", argument,
+                                 mistake.pointer == pointer ? "" : mistake.pointer + ": ",
+                                 mistake.message));
+  }
 }
 
 }  // namespace
@@ -112,8 +131,9 @@ Shard ParseShard(const std::string& text) {
   const std::vector<std::string_view> parts = Split(text, '/');
   Shard shard;
   if (parts.size() != 2 || !Parse(parts[0], shard.index) || !Parse(parts[1], shard.count) ||
-      shard.index < 1 || shard.index > shard.count) {
-    throw InputError(fmt::format("error: --shard {}: not I/N with 1 <= I <= N", text));
+      shard.index < 1 || shard.index > shard.count || shard.count > kMaxShards) {
+    throw InputError(
+        fmt::format("error: --shard {}: not I/N with 1 <= I <= N <= {}", text, kMaxShards));
   }
   return shard;
 }
@@ -121,23 +141,20 @@ Shard ParseShard(const std::string& text) {
 SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds)
     : base_(std::move(base)), axes_(std::move(axes)), seeds_(seeds) {
   const std::string text = PrintScenario(base_);
+  CheckSetting(fmt::format("--seeds {}", seeds_.last), text, "/seed",
+               fmt::format("{}", seeds_.last));
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const Axis& axis = axes_[i];
-    if (axis.pointer == "/seed" || axis.pointer == "/steps") {
-      throw InputError(fmt::format("error: --grid {}: {}", axis.pointer,
-                                   axis.pointer == "/seed" ? "seeds are given by --seeds"
-                                                           : "runs of one sweep are equally long"));
-    }
     for (std::size_t j = 0; j < i; ++j) {
-      if (axes_[j].pointer == axis.pointer) {
-        throw InputError(fmt::format("error: --grid {}: given twice", axis.pointer));
+      if (axes_[j].pointer == axes_[i].pointer) {
+        throw InputError(fmt::format("error: --grid {}: given twice", axes_[i].pointer));
       }
     }
-    fields_.emplace_back(axis.pointer);
-    for (const std::string& value : axis.values) {
-      ParseScenario(text, "scenario", {fmt::format("{}={}", axis.pointer, value)});
-    }
-    inner_.push_back(axis.pointer.starts_with("/arbitrator/"));
+    AddAxis(text, axes_[i]);
+  }
+  std::int64_t left = kMaxRows / seeds_.count();
+  for (const Axis& axis : axes_) left /= static_cast<std::int64_t>(axis.values.size());
+  if (left == 0) {
+    throw InputError(fmt::format("error: the sweep has more than {} rows", kMaxRows));
   }
   // The last axis of a kind varies fastest.
   stride_.resize(axes_.size());
@@ -145,13 +162,21 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds)
     std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;
     stride_[i] = points;
     points *= static_cast<std::int64_t>(axes_[i].values.size());
-    if (points > kMaxRows) break;
   }
-  if (outer_points_ > kMaxRows || inner_points_ > kMaxRows ||
-      static_cast<double>(outer_points_) * static_cast<double>(inner_points_) *
-              static_cast<double>(seeds_.count()) >
-          static_cast<double>(kMaxRows)) {
-    throw InputError(fmt::format("error: a sweep of more than {} rows", kMaxRows));
+}
+
+void SweepPlan::AddAxis(const std::string& base, const Axis& axis) {
+  if (axis.pointer == "/seed" || axis.pointer == "/steps") {
+    throw InputError(fmt::format("error: --grid {}: {}", axis.pointer,
+                                 axis.pointer == "/seed" ? "seeds are given by --seeds"
+                                                         : "runs of one sweep are equally long"));
+  }
+  fields_.emplace_back(axis.pointer);
+  inner_.push_back(axis.pointer.starts_with("/arbitrator/"));
+  Scenario scratch = base_;
+  for (const std::string& value : axis.values) {
+    CheckSetting(fmt::format("--grid {}={}", axis.pointer, value), base, axis.pointer, value);
+    fields_.back().Set(scratch, value);
   }
 }
 
@@ -173,6 +198,15 @@ std::vector<std::string_view> SweepPlan::ValuesOf(std::int64_t unit, std::int64_
     values.push_back(axes_[i].values[ValueIndex(i, unit, row)]);
   }
   return values;
+}
+
+std::string SweepPlan::NameOf(std::int64_t unit, std::int64_t row) const {
+  const std::vector<std::string_view> values = ValuesOf(unit, row);
+  std::string name;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    name += fmt::format("{}={}, ", axes_[i].pointer, values[i]);
+  }
+  return fmt::format("{}seed {}", name, SeedOf(unit));
 }
 
 }  // namespace fogline

@@ -44,6 +44,7 @@ SeedRange ParseSeeds(const std::string& text);
 struct Shard {
   std::int64_t index = 1;
   std::int64_t count = 1;
+  bool operator==(const Shard&) const = default;
 };
 /// "I/N". @throws InputError
 Shard ParseShard(const std::string& text);
@@ -71,6 +72,8 @@ class SweepPlan {
   void Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const;
   /// The value of every axis in a row, in the order in which the axes were given.
   std::vector<std::string_view> ValuesOf(std::int64_t unit, std::int64_t row) const;
+  /// A row for messages: "/arbitrator/threshold=0.5, seed 7".
+  std::string NameOf(std::int64_t unit, std::int64_t row) const;
   std::int64_t SeedOf(std::int64_t unit) const { return seeds_.first + unit % seeds_.count(); }
 
   const Scenario& base() const { return base_; }
@@ -78,6 +81,7 @@ class SweepPlan {
   const SeedRange& seeds() const { return seeds_; }
 
  private:
+  void AddAxis(const std::string& base, const Axis& axis);
   /// Place of an axis' value in a row.
   std::size_t ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const;
 

@@ -1,0 +1,93 @@
+// What the tests of `fogline sweep` have in common.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+
+using Words = std::vector<std::string>;
+
+// Runs of 5 s: enough for every measure of clear air, and cheap.
+inline const Words kShort{"--set", "/steps=50"};
+inline const Words kThresholds{"--grid", "/arbitrator/threshold=0.2,0.5,0.8"};
+
+inline Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+inline std::string Content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline std::int64_t Lines(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+/// A folder for sweep files, and `fogline sweep scenario/paper.json` into it.
+class SweepFixture : public testing::Test {
+ protected:
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+  Words Command(const std::string& out, const Words& more) const {
+    return Words{Program("fogline"), "sweep", "scenario/paper.json", "--out", File(out)} + more;
+  }
+  Outcome Sweep(const std::string& out, const Words& more) const {
+    return RunCommand(Command(out, more));
+  }
+  /// Sweeps and gives the file's bytes.
+  std::string Made(const std::string& out, const Words& more) const {
+    const Outcome outcome = Sweep(out, more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Content(File(out));
+  }
+  Outcome Merge(const Words& shards, const std::string& out) const {
+    Words command{Program("fogline"), "sweep", "--out", File(out), "--merge"};
+    for (const std::string& shard : shards) command.push_back(File(shard));
+    return RunCommand(command);
+  }
+  /// Makes shards 1 to `count` as files "I-of-N.csv" and gives their names.
+  Words Shards(int count, const Words& more) const {
+    Words names;
+    for (int i = 1; i <= count; ++i) {
+      names.push_back(std::to_string(i) + "-of-" + std::to_string(count) + ".csv");
+      Made(names.back(), more + Words{"--shard", std::to_string(i) + "/" + std::to_string(count)});
+    }
+    return names;
+  }
+  /// Waits until a background sweep has written so many lines. The sweep cannot tell: it talks to
+  /// nobody but its file.
+  bool WaitForLines(const std::string& name, std::int64_t lines) const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (Lines(Content(File(name))) < lines) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+  }
+  Words FilesInFolder() const {
+    Words names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
+
+  ScratchFolder folder_;
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,93 @@
+// `fogline sweep --shard` and `--merge`: many machines, one file.
+#include "tests/integration/sweep_fixture.h"
+
+namespace fogline::test {
+namespace {
+
+using SweepMergeTest = SweepFixture;
+
+TEST_F(SweepMergeTest, MergesSevenShardsIntoTheFileOfTheWholeSweep) {
+  const Words sweep = kShort + kThresholds + Words{"--seeds", "1:30"};
+  const std::string whole = Made("whole.csv", sweep);
+  Words shards = Shards(7, sweep);
+  std::ranges::rotate(shards, shards.begin() + 3);
+  const Outcome merge = Merge(shards, "merged.csv");
+  EXPECT_EQ(merge.code, 0) << merge.err;
+  EXPECT_EQ(merge.out, "90 rows\n" + File("merged.csv") + "\n");
+  EXPECT_EQ(Content(File("merged.csv")), whole);
+  EXPECT_EQ(Content(File("merged.csv.json")), Content(File("whole.csv.json")));
+}
+
+TEST_F(SweepMergeTest, MergesShardsOfWhichSomeHaveNothingToDo) {
+  const Words sweep = kShort + Words{"--seeds", "1:3"};
+  const std::string whole = Made("whole.csv", sweep);
+  EXPECT_EQ(Merge(Shards(5, sweep), "merged.csv").code, 0);
+  EXPECT_EQ(Content(File("merged.csv")), whole);
+}
+
+TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
+  const Words sweep = kShort + Words{"--seeds", "1:9"};
+  const Words shards = Shards(3, sweep);
+  Made("other.csv", kShort + Words{"--seeds", "1:8", "--shard", "3/3"});
+  Made("quarter.csv", sweep + Words{"--shard", "3/4"});
+  std::ofstream(File("plain.csv")) << "a,b\n1,2\n";
+  std::filesystem::copy(File(shards[2]), File("torn.csv"));
+  std::filesystem::copy(File(shards[2] + ".json"), File("torn.csv.json"));
+  std::filesystem::resize_file(File("torn.csv"), Content(File("torn.csv")).size() - 1);
+  std::filesystem::copy(File(shards[2]), File("long.csv"));
+  std::filesystem::copy(File(shards[2] + ".json"), File("long.csv.json"));
+  std::ofstream(File("long.csv"), std::ios::app) << "10,\n";
+  std::filesystem::copy(File(shards[2]), File("damaged.csv"));
+  std::ofstream(File("damaged.csv.json")) << R"({"sweep": {}, "shard": [1]})";
+  const Words before = FilesInFolder();
+
+  const auto error = [&](const Words& files) {
+    const Outcome merge = Merge(files, "merged.csv");
+    EXPECT_EQ(merge.code, 2) << merge.err;
+    EXPECT_EQ(merge.out, "");
+    EXPECT_EQ(Lines(merge.err), 1) << merge.err;
+    EXPECT_EQ(FilesInFolder(), before);
+    return merge.err;
+  };
+  EXPECT_EQ(error({shards[0], shards[2]}), "error: --merge: shard 2 of 3 is missing\n");
+  EXPECT_EQ(error({shards[0], shards[1], shards[1], shards[2]}),
+            File(shards[1]) + ": error: shard 2 of 3, as " + File(shards[1]) + "\n");
+  EXPECT_EQ(error({shards[0], shards[1], "torn.csv"}),
+            File("torn.csv") + ": error: has 2 of 3 rows; run its sweep again to finish it\n");
+  EXPECT_EQ(error({shards[0], shards[1], "long.csv"}),
+            File("long.csv") + ": error: has more than its 3 rows\n");
+  EXPECT_EQ(error({shards[0], shards[1], "other.csv"}),
+            File("other.csv") + ": error: not of the same sweep as " + File(shards[0]) + "\n");
+  EXPECT_EQ(
+      error({shards[0], shards[1], "quarter.csv"}),
+      File("quarter.csv") + ": error: shard 3 of 4, but " + File(shards[0]) + " is one of 3\n");
+  EXPECT_EQ(error({shards[0], "plain.csv"}),
+            File("plain.csv") + ": error: no sweep: " + File("plain.csv.json") + " is missing\n");
+  EXPECT_EQ(error({shards[0], "damaged.csv"}), File("damaged.csv") + ": error: no sweep: " +
+                                                   File("damaged.csv.json") + " is damaged\n");
+  EXPECT_EQ(error({shards[0], "nowhere.csv"}), File("nowhere.csv") + ": error: no sweep: " +
+                                                   File("nowhere.csv.json") + " is missing\n");
+}
+
+TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
+  const Words shards = Shards(2, kShort + Words{"--seeds", "1:4"});
+  const std::string first = Content(File(shards[0]));
+  std::ofstream(File("there.csv")) << "precious";
+  EXPECT_EQ(Merge(shards, "there.csv").err,
+            File("there.csv") + ": error: --out: the file exists; --force replaces it\n");
+  EXPECT_EQ(Content(File("there.csv")), "precious");
+  EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "--force", "--out", File("there.csv"),
+                        "--merge", File(shards[0]), File(shards[1])})
+                .code,
+            0);
+  EXPECT_EQ(Lines(Content(File("there.csv"))), 1 + 4);
+  const Outcome onto_shard =
+      RunCommand({Program("fogline"), "sweep", "--force", "--out", File(shards[0]), "--merge",
+                  File(shards[0]), File(shards[1])});
+  EXPECT_EQ(onto_shard.code, 2);
+  EXPECT_EQ(onto_shard.err, File(shards[0]) + ": error: --out: is one of the shards\n");
+  EXPECT_EQ(Content(File(shards[0])), first);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,285 @@
+// `fogline sweep` as a person uses it: the real program, killed, resumed, given nonsense; what
+// counts is the bytes of its file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "tests/integration/sweep_fixture.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using SweepTest = SweepFixture;
+
+TEST_F(SweepTest, WritesTheSameFileWhateverTheNumberOfJobs) {
+  const Words sweep =
+      kShort + kThresholds + Words{"--grid", "/fog/bias_m=0.2,0.3", "--seeds", "1:40"};
+  const std::string one = Made("one.csv", sweep + Words{"--jobs", "1"});
+  EXPECT_EQ(Lines(one), 1 + 3 * 2 * 40);
+  EXPECT_EQ(Made("two.csv", sweep + Words{"--jobs", "2"}), one);
+  EXPECT_EQ(Made("many.csv", sweep + Words{"--jobs", "9"}), one);
+  EXPECT_EQ(Content(File("two.csv.json")), Content(File("one.csv.json")));
+}
+
+TEST_F(SweepTest, OrdersRowsByTheOtherAxesThenSeedThenTheArbitratorsAxes) {
+  std::istringstream rows(
+      Made("rows.csv", kShort + Words{"--grid", "/arbitrator/threshold=0.5,0.2", "--grid",
+                                      "/fog/bias_m=0.3,0.1", "--seeds", "4:5"}));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_THAT(row, StartsWith("/arbitrator/threshold,/fog/bias_m,seed,si_pct,steps,"));
+  for (const char* key : {"0.5,0.3,4,", "0.2,0.3,4,", "0.5,0.3,5,", "0.2,0.3,5,", "0.5,0.1,4,",
+                          "0.2,0.1,4,", "0.5,0.1,5,", "0.2,0.1,5,"}) {
+    std::getline(rows, row);
+    EXPECT_THAT(row, StartsWith(key));
+  }
+  EXPECT_FALSE(std::getline(rows, row));
+}
+
+TEST_F(SweepTest, GoesOnAfterAKillWithoutLosingOrRepeatingARow) {
+  const Words sweep = kThresholds + Words{"--seeds", "1:1500", "--jobs", "2"};
+  const std::string whole = Made("whole.csv", sweep);
+  for (const int lines : {2, 700}) {
+    // GIVEN a sweep that is killed somewhere in its middle
+    const std::string name = "killed" + std::to_string(lines) + ".csv";
+    Background killed(Command(name, sweep));
+    ASSERT_TRUE(WaitForLines(name, lines));
+    killed.Signal(SIGKILL);
+    ASSERT_EQ(killed.Wait(), 128 + SIGKILL) << "it had ended before";
+    ASSERT_LT(Lines(Content(File(name))), Lines(whole));
+    // WHEN it is called again
+    const Outcome resumed = Sweep(name, sweep);
+    // THEN it says how much was there, and the file is that of an unhurt sweep
+    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("of 4500 rows are there\n"));
+    EXPECT_TRUE(Content(File(name)) == whole) << lines;
+  }
+}
+
+TEST_F(SweepTest, GoesOnWhereverAKillHasTornTheFile) {
+  const Words sweep = kShort + kThresholds + Words{"--seeds", "1:3", "--jobs", "1"};
+  const std::string whole = Made("torn.csv", sweep);
+  const std::size_t header = whole.find('\n') + 1;
+  const std::size_t second_row = whole.find('\n', header) + 1;
+  // In the header, behind it, in the first row, behind it (its unit has three), anywhere.
+  std::vector<std::size_t> cuts{0,          1,          header - 1,       header,
+                                header + 1, second_row, whole.size() - 1, whole.size()};
+  for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 13) cuts.push_back(cut);
+  for (const std::size_t cut : cuts) {
+    std::filesystem::resize_file(File("torn.csv"), cut);
+    EXPECT_EQ(Made("torn.csv", sweep), whole) << "cut at " << cut;
+  }
+}
+
+TEST_F(SweepTest, EndsAtCtrlCWithWholeUnitsAndGoesOn) {
+  const Words sweep = kThresholds + Words{"--seeds", "1:1500", "--jobs", "2"};
+  const std::string whole = Made("whole.csv", sweep);
+  Background stopped(Command("stopped.csv", sweep));
+  ASSERT_TRUE(WaitForLines("stopped.csv", 300));
+  stopped.Signal(SIGINT);
+  EXPECT_EQ(stopped.Wait(), 130);
+  EXPECT_THAT(stopped.Err(), HasSubstr("call it again to go on\n"));
+  const std::string part = Content(File("stopped.csv"));
+  EXPECT_TRUE(whole.starts_with(part));
+  EXPECT_EQ((Lines(part) - 1) % 3, 0);
+  EXPECT_TRUE(Made("stopped.csv", sweep) == whole);
+}
+
+TEST_F(SweepTest, HasNothingLeftToDoWhenItsFileIsComplete) {
+  const Words sweep = kShort + Words{"--seeds", "1:5", "--json"};
+  const std::string whole = Made("whole.csv", sweep);
+  const Outcome again = Sweep("whole.csv", sweep);
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(nlohmann::json::parse(again.out)["runs"], 0);
+  EXPECT_EQ(Content(File("whole.csv")), whole);
+}
+
+TEST_F(SweepTest, DoesNotReplaceTheFileOfAnotherSweepUnlessForced) {
+  const std::string first = Made("file.csv", kShort + Words{"--seeds", "1:4"});
+  for (const Words& other : {kShort + Words{"--seeds", "1:5"},
+                             kShort + Words{"--seeds", "1:4", "--set", "/fog/bias_m=0.1"},
+                             kShort + Words{"--seeds", "1:4", "--shard", "1/2"}}) {
+    const Outcome refused = Sweep("file.csv", other);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(refused.err, File("file.csv") +
+                               ": error: --out: the file is there and is not of this sweep; "
+                               "--force replaces it\n");
+    EXPECT_EQ(Content(File("file.csv")), first);
+  }
+  const Words other = kShort + Words{"--seeds", "1:5"};
+  const std::string forced = Made("file.csv", other + Words{"--force"});
+  EXPECT_EQ(forced, Made("fresh.csv", other));
+  EXPECT_EQ(Content(File("file.csv.json")), Content(File("fresh.csv.json")));
+}
+
+TEST_F(SweepTest, RefusesAFileThatIsBeingWritten) {
+  const Words sweep = kThresholds + Words{"--seeds", "1:100000"};
+  Background writer(Command("file.csv", sweep));
+  ASSERT_TRUE(WaitForLines("file.csv", 2));
+  const Outcome second = Sweep("file.csv", sweep);
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.err,
+            File("file.csv") + ": error: --out: cannot write: another sweep is writing it\n");
+}
+
+TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
+  const Words sweep = kShort + Words{"--seeds", "1:4"};
+  std::string text = Made("file.csv", sweep);
+  text.replace(text.find("\n3,"), 3, "\n4,");
+  std::ofstream(File("file.csv")) << text;
+  const Outcome refused = Sweep("file.csv", sweep);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err, File("file.csv") +
+                             ":4: error: --out: not the line that this sweep writes there; "
+                             "--force begins anew\n");
+  EXPECT_EQ(Content(File("file.csv")), text);
+}
+
+TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
+  const auto error = [&](const Words& more) {
+    const Outcome outcome = Sweep("none.csv", more);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(FilesInFolder(), Words{});
+    return outcome.err;
+  };
+  EXPECT_EQ(error({"--grid", "threshold=1"}),
+            "error: --grid threshold=1: neither /pointer=a,b,c nor /pointer=first:last:count\n");
+  EXPECT_EQ(error({"--grid", "/arbitrator/treshold=0.2"}),
+            "error: /arbitrator/treshold: no field of a scenario; did you mean "
+            "/arbitrator/threshold?\n");
+  EXPECT_EQ(error({"--grid", "/arbitrator/threshold=0.2,2"}),
+            "error: --grid /arbitrator/threshold=2: 2 is outside [0, 1]\n");
+  EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0.2,,0.3"}), HasSubstr("an empty value\n"));
+  EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0:1:1"}),
+              HasSubstr("not first:last:count with two numbers and a count from 2 to 1000000\n"));
+  EXPECT_EQ(error({"--grid", "/fog/bias_m=1", "--grid", "/fog/bias_m=2"}),
+            "error: --grid /fog/bias_m: given twice\n");
+  EXPECT_EQ(error({"--grid", "/seed=1,2"}), "error: --grid /seed: seeds are given by --seeds\n");
+  EXPECT_EQ(error({"--grid", "/steps=1,2"}),
+            "error: --grid /steps: runs of one sweep are equally long\n");
+  EXPECT_EQ(error({"--grid", "/title=a"}), "error: /title cannot be \"a\"\n");
+  EXPECT_EQ(error({"--seeds", "5:4"}),
+            "error: --seeds 5:4: neither A:B with 0 <= A <= B nor one seed\n");
+  EXPECT_EQ(error({"--seeds", "1:9007199254740992"}),
+            "error: --seeds 9007199254740992: 9007199254740992 is outside [0, "
+            "9007199254740991]\n");
+  EXPECT_EQ(error({"--seeds", "1:1000000000", "--grid", "/fog/bias_m=0:1:101"}),
+            "error: the sweep has more than 100000000000 rows\n");
+  EXPECT_EQ(error({"--shard", "4/3"}), "error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");
+  EXPECT_THAT(error({"--jobs", "0"}), StartsWith("--jobs: "));
+  EXPECT_THAT(error({"--merge", "part.csv"}), StartsWith("SCENARIO excludes --merge\n"));
+  EXPECT_EQ(RunCommand({Program("fogline"), "sweep"}).err, "error: SCENARIO is required\n");
+  EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "--merge", "x"}).err,
+            "error: --merge needs --out\n");
+  EXPECT_THAT(RunCommand({Program("fogline"), "sweep", "--help"}).out, HasSubstr("Examples:"));
+}
+
+TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
+  // GIVEN weights of which the second makes no well-conditioned problem for the ACC
+  const Words sweep = kShort + Words{"--set",   "/step_s=1",
+                                     "--set",   "/acc/horizon_steps=60",
+                                     "--set",   "/acc/headway_s=0",
+                                     "--set",   "/acc/engine_gain=10",
+                                     "--set",   "/acc/weight_speed=0",
+                                     "--set",   "/acc/weight_acceleration=0",
+                                     "--set",   "/acc/weight_control=1e-6",
+                                     "--set",   "/acc/weight_control_change=0",
+                                     "--grid",  "/acc/weight_distance=0,1e6",
+                                     "--seeds", "1:4"};
+  for (const char* jobs : {"1", "2"}) {
+    const Outcome outcome = Sweep(jobs, sweep + Words{"--jobs", jobs});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, StartsWith("error: /acc/weight_distance=1e6, seed 1: ACC: "));
+    EXPECT_EQ(Lines(Content(File(jobs))), 1 + 4) << jobs;
+  }
+}
+
+TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
+  const Words sweep = kShort + kThresholds + Words{"--seeds", "1:100"};
+  const std::string whole = Made("whole.csv", sweep);
+  ASSERT_GT(whole.size(), 32 * 1024U);
+  // GIVEN a limit of 16 KiB for a file, which ends a write as a full disk does
+  const Outcome full =
+      RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
+                 Command("full.csv", sweep));
+  EXPECT_EQ(full.code, 3);
+  EXPECT_EQ(full.err, "fogline: error: " + File("full.csv") +
+                          ": cannot write: File too large; call it again to go on where the file "
+                          "ends\n");
+  EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));
+  // WHEN there is room THEN it goes on
+  EXPECT_EQ(Made("full.csv", sweep), whole);
+}
+
+TEST_F(SweepTest, SaysThatADeviceHasNoSpaceLeft) {
+  std::filesystem::create_symlink("/dev/full", File("device.csv"));
+  const Outcome full = Sweep("device.csv", kShort);
+  EXPECT_EQ(full.code, 3);
+  EXPECT_THAT(full.err, HasSubstr("device.csv: cannot write: No space left on device"));
+}
+
+/// A CSV file as maps from column to text, one for each row.
+std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::vector<std::map<std::string, std::string>> rows;
+  std::string line;
+  Words columns;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line + ",");
+    Words values;
+    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(cell);
+    if (columns.empty()) {
+      columns = values;
+      continue;
+    }
+    rows.emplace_back();
+    for (std::size_t i = 0; i < columns.size(); ++i) rows.back()[columns[i]] = values.at(i);
+  }
+  return rows;
+}
+
+/// The value of a JSON number as a cell has it; empty for null.
+void ExpectSame(const std::string& cell, const nlohmann::json& value, const std::string& what) {
+  if (value.is_null()) {
+    EXPECT_EQ(cell, "") << what;
+  } else {
+    EXPECT_EQ(std::stod(cell), value.get<double>()) << what << ": " << cell;
+  }
+}
+
+TEST_F(SweepTest, HasInEachRowWhatTheSameRunMeasuresAndTheTableSays) {
+  // GIVEN a sweep over an arbitrator's field and another one
+  const auto rows = Rows(
+      Made("rows.csv", kThresholds + Words{"--grid", "/fog/bias_m=0.2,0.34", "--seeds", "3:4"}));
+  ASSERT_EQ(rows.size(), 12U);
+  for (const auto& row : rows) {
+    const std::string threshold = row.at("/arbitrator/threshold");
+    const Words settings{"scenario/paper.json", "--json", "--seed",
+                         row.at("seed"),        "--set",  "/fog/bias_m=" + row.at("/fog/bias_m")};
+    // WHEN the same is run alone THEN every measure is the same number
+    const Outcome run =
+        RunCommand(Words{Program("fogline"), "run"} + settings +
+                   Words{"--transport", "direct", "--set", "/arbitrator/threshold=" + threshold});
+    const auto measures = nlohmann::json::parse(run.out)["metrics"];
+    EXPECT_GE(measures.size(), 15U);
+    for (const auto& [name, value] : measures.items()) {
+      ExpectSame(row.at(name), value, "threshold " + threshold + " " + name);
+    }
+    // AND safety improvement is that of the table
+    const Outcome table = RunCommand(Words{Program("fogline"), "table"} + settings +
+                                     Words{"--thresholds", threshold});
+    ExpectSame(row.at("si_pct"), nlohmann::json::parse(table.out)["rows"][0]["si_pct"],
+               "threshold " + threshold + " si_pct");
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,71 @@
+// Every scenario that is shipped has one digest, however its messages travel.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+/// Names of the scenario files, without ".json".
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(SourceDirectory() / "scenario")) {
+    const std::filesystem::path& file = entry.path();
+    if (file.extension() == ".json" && file.stem().extension() != ".schema") {
+      names.push_back(file.stem().string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+class TransportTest : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    std::ifstream in(SourceDirectory() / File());
+    const auto scenario = nlohmann::json::parse(in);
+    const std::string recording = scenario.value("/lead/recorded/file"_json_pointer, "");
+    if (recording.empty()) return;
+    const auto file = SourceDirectory() / "scenario" / recording;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded driving at " << file;
+    // A recording is many minutes long; its first 100 s prove as much.
+    more_ = {"--set", "/steps=1000"};
+  }
+
+  static std::string File() { return "scenario/" + GetParam() + ".json"; }
+
+  nlohmann::json Run(const std::string& transport) {
+    std::vector<std::string> command{
+        Program("fogline"), "run",     File(),
+        "--json",           "--quiet", "--transport",
+        transport,          "--log",   folder_.File(transport + ".lcm")};
+    command.insert(command.end(), more_.begin(), more_.end());
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 0) << transport << ": " << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+  }
+
+  ScratchFolder folder_;
+  std::vector<std::string> more_;
+};
+
+TEST_P(TransportTest, HasTheSameDigestAndMeasuresInOneProcessInMemoryAndOverTheNetwork) {
+  const auto direct = Run("direct");
+  ASSERT_EQ(direct["digest"].get<std::string>().size(), 64U);
+  for (const char* transport : {"memq", "udpm"}) {
+    const auto other = Run(transport);
+    EXPECT_EQ(other["steps"], direct["steps"]) << transport;
+    EXPECT_EQ(other["digest"], direct["digest"]) << transport;
+    EXPECT_EQ(other["metrics"], direct["metrics"]) << transport;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, TransportTest, testing::ValuesIn(ShippedScenarios()),
+                         [](const auto& scenario) { return scenario.param; });
+
+}  // namespace
+}  // namespace fogline::test

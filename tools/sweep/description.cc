@@ -1,0 +1,67 @@
+#include "tools/sweep/description.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "scenario/loader.h"
+#include "tools/sweep/whole_file.h"
+
+namespace fogline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json DescribeSweep(const SweepPlan& plan) {
+  Json grid = Json::array();
+  for (const Axis& axis : plan.axes()) {
+    grid.push_back({{"field", axis.pointer}, {"values", axis.values}});
+  }
+  return {{"grid", grid},
+          {"seeds", {plan.seeds().first, plan.seeds().last}},
+          {"rows", plan.rows()},
+          {"scenario", Json::parse(PrintScenario(plan.base()))}};
+}
+
+}  // namespace
+
+Description Describe(const SweepPlan& plan, const Shard& shard) {
+  return {.sweep = DescribeSweep(plan).dump(),
+          .shard = shard,
+          .rows = (plan.ShardEnd(shard) - plan.ShardBegin(shard)) * plan.rows_per_unit(),
+          .all_rows = plan.rows()};
+}
+
+std::filesystem::path DescriptionFile(const std::filesystem::path& csv) {
+  return csv.string() + ".json";
+}
+
+Description ReadDescription(const std::filesystem::path& csv) {
+  const std::filesystem::path file = DescriptionFile(csv);
+  std::ifstream in(file, std::ios::binary);
+  try {
+    const Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    const Json& sweep = json.at("sweep");
+    const Json& shard = json.at("shard");
+    return {.sweep = sweep.dump(),
+            .shard = {.index = shard.at(0), .count = shard.at(1)},
+            .rows = json.at("shard_rows"),
+            .all_rows = sweep.at("rows")};
+  } catch (const Json::exception&) {
+    throw InputError(fmt::format("{}: error: no sweep: {} {}", csv.string(), file.string(),
+                                 in.is_open() ? "is damaged" : "is missing"));
+  }
+}
+
+void WriteDescription(const std::filesystem::path& csv, const Description& description) {
+  const Json json{{"sweep", Json::parse(description.sweep)},
+                  {"shard", {description.shard.index, description.shard.count}},
+                  {"shard_rows", description.rows}};
+  WholeFile file(DescriptionFile(csv));
+  file.Write(json.dump(1) + "\n");
+  file.Finish();
+}
+
+}  // namespace fogline

@@ -1,0 +1,18 @@
+// Puts the files of a sweep's shards together into the file that the whole sweep would have
+// written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace fogline {
+
+/// Merges the complete files of all shards, in whatever order they are given. The merged file is
+/// there as a whole or not at all. Returns its rows.
+/// @throws InputError if a shard is missing, double, incomplete or of another sweep, or if `merged`
+///     exists and there is no `force`; std::runtime_error when the disk is full
+std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
+                         const std::filesystem::path& merged, bool force);
+
+}  // namespace fogline
