@@ -50,7 +50,10 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   const std::vector<int> before = UdpSockets();
   lcm_ = lcm_create(url_.c_str());
   if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
-  std::ranges::set_difference(UdpSockets(), before, std::back_inserter(sockets_));
+  // Not those of mpudpm, which tells its ports on a channel of its own.
+  if (url_.starts_with("udpm://")) {
+    std::ranges::set_difference(UdpSockets(), before, std::back_inserter(sockets_));
+  }
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
