@@ -167,10 +167,10 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
             "error: --grid /steps: runs of one sweep are equally long\n");
   EXPECT_EQ(error({"--grid", "/title=a"}), "error: /title cannot be \"a\"\n");
   EXPECT_EQ(error({"--seeds", "5:4"}),
-            "error: --seeds 5:4: neither A:B with 0 <= A <= B nor one seed\n");
+            "error: --seeds 5:4: neither A:B with 0 <= A <= B <= 9007199254740991 nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:9007199254740992"}),
-            "error: --seeds 9007199254740992: 9007199254740992 is outside [0, "
-            "9007199254740991]\n");
+            "error: --seeds 1:9007199254740992: neither A:B with 0 <= A <= B <= 9007199254740991 "
+            "nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:1000000000", "--grid", "/fog/bias_m=0:1:101"}),
             "error: the sweep has more than 100000000000 rows\n");
   EXPECT_EQ(error({"--shard", "4/3"}), "error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");

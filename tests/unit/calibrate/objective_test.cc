@@ -101,7 +101,8 @@ TEST(ObjectiveTest, TellsWhyAScenarioCannotRun) {
   acc.weight_control = 1e-6;
   acc.weight_control_change = 0;
   EXPECT_EQ(Evaluate(problem).refusal,
-            "ACC: the weights make an ill-conditioned problem; raise weight_control or lower the "
+            "error: /arbitrator/threshold=0.5, seed 1: ACC: the weights make an ill-conditioned "
+            "problem; raise weight_control or lower the "
             "other weights or horizon_steps");
   EXPECT_THROW(Calibrate(Objective(problem), 5, Always, [](int, double) {}), InputError);
 }
