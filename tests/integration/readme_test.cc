@@ -33,7 +33,11 @@ TEST(ReadmeTest, ShowsThePartThatTheSwapTestBuilds) {
 
 TEST(ReadmeTest, IsShortAndNamesOnlyFilesThatAreThere) {
   const std::string readme = ReadSource("README.md");
-  EXPECT_LE(std::ranges::count(readme, '\n'), 180);
+  std::string written = readme;  // without the table that tools/bench puts there
+  const std::size_t table = written.find("<!-- bench -->");
+  ASSERT_NE(table, std::string::npos);
+  written.erase(table, written.find("<!-- /bench -->") - table);
+  EXPECT_LE(std::ranges::count(written, '\n'), 180);
   std::size_t links = 0;
   for (std::size_t at = readme.find("]("); at != std::string::npos;
        at = readme.find("](", at + 1)) {
