@@ -109,11 +109,13 @@ void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int j
                                        }) &
           tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order, [&](const Item& batch) {
             if (!go_on) return;
-            if (batch->failure) {
+            try {
+              if (batch->failure) std::rethrow_exception(batch->failure);
+              go_on = consume(batch->unit, batch->rows);
+            } catch (...) {
               go_on = false;
-              std::rethrow_exception(batch->failure);
+              throw;
             }
-            go_on = consume(batch->unit, batch->rows);
           }));
 }
 
