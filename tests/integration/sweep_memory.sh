@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: the peak memory of a sweep of so many runs is
+# at most a fifth more than that of 1,000 runs.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+fogline=$1
+runs=$2
+shift 2
+folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-memory-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+
+# Prints the peak resident memory in KiB. One run for each row: nobody but the automation drives.
+peak() {
+  /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
+    --set /arbitrator/policy=automation --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2
+  [ "$(wc -l <"$folder/$1.csv")" -eq $(($1 + 1)) ]
+  cat "$folder/peak"
+}
+few=$(peak 1000 "$@")
+many=$(peak "$runs" "$@")
+echo "peak memory: 1000 runs $few KiB, $runs runs $many KiB"
+[ "$few" -gt 0 ] && [ $((5 * many)) -le $((6 * few)) ]
