@@ -12,6 +12,9 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
+// Steps after which a run counts as well under way: one second of it.
+constexpr int kUnderWay = 10;
+
 /// A run in real speed that is well under way.
 class PacedRun {
  public:
@@ -19,11 +22,11 @@ class PacedRun {
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--log",
               folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // Under way: the recorder has put the first steps on disk (it does so every few steps).
+    // Under way: so many steps are on disk.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
-    while (StepsOnDisk() < 1 && SteadyClock::now() < end) {
+    while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
     }
-    EXPECT_GE(StepsOnDisk(), 1);
+    EXPECT_GE(StepsOnDisk(), kUnderWay);
   }
 
   std::vector<pid_t> Pids() const {
@@ -67,7 +70,7 @@ TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAnd
   EXPECT_NE(err.find("was killed by signal 9"), std::string::npos) << err;
   // AND nothing runs on, and the log is readable
   for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
-  EXPECT_GE(paced.StepsOnDisk(), 1);
+  EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryRole, KilledRoleTest, testing::ValuesIn(kRoles),
@@ -90,7 +93,7 @@ TEST(FaultTest, EndsCleanlyOnCtrlCWithCode130) {
   EXPECT_EQ(paced.run().Wait(), 130);
   EXPECT_NE(paced.run().Err().find("interrupted at step "), std::string::npos);
   for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
-  EXPECT_GE(paced.StepsOnDisk(), 1);
+  EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
 }
 
 TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
@@ -104,7 +107,7 @@ TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
     }
     EXPECT_FALSE(IsAlive(pid)) << pid;
   }
-  EXPECT_GE(paced.StepsOnDisk(), 1);
+  EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
 }
 
 }  // namespace
