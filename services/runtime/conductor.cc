@@ -93,6 +93,13 @@ std::int64_t Conductor::Total(std::int64_t status_t::*counter) const {
   return total;
 }
 
+Refusals Conductor::Refused() const {
+  Refusals refused{};
+  std::ranges::transform(kRefusals, refused.begin(),
+                         [this](const RefusalKind& kind) { return Total(kind.counter); });
+  return refused;
+}
+
 void Conductor::Stop() { Announce(run_t::STOP, 0); }
 
 void Conductor::Fail(std::string error) {
@@ -108,10 +115,11 @@ void Conductor::OnStatus(Bytes bytes) {
   if (!role || (phase_ != Phase::kJoining && phase_ != Phase::kRunning)) return;
   const TimePoint now = Clock::now();
   Member& member = members_[static_cast<std::size_t>(*role)];
-  if (member.status && (member.status->pid != status.pid || member.status->host != status.host)) {
+  if (member.status && member.status->instance != status.instance) {
     return Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
                             member.status->pid, member.status->host, status.pid, status.host));
   }
+  if (member.status && status.sequence <= member.status->sequence) return;  // overtaken on its way
   const bool joined = status.state == status_t::READY || status.state == status_t::RUNNING;
   if (joined && status.scenario_hash != hash_) {
     return Fail(fmt::format("{} (pid {} on {}) has another scenario", status.role, status.pid,
@@ -148,7 +156,8 @@ void Conductor::OnResend(Bytes bytes) {
 }
 
 void Conductor::Announce(std::int8_t phase, std::size_t part) {
-  const run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
+  run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
+  run.progress = progress_;
   Encode(run, buffer_);
   bus_.Publish(ChannelOf<run_t>().name, buffer_);
 }

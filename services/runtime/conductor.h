@@ -11,6 +11,7 @@
 #include "services/graph.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
 
 namespace fogline {
@@ -42,6 +43,8 @@ class Conductor {
   std::string NotReady() const;
   /// Sum over the roles of a counter of status_t.
   std::int64_t Total(std::int64_t status_t::*counter) const;
+  /// Messages that the roles have refused.
+  Refusals Refused() const;
   /// Tells every role to leave; may be repeated.
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.

@@ -1,9 +1,12 @@
 #include "services/runtime/node.h"
 
+#include <sodium.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <ctime>
+#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -28,6 +31,21 @@ constexpr int kSmoothing = 8;
 constexpr Duration kPartPatience = milliseconds(20);
 // The runner repeats itself once a second; a role that hears nothing for so long is an orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
+
+struct ProcessUse {
+  std::int64_t cpu_ms;
+  std::int64_t rss_bytes;
+};
+
+ProcessUse UseOfThisProcess() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  // The second number of statm is the resident set in pages (proc(5)).
+  std::int64_t pages = 0;
+  if (std::ifstream statm("/proc/self/statm"); statm) statm >> pages >> pages;
+  return {.cpu_ms = cpu.tv_sec * 1000 + cpu.tv_nsec / 1'000'000,
+          .rss_bytes = pages * sysconf(_SC_PAGESIZE)};
+}
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -54,6 +72,7 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   status_.role = NameOf(role);
   status_.host = HostName();
   status_.pid = getpid();
+  randombytes_buf(&status_.instance, sizeof(status_.instance));
   status_.version = FOGLINE_VERSION;
   status_.type_fingerprint = TypeFingerprint();
   status_.header.step = -1;
@@ -117,6 +136,13 @@ void Node::PublishStatus() {
   } else {
     status_.waiting_for.clear();
   }
+  ++status_.sequence;
+  if (now >= use_at_) {  // asking the kernel costs more than some steps
+    use_at_ = now + kHeartbeat;
+    const ProcessUse use = UseOfThisProcess();
+    status_.cpu_ms = use.cpu_ms;
+    status_.rss_bytes = use.rss_bytes;
+  }
   Encode(status_, buffer_);
   bus_.Publish(ChannelOf<status_t>().name, buffer_);
 }
@@ -125,6 +151,7 @@ void Node::Ask(std::string_view channel, std::int64_t step) {
   resend_t resend{};
   resend.header = {.run_id = *run_id_, .step = step, .utime = 0};
   resend.channel = channel;
+  resend.count = 1;
   resend.requester = NameOf(role_);
   Encode(resend, buffer_);
   bus_.Publish(ChannelOf<resend_t>().name, buffer_);

@@ -140,6 +140,7 @@ class Node {
   TimePoint computed_at_{};
   Duration step_time_{};  // smoothed
   TimePoint status_at_{};
+  TimePoint use_at_{};
   TimePoint runner_heard_{};
 };
 

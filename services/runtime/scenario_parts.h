@@ -33,6 +33,7 @@ inline run_t MakeRunPart(std::int64_t run_id, std::int8_t phase, double pace,
   run.header.run_id = run_id;
   run.header.step = static_cast<std::int64_t>(part);
   run.phase = phase;
+  run.progress = -1;
   run.pace = pace;
   run.scenario_hash = hash;
   run.type_fingerprint = TypeFingerprint();

@@ -195,9 +195,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
           .repairs = conductor.Total(&status_t::repairs_asked),
-          .foreign = conductor.Total(&status_t::foreign),
-          .malformed = conductor.Total(&status_t::malformed),
-          .out_of_window = conductor.Total(&status_t::out_of_window)};
+          .refused = conductor.Refused()};
 }
 
 }  // namespace fogline

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "services/runtime/refusals.h"
 #include "tools/fogline/experiment.h"
 
 namespace fogline {
@@ -10,9 +11,7 @@ namespace fogline {
 struct BusRun {
   double wall_s = 0;
   std::int64_t repairs = 0;
-  std::int64_t foreign = 0;
-  std::int64_t malformed = 0;
-  std::int64_t out_of_window = 0;
+  Refusals refused{};
 };
 
 /// A run id that no other run has.

@@ -116,9 +116,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   ExperimentResult result = std::move(logged.result);
   result.wall_s = run.wall_s;
   result.repairs = run.repairs;
-  result.foreign = run.foreign;
-  result.malformed = run.malformed;
-  result.out_of_window = run.out_of_window;
+  result.refused = run.refused;
   result.log = options.log;
   return result;
 }

@@ -11,6 +11,7 @@
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/refusals.h"
 
 namespace fogline {
 
@@ -33,10 +34,7 @@ struct ExperimentResult {
   std::string digest;
   double wall_s = 0;
   std::int64_t repairs = 0;  // requests to publish something again
-  // Messages that the roles refused: of another run; broken; of a step that cannot be.
-  std::int64_t foreign = 0;
-  std::int64_t malformed = 0;
-  std::int64_t out_of_window = 0;
+  Refusals refused{};
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<Sample> samples;

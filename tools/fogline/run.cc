@@ -80,9 +80,9 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   json["log"] = nullptr;
   if (!result.log.empty()) json["log"] = result.log.string();
   json["repairs"] = result.repairs;
-  json["refused"] = {{"foreign", result.foreign},
-                     {"malformed", result.malformed},
-                     {"out_of_window", result.out_of_window}};
+  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+    json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
+  }
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
 }
@@ -132,10 +132,13 @@ int Run(RunArguments& arguments) {
   }
   fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
              result.steps, result.wall_s, result.transport, result.repairs);
-  if (result.foreign + result.malformed + result.out_of_window > 0) {
-    fmt::print("refused messages: {} of other runs, {} broken, {} of impossible steps\n",
-               result.foreign, result.malformed, result.out_of_window);
+  std::string refused;
+  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+    if (result.refused[i] == 0) continue;
+    refused +=
+        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
   }
+  if (!refused.empty()) fmt::print("refused messages: {}\n", refused);
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result.measures));

@@ -48,6 +48,7 @@ class BareDriver {
     status_.role = "driver";
     status_.host = host;
     status_.pid = getpid();
+    status_.instance = getpid();  // no other driver of this run has it
     status_.type_fingerprint = TypeFingerprint();
     status_.header.step = -1;
   }
@@ -55,6 +56,7 @@ class BareDriver {
   bool stopped() const { return stopped_; }
 
   void SayStatus() {
+    ++status_.sequence;
     if (status_.state != status_t::WAITING) lcm_.publish("STATUS", &status_);
   }
 
