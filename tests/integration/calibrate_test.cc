@@ -182,8 +182,9 @@ TEST_F(CalibrateTest, EndsWithTheBestSoFarOnCtrlC) {
   ASSERT_TRUE(calibrate.WaitForErr("objective at the start: ")) << calibrate.Err();
   calibrate.Signal(SIGINT);
   EXPECT_EQ(calibrate.Wait(), 130);
-  EXPECT_THAT(calibrate.Err(), testing::ContainsRegex("fogline: interrupted; these are the best "
-                                                      "values of [0-9]+ evaluation"));
+  EXPECT_THAT(calibrate.Err(),
+              testing::ContainsRegex("fogline calibrate: interrupted; these are the best "
+                                     "values of [0-9]+ evaluation"));
   const json found = json::parse(calibrate.Out(), nullptr, false);
   EXPECT_EQ(found["interrupted"], true);
   EXPECT_LE(found["objective"], found["objective_at_start"]);
@@ -198,11 +199,12 @@ TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {
     return ErrorOf(more);
   };
   EXPECT_EQ(with({"/fog/bias=0:1"}),
-            "error: --free /fog/bias=0:1: no such field; did you mean \"/fog/bias_m\"?\n");
+            "fogline calibrate: error: --free /fog/bias=0:1: no such field; did you mean "
+            "\"/fog/bias_m\"?\n");
   EXPECT_EQ(with({"/fog/bias_m=0:200"}),
-            "error: --free /fog/bias_m=0:200: 200 is outside [0, 100] m\n");
+            "fogline calibrate: error: --free /fog/bias_m=0:200: 200 is outside [0, 100] m\n");
   EXPECT_THAT(with({"/fog/bias_m=0:1", "--seeds", "9:1"}),
-              testing::StartsWith("error: --seeds 9:1: neither A:B "));
+              testing::StartsWith("fogline calibrate: error: --seeds 9:1: neither A:B "));
   EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", scenario_}),
             scenario_ + ": error: --out: the file exists; --force replaces it\n");
   EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", "/nowhere/x.json"}),

@@ -89,11 +89,11 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
     EXPECT_EQ(outcome.code, 2);
     return outcome.err;
   };
-  EXPECT_THAT(error_of({}), StartsWith("error: neither LOG nor --curves is given"));
+  EXPECT_THAT(error_of({}), StartsWith("fogline report: error: neither LOG nor --curves is given"));
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--thresholds", "0.2:0.8"}),
-              StartsWith("error: --thresholds 0.2:0.8: not first:last:count"));
+              StartsWith("fogline report: error: --thresholds 0.2:0.8: not first:last:count"));
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--seeds", "9:1"}),
-              StartsWith("error: --seeds 9:1: neither A:B"));
+              StartsWith("fogline report: error: --seeds 9:1: neither A:B"));
   EXPECT_THAT(
       error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=automation"}),
       HasSubstr("/arbitrator/policy is automation: no threshold matters"));
@@ -115,7 +115,7 @@ TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
   report.Signal(SIGINT);
   // THEN it says so and leaves nothing behind
   EXPECT_EQ(report.Wait(), 130);
-  EXPECT_THAT(report.Err(), HasSubstr("fogline: interrupted"));
+  EXPECT_THAT(report.Err(), HasSubstr("fogline report: interrupted"));
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 

@@ -268,7 +268,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   // THEN the run ends and says in one line who waited for him, in which step
   EXPECT_EQ(run.Wait(std::chrono::seconds(10)), 3);
   static const std::regex kLine(
-      "fogline: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
+      "fogline run: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
       "\\(last heard: step ([0-9]+), [2-9]\\.[0-9] s ago\\)\n");
   std::smatch line;
   const std::string err = run.Err();

@@ -49,7 +49,8 @@ TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
     EXPECT_EQ(FilesInFolder(), before);
     return merge.err;
   };
-  EXPECT_EQ(error({shards[0], shards[2]}), "error: --merge: shard 2 of 3 is missing\n");
+  EXPECT_EQ(error({shards[0], shards[2]}),
+            "fogline sweep: error: --merge: shard 2 of 3 is missing\n");
   EXPECT_EQ(error({shards[0], shards[1], shards[1], shards[2]}),
             File(shards[1]) + ": error: shard 2 of 3, as " + File(shards[1]) + "\n");
   EXPECT_EQ(error({shards[0], shards[1], "torn.csv"}),

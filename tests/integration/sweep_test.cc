@@ -151,34 +151,41 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
     return outcome.err;
   };
   EXPECT_EQ(error({"--grid", "threshold=1"}),
-            "error: --grid threshold=1: neither /pointer=a,b,c nor /pointer=first:last:count\n");
+            "fogline sweep: error: --grid threshold=1: neither /pointer=a,b,c nor "
+            "/pointer=first:last:count\n");
   EXPECT_EQ(error({"--grid", "/arbitrator/treshold=0.2"}),
-            "error: /arbitrator/treshold: no field of a scenario; did you mean "
+            "fogline sweep: error: /arbitrator/treshold: no field of a scenario; did you mean "
             "/arbitrator/threshold?\n");
   EXPECT_EQ(error({"--grid", "/arbitrator/threshold=0.2,2"}),
-            "error: --grid /arbitrator/threshold=2: 2 is outside [0, 1]\n");
+            "fogline sweep: error: --grid /arbitrator/threshold=2: 2 is outside [0, 1]\n");
   EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0.2,,0.3"}), HasSubstr("an empty value\n"));
   EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0:1:1"}),
               HasSubstr("not first:last:count with two numbers and a count from 2 to 1000000\n"));
   EXPECT_EQ(error({"--grid", "/fog/bias_m=1", "--grid", "/fog/bias_m=2"}),
-            "error: --grid /fog/bias_m: given twice\n");
-  EXPECT_EQ(error({"--grid", "/seed=1,2"}), "error: --grid /seed: seeds are given by --seeds\n");
+            "fogline sweep: error: --grid /fog/bias_m: given twice\n");
+  EXPECT_EQ(error({"--grid", "/seed=1,2"}),
+            "fogline sweep: error: --grid /seed: seeds are given by --seeds\n");
   EXPECT_EQ(error({"--grid", "/steps=1,2"}),
-            "error: --grid /steps: runs of one sweep are equally long\n");
-  EXPECT_EQ(error({"--grid", "/title=a"}), "error: /title cannot be \"a\"\n");
+            "fogline sweep: error: --grid /steps: runs of one sweep are equally long\n");
+  EXPECT_EQ(error({"--grid", "/title=a"}), "fogline sweep: error: /title cannot be \"a\"\n");
   EXPECT_EQ(error({"--seeds", "5:4"}),
-            "error: --seeds 5:4: neither A:B with 0 <= A <= B <= 9007199254740991 nor one seed\n");
+            "fogline sweep: error: --seeds 5:4: neither A:B with 0 <= A <= B <= 9007199254740991 "
+            "nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:9007199254740992"}),
-            "error: --seeds 1:9007199254740992: neither A:B with 0 <= A <= B <= 9007199254740991 "
+            "fogline sweep: error: --seeds 1:9007199254740992: neither A:B with 0 <= A <= B <= "
+            "9007199254740991 "
             "nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:1000000000", "--grid", "/fog/bias_m=0:1:101"}),
-            "error: the sweep has more than 100000000000 rows\n");
-  EXPECT_EQ(error({"--shard", "4/3"}), "error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");
-  EXPECT_THAT(error({"--jobs", "0"}), StartsWith("--jobs: "));
-  EXPECT_THAT(error({"--merge", "part.csv"}), StartsWith("SCENARIO excludes --merge\n"));
-  EXPECT_EQ(RunCommand({Program("fogline"), "sweep"}).err, "error: SCENARIO is required\n");
+            "fogline sweep: error: the sweep has more than 100000000000 rows\n");
+  EXPECT_EQ(error({"--shard", "4/3"}),
+            "fogline sweep: error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");
+  EXPECT_THAT(error({"--jobs", "0"}), StartsWith("fogline sweep: error: --jobs: "));
+  EXPECT_THAT(error({"--merge", "part.csv"}),
+              StartsWith("fogline sweep: error: SCENARIO excludes --merge"));
+  EXPECT_EQ(RunCommand({Program("fogline"), "sweep"}).err,
+            "fogline sweep: error: SCENARIO is required\n");
   EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "--merge", "x"}).err,
-            "error: --merge needs --out\n");
+            "fogline sweep: error: --merge needs --out\n");
   EXPECT_THAT(RunCommand({Program("fogline"), "sweep", "--help"}).out, HasSubstr("Examples:"));
 }
 
@@ -197,7 +204,8 @@ TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
   for (const char* jobs : {"1", "2"}) {
     const Outcome outcome = Sweep(jobs, sweep + Words{"--jobs", jobs});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, StartsWith("error: /acc/weight_distance=1e6, seed 1: ACC: "));
+    EXPECT_THAT(outcome.err,
+                StartsWith("fogline sweep: error: /acc/weight_distance=1e6, seed 1: ACC: "));
     EXPECT_EQ(Lines(Content(File(jobs))), 1 + 4) << jobs;
   }
 }
@@ -211,7 +219,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));
   EXPECT_EQ(full.code, 3);
-  EXPECT_EQ(full.err, "fogline: error: " + File("full.csv") +
+  EXPECT_EQ(full.err, "fogline sweep: error: " + File("full.csv") +
                           ": cannot write: File too large; call it again to go on where the file "
                           "ends\n");
   EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));

@@ -56,8 +56,7 @@ int Check(const CheckOptions& options) {
   const int modes = (options.print ? 1 : 0) + (options.schema ? 1 : 0) + (options.json ? 1 : 0) +
                     (options.explain ? 1 : 0);
   if (modes > 1) {
-    throw InputError(
-        "fogline check: error: --print, --schema, --explain and --json exclude each other");
+    throw InputError("error: --print, --schema, --explain and --json exclude each other");
   }
   if (options.schema) {
     fmt::print("{}", ScenarioSchema());
@@ -67,9 +66,9 @@ int Check(const CheckOptions& options) {
     fmt::print("{}", ExplainField(*options.explain));
     return kDone;
   }
-  if (options.files.empty()) throw InputError("fogline check: error: FILE is missing (see --help)");
+  if (options.files.empty()) throw InputError("error: FILE is missing");
   if (options.print && options.files.size() > 1) {
-    throw InputError("fogline check: error: --print takes one FILE");
+    throw InputError("error: --print takes one FILE");
   }
   return CheckFiles(options);
 }

@@ -1,11 +1,14 @@
 // fogline: the one program that a person runs. Every verb is in a file of its own.
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <string_view>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/refusal.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -26,19 +29,25 @@ int Main(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    fmt::print(stderr, "{}\n", Refusal(app, error));
+    return kBadInput;
   }
+  const std::string name = CommandName(app);
   try {
     return action();
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    // A mistake in a file begins with its place, one in the arguments with "error:".
+    const std::string_view what = error.what();
+    fmt::print(stderr, "{}{}\n", what.starts_with("error:") ? name + ": " : "", what);
     return kBadInput;
   } catch (const Interrupted& interrupted) {
-    fmt::print(stderr, "fogline: {}\n", interrupted.what());
+    fmt::print(stderr, "{}: {}\n", name, interrupted.what());
     return kInterrupted;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fogline: error: {}\n", error.what());
+    fmt::print(stderr, "{}: error: {}\n", name, error.what());
     return kRunFailed;
   }
 }

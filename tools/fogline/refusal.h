@@ -1,0 +1,16 @@
+// What the command line says of words that it cannot follow.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace fogline {
+
+/// "fogline", or "fogline VERB" once the verb is known: what every message begins with.
+std::string CommandName(const CLI::App& app);
+
+/// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".
+std::string Refusal(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace fogline
