@@ -7,11 +7,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/graph.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::Le;
 using ::testing::SizeIs;
 
 std::vector<std::string> Lines(const std::string& text) {
@@ -19,6 +22,25 @@ std::vector<std::string> Lines(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+std::string HelpOf(std::vector<std::string> command) {
+  command.emplace_back("--help");
+  const Outcome help = RunCommand(command);
+  EXPECT_EQ(help.code, 0);
+  EXPECT_EQ(help.err, "");
+  return help.out;
+}
+
+/// The verbs, as `fogline --help` lists them.
+std::vector<std::string> Verbs() {
+  std::vector<std::string> verbs;
+  const std::vector<std::string> lines = Lines(HelpOf({Program("fogline")}));
+  auto line = std::ranges::find(lines, "Subcommands:");
+  for (; line != lines.end() && !line->empty(); ++line) {
+    if (line->starts_with("  ")) verbs.push_back(line->substr(2, line->find(' ', 2) - 2));
+  }
+  return verbs;
 }
 
 /// What the command line cannot follow: exit code 2, nothing on stdout, one line on stderr.
@@ -29,6 +51,27 @@ std::string ErrorOf(std::vector<std::string> arguments) {
   EXPECT_EQ(outcome.out, "");
   EXPECT_THAT(Lines(outcome.err), SizeIs(1));
   return outcome.err;
+}
+
+TEST(CommandLineTest, ShowsHelpWithExamplesAndNoLongLineForEveryVerb) {
+  const std::vector<std::string> verbs = Verbs();
+  ASSERT_THAT(verbs, SizeIs(10));
+  std::vector<std::vector<std::string>> commands{{Program("fogline")}};
+  for (const std::string& verb : verbs) commands.push_back({Program("fogline"), verb});
+  for (const std::vector<std::string>& command : commands) {
+    SCOPED_TRACE(command.back());
+    const std::string help = HelpOf(command);
+    EXPECT_THAT(help, HasSubstr("\nExample"));
+    for (const std::string& line : Lines(help)) EXPECT_THAT(line, SizeIs(Le(100U)));
+  }
+}
+
+TEST(CommandLineTest, ShowsHelpWithAnExampleForEveryServiceProgram) {
+  for (const RoleInfo& role : kRoles) {
+    SCOPED_TRACE(role.name);
+    const std::string program = "fogline-" + std::string(role.name);
+    EXPECT_THAT(HelpOf({Program(program)}), HasSubstr("\nExample"));
+  }
 }
 
 TEST(CommandLineTest, NamesAVerbThatIsNoneAndTheOneThatMayBeMeant) {

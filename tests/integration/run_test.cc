@@ -142,15 +142,5 @@ TEST(RunTest, RefusesBadArgumentsWithExitCode2AndOneClearLine) {
   EXPECT_EQ(RunCommand({fogline, "rum"}).code, 2);
 }
 
-TEST(RunTest, ExplainsItself) {
-  for (const char* verb : {"run", "table", "metrics", "digest", "diff", "report", "check"}) {
-    const Outcome help = RunCommand({Program("fogline"), verb, "--help"});
-    EXPECT_EQ(help.code, 0);
-    EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;
-  }
-  EXPECT_EQ(RunCommand({Program("fogline"), "--help"}).code, 0);
-  EXPECT_EQ(RunCommand({Program("fogline-fusion"), "--help"}).code, 0);
-}
-
 }  // namespace
 }  // namespace fogline::test

@@ -1,12 +1,14 @@
 // fogline: the one program that a person runs. Every verb is in a file of its own.
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/refusal.h"
 #include "tools/fogline/verbs.h"
@@ -18,10 +20,13 @@ int Main(int argc, char** argv) {
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
   app.set_version_flag("--version", FOGLINE_VERSION);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<HelpFormatter>());
   app.footer(
       "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 failure at run time, "
-      "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.");
+      "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.\n\n"
+      "Examples:\n"
+      "  fogline run scenario/paper.json\n"
+      "  fogline table --help");
   Action action;
   for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest,
                          AddDiff, AddGraph, AddCheck}) {

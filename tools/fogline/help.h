@@ -1,0 +1,21 @@
+// Help texts that fit a terminal.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace fogline {
+
+/// No line of a help text is longer.
+inline constexpr std::size_t kHelpColumns = 100;
+
+/// CLI11's help with the descriptions of options wrapped.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter();
+  std::string make_option_desc(const CLI::Option* option) const override;
+};
+
+}  // namespace fogline
