@@ -6,6 +6,16 @@
 
 #include "services/runtime/service.h"
 
+namespace {
+
+constexpr const char* kHelpFooter =
+    "Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted.\n\n"
+    "Example: as `fogline run` starts it; a run has one recorder, so a second log is that of\n"
+    "lcm-logger\n"
+    "  fogline-recorder --log logs/run.lcm --lcm-url 'udpm://239.255.76.67:7700?ttl=0'";
+
+}  // namespace
+
 int main(int argc, char** argv) {
   std::string file;
   return fogline::RunProcess(
@@ -16,5 +26,7 @@ int main(int argc, char** argv) {
       [&file](CLI::App& app) {
         app.add_option("--log", file, "Event log to write; an existing file is replaced")
             ->required();
+        // The other roles' example is of a part that joins a run from outside.
+        app.preparse_callback([&app](std::size_t) { app.footer(kHelpFooter); });
       });
 }

@@ -74,6 +74,10 @@ TEST(CommandLineTest, ShowsHelpWithAnExampleForEveryServiceProgram) {
   }
 }
 
+TEST(CommandLineTest, GivesTheRecorderItsLogInItsExample) {
+  EXPECT_THAT(HelpOf({Program("fogline-recorder")}), HasSubstr("\n  fogline-recorder --log "));
+}
+
 TEST(CommandLineTest, NamesAVerbThatIsNoneAndTheOneThatMayBeMeant) {
   EXPECT_EQ(ErrorOf({"tabel", "scenario/paper.json", "--seeds", "1:3"}),
             "fogline: error: no verb \"tabel\"; did you mean \"table\"? (see fogline --help)\n");
