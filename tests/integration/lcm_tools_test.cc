@@ -294,10 +294,46 @@ TEST(LcmToolsTest, SpyStarterNamesThePackageThatIsMissing) {
   EXPECT_THAT(error({"tools/spy", "--jars", nowhere}),
               HasSubstr("apt-get install libjchart2d-java"));
   EXPECT_THAT(error({"tools/spy", "--types", empty.File("types.jar")}),
-              HasSubstr("apt-get install default-jdk"));
+              HasSubstr("there are no message types at " + empty.File("types.jar")));
   std::ofstream(empty.File("types.jar")) << "";
   EXPECT_THAT(error({"env", "--unset=DISPLAY", "tools/spy", "--types", empty.File("types.jar")}),
               HasSubstr("DISPLAY is not set"));
+}
+
+TEST(LcmToolsTest, SpyStarterBuildsTheMessageTypesOfItsTree) {
+  // GIVEN a tree with tools/spy alone, and a Java that says what it is started with
+  const ScratchFolder tree;
+  for (const char* folder : {"tools", "build", "jars", "jdk/bin", "jdk/lib"}) {
+    std::filesystem::create_directories(tree.path() / folder);
+  }
+  std::filesystem::copy(SourceDirectory() / "tools/spy", tree.File("tools/spy"));
+  for (const char* file : {"jars/lcm.jar", "jars/jchart2d.jar", "jdk/lib/libawt_xawt.so"}) {
+    std::ofstream(tree.File(file)) << "";
+  }
+  std::ofstream(tree.File("jdk/bin/java")) << "#!/bin/sh\necho \"$@\"\n";
+  std::filesystem::permissions(tree.File("jdk/bin/java"), std::filesystem::perms::owner_all);
+  const auto spy = [&] {
+    return RunCommand({"env", "JAVA_HOME=" + tree.File("jdk"), "DISPLAY=:0", tree.File("tools/spy"),
+                       "--jars", tree.File("jars")});
+  };
+  // THEN it says what to do where nothing is configured,
+  Outcome outcome = spy();
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("build is not configured: cmake -S . -B build -G Ninja"));
+  // or was configured without Java,
+  const std::string rules = tree.File("build/build.ninja");
+  std::ofstream(rules) << "build other: phony\n";
+  outcome = spy();
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("apt-get install default-jdk"));
+  // and else builds the types and starts lcm-spy with them
+  std::ofstream(rules) << "rule touch\n  command = touch $out\n"
+                          "build lib/fogline_lcmtypes.jar: touch\n"
+                          "build fogline_lcmtypes_java: phony lib/fogline_lcmtypes.jar\n";
+  outcome = spy();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(tree.File("build/lib/fogline_lcmtypes.jar")));
+  EXPECT_THAT(outcome.out, HasSubstr(":" + tree.File("build/lib/fogline_lcmtypes.jar")));
 }
 
 }  // namespace
