@@ -1,11 +1,15 @@
 // The paper's table, reproduced.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
 namespace {
+
+using ::testing::HasSubstr;
 
 /// Rows of `fogline table scenario/paper.json` for thresholds 0.2, 0.5, 0.8.
 nlohmann::json TableRows(const std::vector<std::string>& more) {
@@ -60,6 +64,33 @@ TEST(TableOverSeedsTest, HoldsOverAThousandSeeds) {
   EXPECT_NEAR(rows[0]["rhe_pct"], 100, 0.3);
   EXPECT_LE(rows[1]["rhe_pct"], 0.3);
   EXPECT_LE(rows[2]["rhe_pct"], 0.3);
+}
+
+/// What `fogline table` says when it refuses its arguments.
+std::string ErrorOf(const std::vector<std::string>& more) {
+  std::vector<std::string> command{Program("fogline"), "table", "scenario/paper.json"};
+  command.insert(command.end(), more.begin(), more.end());
+  const Outcome outcome = RunCommand(command);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  return outcome.err;
+}
+
+TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
+  EXPECT_THAT(ErrorOf({"--external", "driver"}), HasSubstr("one process"));
+  EXPECT_THAT(ErrorOf({"--external", "driver", "--transport", "udpm"}), HasSubstr("--lcm-url"));
+}
+
+TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun) {
+  const std::vector<std::string> what{"--thresholds", "0.5", "--set", "/steps=250"};
+  const std::string url = FreshMulticastUrl();
+  // GIVEN a driver that is started again whenever it has left
+  Background drivers(
+      {"bash", "-c", "while \"$@\"; do :; done", "-", Program("fogline-driver"), "--lcm-url", url});
+  // THEN both runs of the table have it
+  std::vector<std::string> external = what;
+  external.insert(external.end(), {"--external", "driver", "--lcm-url", url});
+  EXPECT_EQ(TableRows(external), TableRows(what));
 }
 
 }  // namespace

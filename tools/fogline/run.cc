@@ -8,6 +8,7 @@
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -29,21 +30,13 @@ Examples:
 constexpr double kMinPace = 1e-3;
 
 struct RunArguments {
-  explicit RunArguments(CLI::App& verb) : scenario(verb) {
-    verb.add_option("--transport", options.transport,
-                    "direct: one process, no messages; memq: one process, LCM in memory; udpm: one "
-                    "process per role on a multicast port of its own; or an LCM URL")
-        ->capture_default_str();
-    verb.add_option("--lcm-url", url, "The same as --transport URL");
+  explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
         ->check(CLI::Range(0.0, 1000.0))
         ->capture_default_str();
-    verb.add_option("--external", external, "Wait for this role, started elsewhere (repeatable)")
-        ->allow_extra_args(false)
-        ->check(CLI::IsMember(RoleNames()));
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
         ->check(CLI::Range(1.0, 1e6))
@@ -53,16 +46,9 @@ struct RunArguments {
     verb.footer(kExamples);
   }
 
-  static std::vector<std::string> RoleNames() {
-    std::vector<std::string> names;
-    for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
-    return names;
-  }
-
   ScenarioArguments scenario;
+  TransportArguments transport;
   ExperimentOptions options;
-  std::string url;
-  std::vector<std::string> external;
   double stall_s = 4.0;
   bool force = false;
   bool json = false;
@@ -89,32 +75,14 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
 
 int Run(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
-  if (!arguments.url.empty()) {
-    if (options.transport != "udpm") {
-      throw InputError("error: --transport and --lcm-url exclude each other");
-    }
-    options.transport = arguments.url;
-  }
-  for (const RoleInfo& info : kRoles) {
-    if (std::ranges::find(arguments.external, info.name) != arguments.external.end()) {
-      options.external.push_back(info.role);
-    }
-  }
+  arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
-  if (!options.external.empty() && (direct || options.transport.starts_with("memq"))) {
-    throw InputError(fmt::format(
-        "error: --external {}: nobody can join a run with --transport {}, which is one process",
-        arguments.external.front(), options.transport));
-  }
   if (!(options.pace == 0 || options.pace >= kMinPace)) {
     throw InputError(
         fmt::format("error: --pace {}: neither 0 nor from {} to 1000", options.pace, kMinPace));
   }
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
-  }
-  if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
-    throw InputError("error: --external recorder: the run's result is read from its own log");
   }
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;

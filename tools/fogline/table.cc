@@ -1,4 +1,5 @@
 // fogline table: safety improvement against redundant human engagement, by threshold.
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,42 +13,53 @@
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/threshold_rows.h"
+#include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
 
 struct TableArguments {
-  explicit TableArguments(CLI::App& verb) : scenario(verb) {
+  explicit TableArguments(CLI::App& verb) : scenario(verb), transport(verb, "direct") {
     verb.add_option("--thresholds", thresholds,
                     "DoC thresholds a,b,c or first:last:count (default: the published ones, or "
                     "0.2,0.5,0.8)");
     verb.add_option("--seeds", seeds, "Seeds A:B, both included: mean and standard deviation");
-    verb.add_option("--transport", transport, "direct, memq, udpm or an LCM URL, as of `run`")
-        ->capture_default_str();
     verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
     verb.footer(
-        "One run without traded control and one for each threshold, in pairs of equal seeds.\n\n"
+        "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
+        "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
         "Examples:\n  fogline table scenario/paper.json\n"
         "  fogline table scenario/paper.json --seeds 1:40\n"
         "  fogline table scenario/paper.json --transport udpm --logs logs/paper-table\n"
-        "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n\n"
+        "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n"
+        "  while my_driver --lcm-url \"$URL\"; do :; done &\n"
+        "  fogline table scenario/paper.json --external driver --lcm-url \"$URL\"\n\n"
         "`fogline report --curves` draws them.");
   }
 
   ScenarioArguments scenario;
+  TransportArguments transport;
   std::string thresholds;
   std::string seeds;
-  std::string transport = "direct";
   std::filesystem::path logs;
   bool json = false;
 };
 
-ExperimentResult RunOne(const TableArguments& arguments, const Scenario& scenario,
-                        const std::string& name) {
+/// @throws InputError
+ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
-  options.transport = arguments.transport;
+  arguments.transport.Apply(options);
+  if (!options.external.empty() && options.transport == "udpm") {
+    throw InputError(
+        "error: --external needs --lcm-url: with udpm, every run has a port of its own");
+  }
+  return options;
+}
+
+ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions options,
+                        const Scenario& scenario, const std::string& name) {
   if (!arguments.logs.empty()) {
     options.log = arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
                                                arguments.scenario.file().stem().string(),
@@ -57,19 +69,25 @@ ExperimentResult RunOne(const TableArguments& arguments, const Scenario& scenari
 }
 
 /// Runs every pair on a transport, with logs if wanted.
-std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments, Scenario scenario,
+std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
+                                     const ExperimentOptions& options, Scenario scenario,
                                      std::span<const double> thresholds, const SeedRange& seeds) {
   if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
+  for (const Role role : options.external) {
+    fmt::print(stderr, "each of {} runs waits on {} for the {}, which is started elsewhere\n",
+               seeds.count() * (std::ssize(thresholds) + 1), options.transport, NameOf(role));
+  }
   std::vector<ThresholdRow> rows;
   for (const double threshold : thresholds) rows.push_back({threshold, {}, {}});
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
-    const ExperimentResult baseline = RunOne(arguments, WithoutTradedControl(scenario), "none");
+    const ExperimentResult baseline =
+        RunOne(arguments, options, WithoutTradedControl(scenario), "none");
     for (ThresholdRow& row : rows) {
       scenario.arbitrator.threshold = row.threshold;
       const ExperimentResult result =
-          RunOne(arguments, scenario, fmt::format("{:g}", row.threshold));
+          RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
       row.Add(
           SafetyImprovementPct(baseline.samples, result.samples, scenario.measures.safety_floor_m),
           result.measures);
@@ -98,10 +116,11 @@ const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
   return nullptr;
 }
 
-std::string ToJson(const TableArguments& arguments, const Scenario& scenario, std::int64_t seeds,
+std::string ToJson(const std::filesystem::path& file, const std::string& transport,
+                   const Scenario& scenario, std::int64_t seeds,
                    const std::vector<ThresholdRow>& rows) {
-  nlohmann::ordered_json json{{"scenario", arguments.scenario.file().string()},
-                              {"transport", arguments.transport},
+  nlohmann::ordered_json json{{"scenario", file.string()},
+                              {"transport", transport},
                               {"seeds", seeds},
                               {"rows", nlohmann::ordered_json::array()}};
   for (const ThresholdRow& row : rows) {
@@ -134,7 +153,8 @@ void PrintText(const Scenario& scenario, std::int64_t seeds,
   fmt::print("{}\n", scenario.title);
   fmt::print("{} seed{}; mean +- standard deviation where there are several\n\n", seeds,
              seeds == 1 ? "" : "s");
-  fmt::print("  DoC_th        SI (%)        RHE (%)      published SI   published RHE\n");
+  fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}\n", "DoC_th", "SI (%)", "RHE (%)",
+             "published SI", "published RHE");
   for (const ThresholdRow& row : rows) {
     const Summary si = row.si_pct.Result();
     const PublishedRow* published = PublishedOf(scenario, row.threshold);
@@ -150,16 +170,18 @@ void PrintText(const Scenario& scenario, std::int64_t seeds,
 
 int RunTable(const TableArguments& arguments) {
   const Scenario scenario = arguments.scenario.Load();
+  const ExperimentOptions options = OptionsOf(arguments);
   const SeedRange range = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
                                                   : ParseSeeds(arguments.seeds);
   const std::int64_t seeds = range.count();
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
   WatchInterrupts();
-  const std::vector<ThresholdRow> rows = arguments.transport == "direct" && arguments.logs.empty()
-                                             ? RowsOnAllCores(scenario, thresholds, range)
-                                             : RowsByRuns(arguments, scenario, thresholds, range);
+  const std::vector<ThresholdRow> rows =
+      options.transport == "direct" && arguments.logs.empty()
+          ? RowsOnAllCores(scenario, thresholds, range)
+          : RowsByRuns(arguments, options, scenario, thresholds, range);
   if (arguments.json) {
-    PrintJson(ToJson(arguments, scenario, seeds, rows));
+    PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
   } else {
     PrintText(scenario, seeds, rows);
   }

@@ -1,0 +1,54 @@
+#include "tools/fogline/transport_arguments.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "services/graph.h"
+
+namespace fogline {
+namespace {
+
+std::vector<std::string> RoleNames() {
+  std::vector<std::string> names;
+  for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+  return names;
+}
+
+}  // namespace
+
+TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
+    : transport_(std::move(transport)) {
+  CLI::Option* where =
+      verb.add_option("--transport", transport_,
+                      "direct: one process, no messages; memq: one process, LCM in memory; udpm: "
+                      "one process per role on a multicast port of its own; or an LCM URL")
+          ->capture_default_str();
+  verb.add_option("--lcm-url", url_, "The same as --transport URL")->excludes(where);
+  verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(RoleNames()));
+}
+
+void TransportArguments::Apply(ExperimentOptions& options) const {
+  options.transport = url_.empty() ? transport_ : url_;
+  options.external.clear();
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(external_, info.name) != external_.end()) {
+      options.external.push_back(info.role);
+    }
+  }
+  if (external_.empty()) return;
+  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+    throw InputError(fmt::format(
+        "error: --external {}: nobody can join a run with --transport {}, which is one process",
+        external_.front(), options.transport));
+  }
+  if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
+    throw InputError("error: --external recorder: the run's result is read from its own log");
+  }
+}
+
+}  // namespace fogline
