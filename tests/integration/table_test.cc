@@ -76,6 +76,18 @@ std::string ErrorOf(const std::vector<std::string>& more) {
   return outcome.err;
 }
 
+TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
+  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=automation"}),
+            "scenario/paper.json: error: /arbitrator/policy is automation: no threshold matters\n");
+  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),
+            "fogline table: error: --set /arbitrator/threshold: the thresholds are those of "
+            "--thresholds\n");
+  EXPECT_EQ(ErrorOf({"--seeds", "1:2", "--set", "/seed=3"}),
+            "fogline table: error: --set /seed: the seeds are those of --seeds\n");
+  EXPECT_EQ(ErrorOf({"--seeds", "1:2", "--seed", "3"}),
+            "fogline table: error: --seed excludes --seeds (see fogline table --help)\n");
+}
+
 TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
   EXPECT_THAT(ErrorOf({"--external", "driver"}), HasSubstr("one process"));
   EXPECT_THAT(ErrorOf({"--external", "driver", "--transport", "udpm"}), HasSubstr("--lcm-url"));

@@ -29,6 +29,13 @@ bool Reserve(const std::filesystem::path& log) {
 
 }  // namespace
 
+void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_view why) const {
+  for (const std::string& one : overrides_) {
+    if (std::string_view(one).substr(0, one.find('=')) != pointer) continue;
+    throw InputError(fmt::format("error: --set {}: {}", pointer, why));
+  }
+}
+
 void PrepareLog(const std::filesystem::path& log, bool force) {
   if (log.has_parent_path()) {
     std::error_code error;

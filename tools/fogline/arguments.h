@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +30,10 @@ class ScenarioArguments {
     return LoadScenario(file_, overrides);
   }
   const std::filesystem::path& file() const { return file_; }
+
+  /// For a verb that varies a field itself: refuses to have it set. `why` says what sets it.
+  /// @throws InputError
+  void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
 
  private:
   std::filesystem::path file_;

@@ -113,11 +113,7 @@ ReportRun PageOf(LoggedRun& run, const std::optional<double>& si_pct) {
 
 ReportCurves ComputeCurves(const ReportArguments& arguments) {
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
-  if (scenario.arbitrator.policy == Policy::kAutomation) {
-    throw InputError(
-        fmt::format("{}: error: --curves: /arbitrator/policy is automation: no threshold matters",
-                    arguments.curves.string()));
-  }
+  RequireTradedControl(scenario, arguments.curves);
   std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());

@@ -1,10 +1,20 @@
 #include "tools/fogline/threshold_rows.h"
 
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline {
+
+void RequireTradedControl(const Scenario& scenario, const std::filesystem::path& file) {
+  if (scenario.arbitrator.policy == Policy::kAutomation) {
+    throw InputError(fmt::format(
+        "{}: error: /arbitrator/policy is automation: no threshold matters", file.string()));
+  }
+}
 
 std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
                                          std::span<const double> thresholds,
