@@ -105,5 +105,14 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
   EXPECT_EQ(TableRows(external), TableRows(what));
 }
 
+TEST(TableOfRunsTest, CountsTheRunsThatEndInACollision) {
+  EXPECT_EQ(TableRows({"--thresholds", "0.5", "--seeds", "1:3"})[0]["collisions"], 0);
+  // GIVEN a leader that stops dead, and two cars that may not brake
+  const nlohmann::json rows =
+      TableRows({"--thresholds", "1", "--seeds", "1:3", "--set", "/lead/profile=emergency_brake",
+                 "--set", "/acc/min_acceleration_mps2=-0.1"});
+  EXPECT_EQ(rows[0]["collisions"], 3);
+}
+
 }  // namespace
 }  // namespace fogline::test

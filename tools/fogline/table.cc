@@ -1,5 +1,4 @@
-// fogline table: safety improvement against redundant human engagement, by
-// threshold.
+// fogline table: safety improvement against redundant human engagement, by threshold.
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -21,32 +20,24 @@ namespace fogline {
 namespace {
 
 struct TableArguments {
-  explicit TableArguments(CLI::App &verb)
-      : scenario(verb), transport(verb, "direct") {
+  explicit TableArguments(CLI::App& verb) : scenario(verb), transport(verb, "direct") {
     verb.add_option("--thresholds", thresholds,
-                    "DoC thresholds a,b,c or first:last:count (default: the "
-                    "published ones, or "
+                    "DoC thresholds a,b,c or first:last:count (default: the published ones, or "
                     "0.2,0.5,0.8)");
-    verb.add_option("--seeds", seeds,
-                    "Seeds A:B, both included: mean and standard deviation")
+    verb.add_option("--seeds", seeds, "Seeds A:B, both included: mean and standard deviation")
         ->excludes("--seed");
-    verb.add_option("--logs", logs,
-                    "Folder for a log of every run (replaced if they exist)");
+    verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
-    verb.footer("One run without traded control and one for each threshold, in "
-                "pairs of equal seeds. What\n"
-                "--external names is to be started again for each of them, all "
-                "with the same --lcm-url.\n\n"
-                "Examples:\n  fogline table scenario/paper.json\n"
-                "  fogline table scenario/paper.json --seeds 1:40\n"
-                "  fogline table scenario/paper.json --transport udpm --logs "
-                "logs/paper-table\n"
-                "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 "
-                "--seeds 1:200 --json\n"
-                "  while my_driver --lcm-url \"$URL\"; do :; done &\n"
-                "  fogline table scenario/paper.json --external driver "
-                "--lcm-url \"$URL\"\n\n"
-                "`fogline report --curves` draws them.");
+    verb.footer(
+        "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
+        "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
+        "Examples:\n  fogline table scenario/paper.json\n"
+        "  fogline table scenario/paper.json --seeds 1:40\n"
+        "  fogline table scenario/paper.json --transport udpm --logs logs/paper-table\n"
+        "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n"
+        "  while my_driver --lcm-url \"$URL\"; do :; done &\n"
+        "  fogline table scenario/paper.json --external driver --lcm-url \"$URL\"\n\n"
+        "`fogline report --curves` draws them.");
   }
 
   ScenarioArguments scenario;
@@ -58,110 +49,92 @@ struct TableArguments {
 };
 
 /// @throws InputError
-ExperimentOptions OptionsOf(const TableArguments &arguments) {
+ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
   arguments.transport.Apply(options);
   if (!options.external.empty() && options.transport == "udpm") {
-    throw InputError("error: --external needs --lcm-url: with udpm, every run "
-                     "has a port of its own");
+    throw InputError(
+        "error: --external needs --lcm-url: with udpm, every run has a port of its own");
   }
   return options;
 }
 
-ExperimentResult RunOne(const TableArguments &arguments,
-                        ExperimentOptions options, const Scenario &scenario,
-                        const std::string &name) {
+ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions options,
+                        const Scenario& scenario, const std::string& name) {
   if (!arguments.logs.empty()) {
-    options.log =
-        arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
-                                     arguments.scenario.file().stem().string(),
-                                     scenario.seed, name);
+    options.log = arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
+                                               arguments.scenario.file().stem().string(),
+                                               scenario.seed, name);
   }
   return RunExperiment(scenario, options);
 }
 
 /// Runs every pair on a transport, with logs if wanted.
-std::vector<ThresholdRow> RowsByRuns(const TableArguments &arguments,
-                                     const ExperimentOptions &options,
-                                     Scenario scenario,
-                                     std::span<const double> thresholds,
-                                     const SeedRange &seeds) {
-  if (!arguments.logs.empty())
-    std::filesystem::create_directories(arguments.logs);
+std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
+                                     const ExperimentOptions& options, Scenario scenario,
+                                     std::span<const double> thresholds, const SeedRange& seeds) {
+  if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
   for (const Role role : options.external) {
-    fmt::print(
-        stderr,
-        "each of {} runs waits on {} for the {}, which is started elsewhere\n",
-        seeds.count() * (std::ssize(thresholds) + 1), options.transport,
-        NameOf(role));
+    fmt::print(stderr, "each of {} runs waits on {} for the {}, which is started elsewhere\n",
+               seeds.count() * (std::ssize(thresholds) + 1), options.transport, NameOf(role));
   }
   std::vector<ThresholdRow> rows;
-  for (const double threshold : thresholds)
-    rows.push_back({threshold, {}, {}});
+  for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
     const ExperimentResult baseline =
         RunOne(arguments, options, WithoutTradedControl(scenario), "none");
-    for (ThresholdRow &row : rows) {
+    for (ThresholdRow& row : rows) {
       scenario.arbitrator.threshold = row.threshold;
-      const ExperimentResult result = RunOne(
-          arguments, options, scenario, fmt::format("{:g}", row.threshold));
-      row.Add(SafetyImprovementPct(baseline.samples, result.samples,
-                                   scenario.measures.safety_floor_m),
-              result.measures);
+      const ExperimentResult result =
+          RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
+      row.Add(
+          SafetyImprovementPct(baseline.samples, result.samples, scenario.measures.safety_floor_m),
+          result.measures);
     }
     progress.Show(seed - seeds.first + 1);
   }
   return rows;
 }
 
-std::vector<double> ThresholdsOf(const TableArguments &arguments,
-                                 const Scenario &scenario) {
-  if (!arguments.thresholds.empty())
-    return ParseThresholds(arguments.thresholds);
+std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario& scenario) {
+  if (!arguments.thresholds.empty()) return ParseThresholds(arguments.thresholds);
   std::vector<double> thresholds;
-  for (const PublishedRow &row : scenario.published)
-    thresholds.push_back(row.threshold);
-  if (thresholds.empty())
-    thresholds = {0.2, 0.5, 0.8};
+  for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
+  if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
   return thresholds;
 }
 
 nlohmann::ordered_json OrNull(std::optional<double> value) {
-  return value ? nlohmann::ordered_json(*value)
-               : nlohmann::ordered_json(nullptr);
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-const PublishedRow *PublishedOf(const Scenario &scenario, double threshold) {
-  for (const PublishedRow &row : scenario.published) {
-    if (row.threshold == threshold)
-      return &row;
+const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
+  for (const PublishedRow& row : scenario.published) {
+    if (row.threshold == threshold) return &row;
   }
   return nullptr;
 }
 
-std::string ToJson(const std::filesystem::path &file,
-                   const std::string &transport, const Scenario &scenario,
-                   std::int64_t seeds, const std::vector<ThresholdRow> &rows) {
+std::string ToJson(const std::filesystem::path& file, const std::string& transport,
+                   const Scenario& scenario, std::int64_t seeds,
+                   const std::vector<ThresholdRow>& rows) {
   nlohmann::ordered_json json{{"scenario", file.string()},
                               {"transport", transport},
                               {"seeds", seeds},
                               {"rows", nlohmann::ordered_json::array()}};
-  for (const ThresholdRow &row : rows) {
+  for (const ThresholdRow& row : rows) {
     const Summary si = row.si_pct.Result();
     const Summary rhe = row.rhe_pct.Result();
-    nlohmann::ordered_json out{{"threshold", row.threshold},
-                               {"si_pct", OrNull(si.mean)},
-                               {"rhe_pct", OrNull(rhe.mean)},
-                               {"si_std_pct", OrNull(si.deviation)},
-                               {"rhe_std_pct", OrNull(rhe.deviation)},
-                               {"si_ci95_pct", OrNull(si.ci95)},
-                               {"rhe_ci95_pct", OrNull(rhe.ci95)},
-                               {"si_p5_pct", OrNull(si.p5)},
-                               {"si_p95_pct", OrNull(si.p95)},
-                               {"si_seeds", si.count}};
-    if (const PublishedRow *published = PublishedOf(scenario, row.threshold)) {
+    nlohmann::ordered_json out{
+        {"threshold", row.threshold},           {"si_pct", OrNull(si.mean)},
+        {"rhe_pct", OrNull(rhe.mean)},          {"si_std_pct", OrNull(si.deviation)},
+        {"rhe_std_pct", OrNull(rhe.deviation)}, {"si_ci95_pct", OrNull(si.ci95)},
+        {"rhe_ci95_pct", OrNull(rhe.ci95)},     {"si_p5_pct", OrNull(si.p5)},
+        {"si_p95_pct", OrNull(si.p95)},         {"si_seeds", si.count},
+        {"collisions", row.collisions}};
+    if (const PublishedRow* published = PublishedOf(scenario, row.threshold)) {
       out["published_si_pct"] = published->si_pct;
       out["published_rhe_pct"] = published->rhe_pct;
     }
@@ -170,55 +143,49 @@ std::string ToJson(const std::filesystem::path &file,
   return json.dump(2);
 }
 
-void PrintText(const Scenario &scenario, std::int64_t seeds,
-               const std::vector<ThresholdRow> &rows) {
+void PrintText(const Scenario& scenario, std::int64_t seeds,
+               const std::vector<ThresholdRow>& rows) {
   const auto cell = [](std::optional<double> value) {
     return value ? fmt::format("{:.2f}", *value) : std::string("-");
   };
-  const auto spread = [&](const Summary &of) {
-    return of.deviation
-               ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
-               : cell(of.mean);
+  const auto spread = [&](const Summary& of) {
+    return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
+                        : cell(of.mean);
   };
   fmt::print("{}\n", scenario.title);
-  fmt::print(
-      "{} seed{}; mean +- standard deviation where there are several\n\n",
-      seeds, seeds == 1 ? "" : "s");
-  fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}\n", "DoC_th", "SI (%)",
-             "RHE (%)", "published SI", "published RHE");
-  for (const ThresholdRow &row : rows) {
+  fmt::print("{} seed{}; mean +- standard deviation where there are several\n\n", seeds,
+             seeds == 1 ? "" : "s");
+  fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", "DoC_th", "SI (%)", "RHE (%)",
+             "published SI", "published RHE", "collisions");
+  for (const ThresholdRow& row : rows) {
     const Summary si = row.si_pct.Result();
-    const PublishedRow *published = PublishedOf(scenario, row.threshold);
-    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}\n", row.threshold,
-               spread(si), spread(row.rhe_pct.Result()),
-               published ? cell(published->si_pct) : "-",
-               published ? cell(published->rhe_pct) : "-");
+    const PublishedRow* published = PublishedOf(scenario, row.threshold);
+    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
+               spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
+               published ? cell(published->rhe_pct) : "-", row.collisions);
     if (si.count < seeds) {
-      fmt::print("          SI of {} seeds: the others have no compromised "
-                 "safety to improve\n",
+      fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
                  si.count);
     }
   }
 }
 
-Scenario ScenarioOf(const TableArguments &arguments) {
-  arguments.scenario.RefuseOverrideOf(
-      "/arbitrator/threshold", "the thresholds are those of --thresholds");
+Scenario ScenarioOf(const TableArguments& arguments) {
+  arguments.scenario.RefuseOverrideOf("/arbitrator/threshold",
+                                      "the thresholds are those of --thresholds");
   if (!arguments.seeds.empty()) {
-    arguments.scenario.RefuseOverrideOf("/seed",
-                                        "the seeds are those of --seeds");
+    arguments.scenario.RefuseOverrideOf("/seed", "the seeds are those of --seeds");
   }
   Scenario scenario = arguments.scenario.Load();
   RequireTradedControl(scenario, arguments.scenario.file());
   return scenario;
 }
 
-int RunTable(const TableArguments &arguments) {
+int RunTable(const TableArguments& arguments) {
   const Scenario scenario = ScenarioOf(arguments);
   const ExperimentOptions options = OptionsOf(arguments);
-  const SeedRange range = arguments.seeds.empty()
-                              ? SeedRange{scenario.seed, scenario.seed}
-                              : ParseSeeds(arguments.seeds);
+  const SeedRange range = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
+                                                  : ParseSeeds(arguments.seeds);
   const std::int64_t seeds = range.count();
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
   WatchInterrupts();
@@ -227,23 +194,20 @@ int RunTable(const TableArguments &arguments) {
           ? RowsOnAllCores(scenario, thresholds, range)
           : RowsByRuns(arguments, options, scenario, thresholds, range);
   if (arguments.json) {
-    PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario,
-                     seeds, rows));
+    PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
   } else {
     PrintText(scenario, seeds, rows);
   }
   return kDone;
 }
 
-} // namespace
+}  // namespace
 
-void AddTable(CLI::App &app, Action &action) {
-  CLI::App *verb = app.add_subcommand(
-      "table", "Safety improvement and redundant engagement by threshold");
+void AddTable(CLI::App& app, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("table", "Safety improvement and redundant engagement by threshold");
   const auto arguments = std::make_shared<TableArguments>(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return RunTable(*arguments); };
-  });
+  verb->callback([&action, arguments] { action = [arguments] { return RunTable(*arguments); }; });
 }
 
-} // namespace fogline
+}  // namespace fogline

@@ -15,7 +15,7 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
   std::vector<ThresholdRow> rows;
   for (const double threshold : thresholds) {
     axis.values.push_back(fmt::format("{}", threshold));
-    rows.push_back({.threshold = threshold, .si_pct = {}, .rhe_pct = {}});
+    rows.push_back({.threshold = threshold, .si_pct = {}, .rhe_pct = {}, .collisions = 0});
   }
   // A unit of this plan is a seed: its rows are the thresholds, and share their paired run.
   const SweepPlan plan(scenario, {axis}, seeds);

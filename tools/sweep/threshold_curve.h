@@ -21,11 +21,13 @@ struct ThresholdRow {
   void Add(const std::optional<double>& si, const RunMeasures& measures) {
     if (si) si_pct.Add(*si);
     if (measures.rhe_pct) rhe_pct.Add(*measures.rhe_pct);
+    if (measures.collision != truth_t::COLLISION_NONE) ++collisions;
   }
 
   double threshold = 0;
   Statistics si_pct;
   Statistics rhe_pct;
+  std::int64_t collisions = 0;  // runs with one
 };
 
 /// Called after every seed with the number of seeds done; returns false to stop.
