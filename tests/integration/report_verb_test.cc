@@ -36,6 +36,19 @@ nlohmann::json DataOf(const std::string& page) {
   return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
 }
 
+/// A short run of the paper's scenario, as a log.
+std::string Log(const ScratchFolder& folder, const std::string& name,
+                const std::vector<std::string>& more) {
+  std::vector<std::string> command{Program("fogline"), "run",     "scenario/paper.json",
+                                   "--transport",      "direct",  "--set",
+                                   "/steps=220",       "--quiet", "--log",
+                                   folder.File(name)};
+  command.insert(command.end(), more.begin(), more.end());
+  const Outcome run = RunCommand(command);
+  EXPECT_EQ(run.code, 0) << run.err;
+  return folder.File(name);
+}
+
 TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
   // GIVEN the page of the curves, and the table of the same thresholds and seeds
   const ScratchFolder folder;
@@ -66,11 +79,7 @@ TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
 TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) {
   const ScratchFolder folder;
   const auto log = [&](const std::string& name, const std::string& override) {
-    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
-                                    "direct", "--set", "/steps=220", "--set", override, "--log",
-                                    folder.File(name), "--quiet"});
-    EXPECT_EQ(run.code, 0) << run.err;
-    return folder.File(name);
+    return Log(folder, name, {"--set", override});
   };
   const Outcome report = Report(
       {log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
@@ -81,6 +90,34 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
   EXPECT_EQ(runs[0]["name"], "without traded control");
   EXPECT_EQ(runs[1]["name"], "threshold 0.8");
   EXPECT_EQ(runs[2]["name"], "threshold 0.2");
+}
+
+TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderr) {
+  const ScratchFolder folder;
+  const std::string log = Log(folder, "cut.lcm", {});
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
+  const std::string page = folder.File("report.html");
+  const Outcome report = Report({log, "--output", page});
+  EXPECT_EQ(report.code, 0);
+  EXPECT_EQ(report.out, page + "\n");
+  EXPECT_THAT(report.err, HasSubstr(log + ": cut off after event"));
+}
+
+TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {
+  const ScratchFolder folder;
+  const std::string log = Log(folder, "run.lcm", {});
+  const std::string page = folder.File("report.html");
+  EXPECT_EQ(Report({log, "-o", page}).code, 0);
+  EXPECT_EQ(Report({log, "-o", page}).code, 0) << "the page of before";
+  std::ofstream(folder.File("drawing.svg")) << "<svg></svg>";
+  for (const std::string& other : {log, folder.File("drawing.svg")}) {
+    const std::string before = Read(other);
+    const Outcome report = Report({log, "-o", other});
+    EXPECT_EQ(report.code, 2);
+    EXPECT_EQ(report.err,
+              other + ": error: --output: the file is no HTML page and stays as it is\n");
+    EXPECT_EQ(Read(other), before);
+  }
 }
 
 TEST(ReportVerbTest, RefusesWhatGivesNoReport) {

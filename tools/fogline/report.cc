@@ -2,11 +2,15 @@
 #include "tools/report/report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +25,9 @@
 namespace fogline {
 namespace {
 
+// How MakeReport()'s pages begin.
+constexpr std::string_view kDocumentType = "<!DOCTYPE html>";
+
 struct ReportArguments {
   std::vector<std::filesystem::path> logs;
   std::filesystem::path curves;
@@ -31,10 +38,16 @@ struct ReportArguments {
   std::filesystem::path png;
 };
 
-/// Only an HTML file may be replaced: "-o *.lcm" must not cost a log. @throws InputError
+/// Only a page may be replaced: "-o *.lcm" must not cost a log. @throws InputError
 void RefuseToReplaceOther(const std::filesystem::path& output) {
   std::ifstream file(output, std::ios::binary);
-  if (file.is_open() && file.peek() != std::ifstream::traits_type::eof() && file.get() != '<') {
+  if (!file.is_open() || file.peek() == std::ifstream::traits_type::eof()) return;
+  std::string head(kDocumentType.size(), '\0');
+  file.read(head.data(), std::ssize(head));
+  const auto same = [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  };
+  if (!std::ranges::equal(head, kDocumentType, same)) {
     throw InputError(fmt::format("{}: error: --output: the file is no HTML page and stays as it is",
                                  output.string()));
   }
@@ -133,6 +146,7 @@ int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
   }
+  RefuseToReplaceOther(arguments.output);
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
@@ -141,7 +155,6 @@ int RunReport(const ReportArguments& arguments) {
   for (std::size_t i = 0; i < runs.size(); ++i) pages.push_back(PageOf(runs[i], improvements[i]));
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
-  RefuseToReplaceOther(arguments.output);
   std::ofstream file(arguments.output, std::ios::binary);
   file << MakeReport(pages, table, curves);
   if (!file.flush()) {
@@ -151,6 +164,7 @@ int RunReport(const ReportArguments& arguments) {
     WritePngFigures(arguments.png, pages);
     if (curves) WritePngCurves(arguments.png, *curves);
   }
+  fmt::print("{}\n", arguments.output.string());
   return kDone;
 }
 
@@ -174,12 +188,15 @@ void AddReport(CLI::App& app, Action& action) {
                    "Override a field of the curves' scenario (repeatable)")
       ->needs(curves)
       ->allow_extra_args(false);
-  verb->add_option("-o,--output", arguments->output, "HTML file to write")->capture_default_str();
+  verb->add_option("-o,--output", arguments->output,
+                   "HTML file to write; replaces a page, and no other file")
+      ->capture_default_str();
   verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");
   verb->footer(
-      "The page needs no network. The table appears for runs whose pair without traded\n"
-      "control is among the logs. Curves are computed on all cores: means of the seeds with\n"
-      "their 95 % confidence intervals, percentiles, and the Pareto front of SI and RHE.\n\n"
+      "Prints the name of the page, which needs no network. Its table appears for runs whose pair\n"
+      "without traded control is among the logs. Curves are computed on all cores: means of the\n"
+      "seeds with their 95 % confidence intervals, percentiles, and the Pareto front of SI and "
+      "RHE.\n\n"
       "Examples:\n  fogline report logs/paper-1.lcm\n"
       "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures\n"
       "  fogline report logs/demo/*.lcm --curves scenario/paper.json\n"
