@@ -92,7 +92,24 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
   EXPECT_EQ(runs[2]["name"], "threshold 0.2");
 }
 
-TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderr) {
+TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
+  const ScratchFolder folder;
+  const std::string page = folder.File("report.html");
+  const Outcome report =
+      Report({Log(folder, "none.lcm", {"--set", "/arbitrator/policy=automation"}),
+              Log(folder, "a.lcm", {}), Log(folder, "b.lcm", {}),
+              Log(folder, "c.lcm", {"--seed", "2"}), "-o", page});
+  ASSERT_EQ(report.code, 0) << report.err;
+  const nlohmann::json runs = DataOf(Read(page))["runs"];
+  EXPECT_EQ(runs[0]["name"], "without traded control, seed 1");
+  EXPECT_EQ(runs[1]["name"], "threshold 0.5, seed 1, a.lcm");
+  EXPECT_EQ(runs[2]["name"], "threshold 0.5, seed 1, b.lcm");
+  EXPECT_EQ(runs[3]["name"], "threshold 0.5, seed 2");
+  EXPECT_THAT(Read(page), HasSubstr("<span class=\"origin\">a.lcm · Traded control in fog"));
+  EXPECT_THAT(Read(page), HasSubstr(">Seed</th>"));
+}
+
+TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderrAndInThePage) {
   const ScratchFolder folder;
   const std::string log = Log(folder, "cut.lcm", {});
   std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
@@ -101,6 +118,7 @@ TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderr) {
   EXPECT_EQ(report.code, 0);
   EXPECT_EQ(report.out, page + "\n");
   EXPECT_THAT(report.err, HasSubstr(log + ": cut off after event"));
+  EXPECT_THAT(Read(page), HasSubstr(">incomplete log</span>"));
 }
 
 TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {

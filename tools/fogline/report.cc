@@ -53,10 +53,32 @@ void RefuseToReplaceOther(const std::filesystem::path& output) {
   }
 }
 
-std::string NameOf(const LoggedRun& run) {
-  const ArbitratorSection& arbitrator = run.scenario.arbitrator;
-  if (arbitrator.policy == Policy::kAutomation) return "without traded control";
-  return fmt::format("threshold {:g}", arbitrator.threshold);
+bool HaveOneSeed(std::span<const LoggedRun> runs) {
+  return std::ranges::all_of(
+      runs, [&](const LoggedRun& run) { return run.result.seed == runs.front().result.seed; });
+}
+
+std::string LogNameOf(const LoggedRun& run) { return run.result.log.filename().string(); }
+
+/// By what tells the runs apart: who may drive, then the seed, then the log.
+std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
+  const bool with_seed = !HaveOneSeed(runs);
+  std::vector<std::string> names;
+  for (const LoggedRun& run : runs) {
+    const ArbitratorSection& arbitrator = run.scenario.arbitrator;
+    std::string name = arbitrator.policy == Policy::kAutomation
+                           ? "without traded control"
+                           : fmt::format("threshold {:g}", arbitrator.threshold);
+    if (with_seed) name += fmt::format(", seed {}", run.result.seed);
+    names.push_back(std::move(name));
+  }
+  const std::vector<std::string> short_names = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::ranges::count(short_names, short_names[i]) > 1) {
+      names[i] += fmt::format(", {}", LogNameOf(runs[i]));
+    }
+  }
+  return names;
 }
 
 std::vector<ReportMeasure> MeasuresOf(const RunMeasures& measures) {
@@ -78,11 +100,13 @@ std::vector<ReportMeasure> MeasuresOf(const RunMeasures& measures) {
 /// one.
 std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
                                    std::span<const std::optional<double>> improvements) {
+  const bool one_seed = HaveOneSeed(runs);
   ReportTable table;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!improvements[i]) continue;
     const Scenario& scenario = runs[i].scenario;
     ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
+                         .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
                          .si_pct = *improvements[i],
                          .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
                              std::numeric_limits<double>::quiet_NaN())};
@@ -94,7 +118,7 @@ std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
     table.rows.push_back(row);
   }
   if (table.rows.empty()) return std::nullopt;
-  table.note = fmt::format("seed {}", runs.front().scenario.seed);
+  if (one_seed) table.note = fmt::format("seed {}", runs.front().scenario.seed);
   return table;
 }
 
@@ -113,8 +137,11 @@ std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   return runs;
 }
 
-ReportRun PageOf(LoggedRun& run, const std::optional<double>& si_pct) {
-  return {.name = NameOf(run),
+/// Takes the samples out of `run`.
+ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<double>& si_pct) {
+  return {.name = name,
+          .log = LogNameOf(run),
+          .shortage = run.complete ? "" : run.note,
           .scenario_title = run.scenario.title,
           .scenario_json = run.scenario_text,
           .seed = run.result.seed,
@@ -152,7 +179,10 @@ int RunReport(const ReportArguments& arguments) {
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
   const std::optional<ReportTable> table = TableOf(runs, improvements);
   std::vector<ReportRun> pages;
-  for (std::size_t i = 0; i < runs.size(); ++i) pages.push_back(PageOf(runs[i], improvements[i]));
+  const std::vector<std::string> names = NamesOf(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    pages.push_back(PageOf(runs[i], names[i], improvements[i]));
+  }
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
   std::ofstream file(arguments.output, std::ios::binary);

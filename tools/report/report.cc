@@ -38,7 +38,23 @@ std::string CollisionFact(const RunMeasures& measures) {
                           Decimal(*measures.collision_time_s, 1)));
 }
 
-/// One entry of the run selector: the run in four numbers.
+/// Where a run comes from: its log, scenario and seed.
+std::string OriginElement(const ReportRun& run) {
+  std::string parts;
+  for (const std::string& part : {run.log, run.scenario_title}) {
+    if (!part.empty()) parts += EscapeHtml(part) + " · ";
+  }
+  return fmt::format("<span class=\"origin\">{}seed {}</span>", parts, run.seed);
+}
+
+/// Says that a log is not complete; nothing if it is.
+std::string Badge(const ReportRun& run) {
+  if (run.shortage.empty()) return "";
+  return fmt::format(" <span class=\"badge\" title=\"{}\">incomplete log</span>",
+                     EscapeHtml(run.shortage));
+}
+
+/// One entry of the run selector: where the run comes from, and the run in four numbers.
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
@@ -52,8 +68,9 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   facts += CollisionFact(measures);
   return fmt::format(
       "<label class=\"run c{}\"><input type=\"checkbox\" value=\"{}\" checked>"
-      "<span class=\"name\">{}</span><dl>{}</dl></label>\n",
-      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), facts);
+      "<span class=\"name\">{}{}</span>{}<dl>{}</dl></label>\n",
+      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), Badge(run), OriginElement(run),
+      facts);
 }
 
 std::string FigureElement(const Figure& figure, std::size_t number) {

@@ -25,7 +25,9 @@ struct ReportMeasure {
 
 /// One run, as the report shows it. Every text may hold anything; it is escaped.
 struct ReportRun {
-  std::string name;  // such as "threshold 0.5", or the name of its log
+  std::string name;      // such as "threshold 0.5", or the name of its log
+  std::string log;       // name of its log; "" if there is none
+  std::string shortage;  // what its log lacks; "" if it is complete
   std::string scenario_title;
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;
@@ -41,7 +43,8 @@ struct ReportRun {
 struct ReportTable {
   struct Row {
     double threshold = 0;
-    double si_pct = 0;  // NaN where no seed has one
+    std::optional<std::int64_t> seed = {};  // where rows are of several seeds
+    double si_pct = 0;                      // NaN where no seed has one
     double rhe_pct = 0;
     std::optional<double> si_std_pct = {};
     std::optional<double> rhe_std_pct = {};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -40,20 +41,26 @@ std::string PercentCell(double value) {
   return fmt::format("<td>{}</td>", DataElement(value, kPercentDecimals));
 }
 
-/// A cell for a value and, after it, its standard deviation, if it has one.
-std::string PercentCells(double value, const std::optional<double>& deviation) {
-  return PercentCell(value) + (deviation ? fmt::format("<td class=\"deviation\">± {}</td>",
-                                                       DataElement(*deviation, kPercentDecimals))
-                                         : "<td class=\"deviation\"></td>");
+/// A cell for our own value and, after it, its standard deviation, if it has one.
+std::string OwnCells(double value, const std::optional<double>& deviation) {
+  const std::string spread =
+      deviation ? fmt::format("± {}", DataElement(*deviation, kPercentDecimals)) : "";
+  return fmt::format("<td class=\"own\">{}</td><td class=\"deviation\">{}</td>",
+                     DataElement(value, kPercentDecimals), spread);
 }
 
-std::string RowOf(const ReportTable::Row& row) {
-  return fmt::format("<tr><th scope=\"row\">{}</th>{}{}{}{}</tr>\n",
-                     fmt::format("<data value=\"{0}\">{0}</data>", row.threshold),
-                     PercentCells(row.si_pct, row.si_std_pct),
-                     PercentCell(row.published_si_pct.value_or(kNone)),
-                     PercentCells(row.rhe_pct, row.rhe_std_pct),
-                     PercentCell(row.published_rhe_pct.value_or(kNone)));
+bool HasSeeds(const ReportTable& table) {
+  return std::ranges::any_of(table.rows, [](const auto& row) { return row.seed.has_value(); });
+}
+
+std::string RowOf(const ReportTable::Row& row, bool with_seed) {
+  std::string seed;
+  if (with_seed) seed = fmt::format("<td>{}</td>", row.seed ? std::to_string(*row.seed) : "–");
+  return fmt::format(
+      "<tr><th scope=\"row\"><data value=\"{0}\">{0}</data></th>{1}{2}{3}{4}{5}</tr>\n",
+      row.threshold, seed, OwnCells(row.si_pct, row.si_std_pct),
+      PercentCell(row.published_si_pct.value_or(kNone)), OwnCells(row.rhe_pct, row.rhe_std_pct),
+      PercentCell(row.published_rhe_pct.value_or(kNone)));
 }
 
 /// Mean, standard deviation, half of the confidence interval, and percentiles.
@@ -165,15 +172,18 @@ std::string RunName(std::span<const ReportRun> runs, std::size_t index) {
 }
 
 std::string ThresholdTable(const ReportTable& table) {
+  const bool with_seed = HasSeeds(table);
   std::string rows;
-  for (const ReportTable::Row& row : table.rows) rows += RowOf(row);
+  for (const ReportTable::Row& row : table.rows) rows += RowOf(row, with_seed);
   return Scrolling(
       "Safety improvement and redundant human engagement by threshold",
-      "<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>"
-      "<th scope=\"colgroup\" colspan=\"3\">Safety improvement (%)</th>"
-      "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th></tr>\n"
-      "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
-      "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th></tr>\n",
+      fmt::format(
+          "<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>{}"
+          "<th scope=\"colgroup\" colspan=\"3\">Safety improvement (%)</th>"
+          "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th></tr>\n"
+          "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
+          "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th></tr>\n",
+          with_seed ? "<th scope=\"col\" rowspan=\"2\">Seed</th>" : ""),
       rows);
 }
 

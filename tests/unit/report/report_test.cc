@@ -88,7 +88,8 @@ TEST(MakeReportTest, StaysBelowTwoMegabytesForFourRunsOfFiveHundredSteps) {
 TEST(MakeReportTest, EscapesEveryTextOfARun) {
   const std::string evil = "</script><img src=x onerror=alert(1)>\"'&";
   ReportRun run = ExampleRun({.steps = 3});
-  run.name = run.scenario_title = run.scenario_json = run.digest = evil;
+  run.name = run.log = run.shortage = evil;
+  run.scenario_title = run.scenario_json = run.digest = evil;
   run.measures = {{evil, 1.0, evil, evil}};
   ReportTable table = ExampleTable();
   table.note = evil;
@@ -142,6 +143,32 @@ TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
   EXPECT_THAT(table, HasSubstr("\u221210.25"));
   EXPECT_EQ(Count(table, "<td>–</td>"), 2U);  // the row that was never published
   EXPECT_THAT(table, HasSubstr("Mean and standard deviation over seeds 1 to 200."));
+}
+
+TEST(MakeReportTest, HasAColumnOfSeedsOnlyWhereTheRowsAreOfSeveral) {
+  ReportTable table = ExampleTable();
+  EXPECT_THAT(SectionOf(MakeReport(ExampleRuns(10), table), "table"), Not(HasSubstr(">Seed</th>")));
+  table.rows[1].seed = 4711;
+  const std::string section = SectionOf(MakeReport(ExampleRuns(10), table), "table");
+  EXPECT_EQ(Count(section, ">Seed</th>"), 1U);
+  EXPECT_THAT(section, HasSubstr("<data value=\"0.5\">0.5</data></th><td>4711</td>"));
+}
+
+TEST(MakeReportTest, SaysOfEveryRunWhereItComesFrom) {
+  ReportRun run = ExampleRun({.steps = 3});
+  run.log = "paper-<1>.lcm";
+  EXPECT_THAT(MakeReport({&run, 1}, {}),
+              HasSubstr("<span class=\"origin\">paper-&lt;1&gt;.lcm · Traded control in fog · "
+                        "seed 7</span>"));
+}
+
+TEST(MakeReportTest, MarksTheRunsWhoseLogsAreNotComplete) {
+  std::vector<ReportRun> runs = ExampleRuns(10);
+  EXPECT_THAT(MakeReport(runs, {}), Not(HasSubstr(">incomplete log<")));
+  runs[1].shortage = "ends after step 8 of \"10\"";
+  const std::string page = MakeReport(runs, {});
+  EXPECT_EQ(Count(page, ">incomplete log<"), 1U);
+  EXPECT_THAT(page, HasSubstr("title=\"ends after step 8 of &quot;10&quot;\""));
 }
 
 TEST(MakeReportTest, HasNoTableSectionWithoutATable) {
