@@ -12,14 +12,14 @@
 namespace fogline {
 namespace {
 
-std::string RandomWord(Draw& draw) {
+std::string RandomWord(ValueDraw& draw) {
   std::string word;
   for (std::size_t n = draw.Below(9); n > 0; --n) word += static_cast<char>('a' + draw.Below(3));
   return word;
 }
 
 // One insertion, deletion, substitution or swap of neighbours. @pre not empty
-std::string WithOneEdit(std::string word, Draw& draw) {
+std::string WithOneEdit(std::string word, ValueDraw& draw) {
   const std::size_t at = draw.Below(word.size());
   const char letter = static_cast<char>('a' + draw.Below(26));
   switch (draw.Below(4)) {
@@ -37,7 +37,7 @@ std::string WithOneEdit(std::string word, Draw& draw) {
 }
 
 TEST(EditDistanceProperty, IsSymmetricZeroForEqualWordsOnlyAndAtMostTheLongerLength) {
-  Draw draw(1);
+  ValueDraw draw(1);
   for (int i = 0; i < 5000; ++i) {
     const std::string a = RandomWord(draw);
     const std::string b = RandomWord(draw);
@@ -50,7 +50,7 @@ TEST(EditDistanceProperty, IsSymmetricZeroForEqualWordsOnlyAndAtMostTheLongerLen
 }
 
 TEST(EditDistanceProperty, IsAtMostOneAfterOneEdit) {
-  Draw draw(2);
+  ValueDraw draw(2);
   for (int i = 0; i < 5000; ++i) {
     std::string word = RandomWord(draw);
     word.push_back('a');
@@ -60,7 +60,7 @@ TEST(EditDistanceProperty, IsAtMostOneAfterOneEdit) {
 }
 
 TEST(SuggestionProperty, APointerWithOneLetterTooMuchGetsANeighbourInOneEdit) {
-  Draw draw(3);
+  ValueDraw draw(3);
   for (const FieldInfo& info : Catalogue()) {
     if (info.pointer == "/") continue;
     std::string wrong = info.pointer;

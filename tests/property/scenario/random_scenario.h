@@ -16,9 +16,9 @@
 namespace fogline {
 
 /// Random values whose order is the same everywhere (std:: distributions are not).
-class Draw {
+class ValueDraw {
  public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
+  explicit ValueDraw(std::uint64_t seed) : engine_(seed) {}
 
   /// Uniform in 0 to n - 1 (with a bias below 2^-40 for small n). @pre n > 0
   std::size_t Below(std::size_t n) { return static_cast<std::size_t>(engine_() % n); }
@@ -64,7 +64,7 @@ class Draw {
 /// Gives every field a random value within its range.
 class RandomFiller {
  public:
-  explicit RandomFiller(Draw& draw) : draw_(draw) {}
+  explicit RandomFiller(ValueDraw& draw) : draw_(draw) {}
 
   void Number(std::string_view, double& value, const NumberSpec& spec) {
     value = draw_.Number(spec.min, spec.max);
@@ -100,10 +100,10 @@ class RandomFiller {
   void Needs(const NeedSpec&) {}
 
  private:
-  Draw& draw_;
+  ValueDraw& draw_;
 };
 
-inline Scenario RandomScenario(Draw& draw) {
+inline Scenario RandomScenario(ValueDraw& draw) {
   Scenario scenario;
   RandomFiller filler(draw);
   Scenario::Fields(scenario, filler);

@@ -16,7 +16,7 @@ namespace {
 
 TEST(RoundTripProperty, PrintedScenariosReadBackBitByBit) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
-    Draw draw(seed);
+    ValueDraw draw(seed);
     const Scenario scenario = RandomScenario(draw);
     const std::string text = PrintScenario(scenario);
     const Scenario again = ParseScenario(text);
@@ -79,7 +79,7 @@ class OverrideWriter {
 
 TEST(OverrideProperty, OverridingEveryFieldMakesAnyScenarioOfAnyOther) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    Draw draw(seed);
+    ValueDraw draw(seed);
     const std::string from = PrintScenario(RandomScenario(draw));
     const Scenario to = RandomScenario(draw);
     OverrideWriter writer;
