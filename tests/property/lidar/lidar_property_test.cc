@@ -1,27 +1,25 @@
-// Properties of the LiDAR's errors and of its beams, over many seeds and steps. Every statistical
-// bound is a quantile of the exact distribution that leaves out one case in a million on a side.
+// Properties of the LiDAR's errors and of its beams, over many seeds and steps.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <boost/math/distributions/beta.hpp>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "services/lidar/lidar.h"
 #include "services/world/visibility.h"
+#include "tests/support/sensor_errors.h"
 
 namespace fogline {
 namespace {
 
-constexpr double kRare = 1e-6;
-constexpr double kRareSigmas = 4.75;  // normal quantile of kRare
-constexpr int kSeeds = 40;
-constexpr int kSteps = 250;
-constexpr int kSamples = kSeeds * kSteps;
+using test::ExpectShare;
+using test::ExpectStandardNormalMoments;
+using test::ExpectUniform;
+using test::kSeeds;
+using test::kSteps;
 
 truth_t Target(std::int64_t step, double gap_m = 33.0, double visibility_m = 20000.0) {
   truth_t truth{};
@@ -49,26 +47,6 @@ Scenario Beam() {
   scenario.fog.visibility_m = 20.0;
   scenario.lidar.range_std_m = 0.0;
   return scenario;
-}
-
-void ExpectStandardNormalMoments(const std::vector<double>& z) {
-  const auto n = static_cast<double>(z.size());
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double value : z) {
-    sum += value;
-    squares += value * value;
-  }
-  EXPECT_LT(std::abs(sum), kRareSigmas * std::sqrt(n));
-  const boost::math::chi_squared chi_squared(n);
-  EXPECT_GT(squares, quantile(chi_squared, kRare));
-  EXPECT_LT(squares, quantile(complement(chi_squared, kRare)));
-}
-
-void ExpectShare(int count, double probability, const char* what) {
-  const boost::math::binomial binomial(kSamples, probability);
-  EXPECT_GE(count, quantile(binomial, kRare)) << what;
-  EXPECT_LE(count, quantile(complement(binomial, kRare))) << what;
 }
 
 TEST(LidarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
@@ -185,19 +163,12 @@ TEST(LidarProperty, FogScattersByABetaDistribution) {
   const EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
   const double peak_m = model.At(60.0, 25.0).fog_range_m;
   const boost::math::beta_distribution beta(2.0, 20.0);
-  constexpr int kCells = 20;
-  std::vector<int> counts(kCells);
+  std::vector<double> shares;
   for (const lidar_t& lidar : Measure(scenario, 60.0, 25.0)) {
     ASSERT_TRUE(lidar.valid);
-    const double share = cdf(beta, (lidar.range_m - peak_m) / 10.0);
-    ++counts[static_cast<std::size_t>(share * kCells)];
+    shares.push_back(cdf(beta, (lidar.range_m - peak_m) / 10.0));
   }
-  double statistic = 0.0;
-  for (const int count : counts) {
-    const double expected = static_cast<double>(kSamples) / kCells;
-    statistic += (count - expected) * (count - expected) / expected;
-  }
-  EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
+  ExpectUniform(shares);
 }
 
 TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {

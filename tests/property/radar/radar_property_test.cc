@@ -1,22 +1,22 @@
-// Properties of the radar's errors, over many seeds and steps. Every bound is a quantile of the
-// exact distribution that leaves out one case in a million on either side.
+// Properties of the radar's errors, over many seeds and steps.
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include "services/radar/radar.h"
+#include "tests/support/sensor_errors.h"
 
 namespace fogline {
 namespace {
 
-constexpr double kRare = 1e-6;
-constexpr double kRareSigmas = 4.75;  // normal quantile of kRare
-constexpr int kSeeds = 40;
-constexpr int kSteps = 250;
-constexpr int kSamples = kSeeds * kSteps;
+using test::ExpectShare;
+using test::ExpectStandardNormalMoments;
+using test::ExpectUniform;
+using test::kRareSigmas;
+using test::kSamples;
+using test::kSeeds;
+using test::kSteps;
 
 truth_t Target(std::int64_t step) {
   truth_t truth{};
@@ -36,21 +36,6 @@ std::vector<radar_t> Measure(Scenario scenario) {
     for (int step = 0; step < kSteps; ++step) measurements.push_back(radar.Step(Target(step)));
   }
   return measurements;
-}
-
-// Expects mean 0 and standard deviation 1.
-void ExpectStandardNormalMoments(const std::vector<double>& z) {
-  const auto n = static_cast<double>(z.size());
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double value : z) {
-    sum += value;
-    squares += value * value;
-  }
-  EXPECT_LT(std::abs(sum), kRareSigmas * std::sqrt(n));
-  const boost::math::chi_squared chi_squared(n);
-  EXPECT_GT(squares, quantile(chi_squared, kRare));
-  EXPECT_LT(squares, quantile(complement(chi_squared, kRare)));
 }
 
 TEST(RadarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
@@ -79,20 +64,12 @@ TEST(RadarProperty, NoiseIsGaussian) {
   Scenario scenario;
   scenario.radar.bias_m = 0.0;
   scenario.radar.range_std_m = 0.25;
-  // Pearson's test over 20 cells of equal probability.
-  constexpr int kCells = 20;
-  std::vector<int> counts(kCells);
+  std::vector<double> shares;
   for (const radar_t& radar : Measure(scenario)) {
     const double z = (radar.range_m - 33.0) / 0.25;
-    const double share = 0.5 * std::erfc(-z / std::sqrt(2.0));
-    ++counts[static_cast<std::size_t>(share * kCells)];
+    shares.push_back(0.5 * std::erfc(-z / std::sqrt(2.0)));
   }
-  double statistic = 0.0;
-  for (const int count : counts) {
-    const double expected = static_cast<double>(kSamples) / kCells;
-    statistic += (count - expected) * (count - expected) / expected;
-  }
-  EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
+  ExpectUniform(shares);
 }
 
 TEST(RadarProperty, DropsOutAtItsRate) {
@@ -101,9 +78,7 @@ TEST(RadarProperty, DropsOutAtItsRate) {
     scenario.radar.dropout_probability = probability;
     int dropouts = 0;
     for (const radar_t& radar : Measure(scenario)) dropouts += radar.valid ? 0 : 1;
-    const boost::math::binomial binomial(kSamples, probability);
-    EXPECT_GE(dropouts, quantile(binomial, kRare));
-    EXPECT_LE(dropouts, quantile(complement(binomial, kRare)));
+    ExpectShare(dropouts, probability, "dropout");
   }
 }
 

@@ -1,0 +1,54 @@
+// Judges of a sensor's random errors over many seeds and steps. Every bound is a quantile of the
+// exact distribution that leaves out one case in a million on a side.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace fogline::test {
+
+inline constexpr double kRare = 1e-6;
+inline constexpr double kRareSigmas = 4.75;  // normal quantile of kRare
+inline constexpr int kSeeds = 40;
+inline constexpr int kSteps = 250;
+inline constexpr int kSamples = kSeeds * kSteps;
+
+/// Expects mean 0 and standard deviation 1.
+inline void ExpectStandardNormalMoments(const std::vector<double>& z) {
+  const auto n = static_cast<double>(z.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double value : z) {
+    sum += value;
+    squares += value * value;
+  }
+  EXPECT_LT(std::abs(sum), kRareSigmas * std::sqrt(n));
+  const boost::math::chi_squared chi_squared(n);
+  EXPECT_GT(squares, quantile(chi_squared, kRare));
+  EXPECT_LT(squares, quantile(complement(chi_squared, kRare)));
+}
+
+/// Expects values that are uniform in [0, 1): Pearson's test over 20 cells.
+inline void ExpectUniform(const std::vector<double>& shares) {
+  constexpr int kCells = 20;
+  std::vector<int> counts(kCells);
+  for (const double share : shares) ++counts.at(static_cast<std::size_t>(share * kCells));
+  const double expected = static_cast<double>(shares.size()) / kCells;
+  double statistic = 0.0;
+  for (const int count : counts) statistic += (count - expected) * (count - expected) / expected;
+  EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
+}
+
+/// Expects something that happens with `probability` to have happened `count` times in kSamples.
+inline void ExpectShare(int count, double probability, const char* what) {
+  const boost::math::binomial binomial(kSamples, probability);
+  EXPECT_GE(count, quantile(binomial, kRare)) << what;
+  EXPECT_LE(count, quantile(complement(binomial, kRare))) << what;
+}
+
+}  // namespace fogline::test
