@@ -250,7 +250,7 @@ struct ArbitratorSection {
                    .max = 1000,
                    .unit = "steps",
                    .doc = "Window that z is averaged over.",
-                   .source = "calibrated; the paper prints none"});
+                   .source = "chosen; the paper prints none"});
     visit.Choice("missing_lidar", self.missing_lidar,
                  "What a step without radar or LiDAR value counts as.");
     visit.Number("missing_conflict_m", self.missing_conflict_m,

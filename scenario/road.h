@@ -222,12 +222,13 @@ struct FogSection {
                   .unit = "s",
                   .doc = "Length of the fog window; its end does not belong to it.",
                   .source = "Sourav & Cheng 2024: steps 190 to 300"});
-    visit.Number("bias_m", self.bias_m,
-                 {.min = 0,
-                  .max = 100,
-                  .unit = "m",
-                  .doc = "Model bias: how much too short the LiDAR's range is at level 1.",
-                  .source = "calibrated; the paper prints none"});
+    visit.Number(
+        "bias_m", self.bias_m,
+        {.min = 0,
+         .max = 100,
+         .unit = "m",
+         .doc = "Model bias: how much too short the LiDAR's range is at level 1.",
+         .source = "chosen; the paper prints none, paper.json has one that is calibrated"});
     visit.Number("visibility_m", self.visibility_m,
                  {.min = 5,
                   .max = 1e5,

@@ -23,7 +23,8 @@ struct RadarSection {
                   .max = 10,
                   .unit = "m",
                   .doc = "Mounting offset that was not calibrated out, added to every range.",
-                  .source = "calibrated; implied by the paper's RHE of 100 % at threshold 0.2"});
+                  .source = "chosen; implied by the paper's RHE of 100 % at threshold 0.2, "
+                            "calibrated in paper.json"});
     visit.Number("lateral_offset_m", self.lateral_offset_m,
                  {.min = -3,
                   .max = 3,
@@ -34,7 +35,7 @@ struct RadarSection {
                   .max = 10,
                   .unit = "m",
                   .doc = "Standard deviation of range noise.",
-                  .source = "calibrated; data sheet of a Continental ARS408: 0.1 to 0.4 m"});
+                  .source = "chosen; data sheet of a Continental ARS408: 0.1 to 0.4 m"});
     visit.Number("range_rate_std_mps", self.range_rate_std_mps,
                  {.min = 0,
                   .max = 10,
