@@ -26,7 +26,6 @@ int main(int argc, char** argv) {
       [&file](CLI::App& app) {
         app.add_option("--log", file, "Event log to write; an existing file is replaced")
             ->required();
-        // The other roles' example is of a part that joins a run from outside.
-        app.preparse_callback([&app](std::size_t) { app.footer(kHelpFooter); });
+        app.footer(kHelpFooter);  // not the other roles', which join a run from outside
       });
 }

@@ -45,11 +45,12 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   for (const RoleInfo& info : kRoles) {
     if (info.role == role) purpose = info.purpose;
   }
-  CLI::App app{fmt::format("Fogline's {}: {}.\n"
-                           "Joins the next run that is announced on the LCM network, takes part in "
-                           "it, and leaves when the runner says so.",
-                           NameOf(role), purpose),
-               name};
+  CLI::App app{
+      fmt::format("Fogline's {}: {}.\n"
+                  "Joins the next run that is announced on the LCM network, takes part in it,\n"
+                  "and leaves when the runner says so.",
+                  NameOf(role), purpose),
+      name};
   app.set_version_flag("--version", FOGLINE_VERSION);
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   app.add_option("--lcm-url", url, "LCM network to join")
@@ -57,7 +58,6 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
       ->capture_default_str();
   std::optional<std::int64_t> run_id;
   app.add_option("--run-id", run_id, "Join only the run with this id");
-  if (extend) extend(app);
   app.footer(
       fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
                   "\n\nExample: two shells of one machine\n"
@@ -65,10 +65,14 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                   "  fogline run scenario/paper.json --external {1} \\\n"
                   "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'",
                   name, NameOf(role)));
+  if (extend) extend(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kStopped : kBadUsage;
+    fmt::print(stderr, "{0}: error: {1} (see {0} --help)\n", name, error.what());
+    return kBadUsage;
   }
   WatchSignals();
   try {

@@ -66,11 +66,13 @@ TEST(CommandLineTest, ShowsHelpWithExamplesAndNoLongLineForEveryVerb) {
   }
 }
 
-TEST(CommandLineTest, ShowsHelpWithAnExampleForEveryServiceProgram) {
+TEST(CommandLineTest, ShowsHelpWithAnExampleAndNoLongLineForEveryServiceProgram) {
   for (const RoleInfo& role : kRoles) {
     SCOPED_TRACE(role.name);
     const std::string program = "fogline-" + std::string(role.name);
-    EXPECT_THAT(HelpOf({Program(program)}), HasSubstr("\nExample"));
+    const std::string help = HelpOf({Program(program)});
+    EXPECT_THAT(help, HasSubstr("\nExample"));
+    for (const std::string& line : Lines(help)) EXPECT_THAT(line, SizeIs(Le(100U)));
   }
 }
 
