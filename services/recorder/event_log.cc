@@ -5,6 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -19,6 +22,8 @@ namespace {
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 constexpr std::size_t kEventHeader = 28;
 constexpr std::size_t kMaxChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+// Bytes that are worth a call of the operating system, which costs as much as copying thousands.
+constexpr std::size_t kWorthWriting = 1 << 16;
 
 std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -26,12 +31,13 @@ std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
   return value;
 }
 
+using EventHeader = std::array<std::uint8_t, kEventHeader>;
+
 template <class Unsigned>
-void AppendBigEndian(Unsigned value, std::vector<std::uint8_t>& bytes) {
-  constexpr int kByteBits = 8;
-  for (int shift = kByteBits * (sizeof(value) - 1); shift >= 0; shift -= kByteBits) {
-    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-  }
+void PutBigEndian(Unsigned value, std::size_t offset, EventHeader& header) {
+  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(value)>>(value);
+  if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(bytes);
+  std::memcpy(header.data() + offset, bytes.data(), sizeof(value));
 }
 
 }  // namespace
@@ -42,24 +48,37 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file)
     throw InputError(
         fmt::format("{}: error: cannot write the log: {}", file.string(), std::strerror(errno)));
   }
+  std::setvbuf(out_, nullptr, _IONBF, 0);
+  pending_.reserve(2 * kWorthWriting);
 }
 
-EventLogWriter::~EventLogWriter() { std::fclose(out_); }
+EventLogWriter::~EventLogWriter() {
+  WriteOut();
+  std::fclose(out_);
+}
 
 void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes data) {
-  event_.clear();
-  AppendBigEndian(kSyncWord, event_);
-  AppendBigEndian(static_cast<std::uint64_t>(events_++), event_);
-  AppendBigEndian(static_cast<std::uint64_t>(utime), event_);
-  AppendBigEndian(static_cast<std::uint32_t>(channel.size()), event_);
-  AppendBigEndian(static_cast<std::uint32_t>(data.size()), event_);
-  event_.insert(event_.end(), channel.begin(), channel.end());
-  event_.insert(event_.end(), data.begin(), data.end());
-  if (std::fwrite(event_.data(), 1, event_.size(), out_) != event_.size()) FailToWrite();
+  EventHeader header;
+  PutBigEndian(kSyncWord, 0, header);
+  PutBigEndian(static_cast<std::uint64_t>(events_++), 4, header);
+  PutBigEndian(static_cast<std::uint64_t>(utime), 12, header);
+  PutBigEndian(static_cast<std::uint32_t>(channel.size()), 20, header);
+  PutBigEndian(static_cast<std::uint32_t>(data.size()), 24, header);
+  pending_.insert(pending_.end(), header.begin(), header.end());
+  pending_.insert(pending_.end(), channel.begin(), channel.end());
+  pending_.insert(pending_.end(), data.begin(), data.end());
+  if (pending_.size() >= kWorthWriting) Flush();
 }
 
 void EventLogWriter::Flush() {
-  if (std::fflush(out_) != 0) FailToWrite();
+  if (!WriteOut()) FailToWrite();
+}
+
+bool EventLogWriter::WriteOut() {
+  const std::size_t written = std::fwrite(pending_.data(), 1, pending_.size(), out_);
+  const bool all = written == pending_.size();
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
+  return all;
 }
 
 void EventLogWriter::FailToWrite() const {

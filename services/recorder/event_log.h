@@ -35,12 +35,13 @@ class EventLogWriter {
   void Flush();
 
  private:
+  bool WriteOut();
   [[noreturn]] void FailToWrite() const;
 
   std::filesystem::path file_;
-  std::FILE* out_;
+  std::FILE* out_;  // without a buffer of its own
   std::int64_t events_ = 0;
-  std::vector<std::uint8_t> event_;  // one, encoded
+  std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
 
 /// One event; views into the mapped file.

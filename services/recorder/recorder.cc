@@ -8,17 +8,6 @@ namespace {
 // Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
 
-/// "" if the bytes are one sound message of the channel's type, else what is wrong.
-std::string Examine(std::size_t channel, Bytes bytes) {
-  std::string wrong = "no per-step channel";
-  ForEachStepChannel([&]<class M>(std::size_t i) {
-    if (i != channel) return;
-    thread_local M message{};
-    wrong = Decode(bytes, message) ? FirstNonFiniteField(message) : "wrong type or size";
-  });
-  return wrong;
-}
-
 }  // namespace
 
 Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file)
@@ -36,11 +25,17 @@ void Recorder::Configure(const Scenario& /*scenario*/) {
   log_->Flush();
 }
 
-std::string Recorder::Accept(std::size_t input, std::int64_t step, Bytes bytes) {
-  const std::size_t channel = inputs()[input].channel;
-  if (std::string wrong = Examine(channel, bytes); !wrong.empty()) return wrong;
-  if (channel == IndexOf<truth_t>() && Decode(bytes, truth_) && truth_.last) final_ = step;
-  return "";
+bool Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
+  bool sound = false;
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    if (channel != inputs()[input].channel) return;
+    const M* message = arrival.As<M>();
+    sound = message != nullptr;
+    if constexpr (std::is_same_v<M, truth_t>) {
+      if (sound && message->last) final_ = step;
+    }
+  });
+  return sound;
 }
 
 void Recorder::Write(std::int64_t step) {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <tuple>
 
 #include "services/recorder/event_log.h"
 #include "services/runtime/node.h"
@@ -19,7 +18,7 @@ class Recorder final : public Node {
 
  private:
   void Configure(const Scenario& scenario) override;
-  std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) override;
+  bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
   void BeforeStatus() override;
@@ -28,7 +27,6 @@ class Recorder final : public Node {
   void Write(std::int64_t step);
 
   std::optional<EventLogWriter> log_;
-  truth_t truth_{};          // of the step that came last
   std::int64_t final_ = -1;  // step after which the run ends, once known
 };
 

@@ -62,36 +62,47 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
 
 Bus::~Bus() { lcm_destroy(lcm_); }
 
-void Bus::Subscribe(std::string_view channel, Handler handler) {
-  Subscription& subscription = subscriptions_.emplace_back(this, std::move(handler));
-  lcm_subscription_t* handle =
-      lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &subscription);
-  if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
-  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
-  channels_.emplace(channel);
-  for (const int socket : sockets_) {
-    AttachFilter(socket, ChannelFilter({channels_.begin(), channels_.end()}));
-  }
+Bus::Topic& Bus::TopicOf(std::string_view channel) {
+  const auto found = std::ranges::find(topics_, channel, &Topic::channel);
+  if (found != topics_.end()) return *found;
+  return topics_.emplace_back(this, std::string(channel));
 }
 
-void Bus::Publish(std::string_view channel, Bytes bytes) {
-  // LCM wants a terminated name; channel names are literals of the graph table or short strings.
-  const std::string name(channel);
-  if (lcm_publish(lcm_, name.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
-    throw std::runtime_error(fmt::format("LCM cannot publish {} bytes on {}", bytes.size(), name));
+void Bus::Subscribe(std::string_view channel, Handler handler) {
+  Topic& topic = TopicOf(channel);
+  topic.handlers.push_back(std::move(handler));
+  if (topic.handlers.size() > 1) return;
+  lcm_subscription_t* handle =
+      lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
+  if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  std::vector<std::string> subscribed;
+  for (const Topic& other : topics_) {
+    if (!other.handlers.empty()) subscribed.push_back(other.channel);
   }
-  if (in_memory_ && channels_.contains(channel)) ++waiting_;
+  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(subscribed));
+}
+
+void Bus::Publish(const Topic& topic, Bytes bytes) {
+  if (lcm_publish(lcm_, topic.channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
+      0) {
+    throw std::runtime_error(
+        fmt::format("LCM cannot publish {} bytes on {}", bytes.size(), topic.channel));
+  }
+  if (in_memory_ && !topic.handlers.empty()) ++waiting_;
 }
 
 bool Bus::Wait(Duration timeout) {
-  if (waiting_ > 0) {
-    --waiting_;  // no need to ask the kernel
-  } else if (!Readable(timeout)) {
-    return false;
-  }
+  if (waiting_ == 0 && !Readable(timeout)) return false;
+  now_ = Clock::now();
+  Handle();
+  return true;
+}
+
+void Bus::Handle() {
+  if (waiting_ > 0) --waiting_;
   if (lcm_handle(lcm_) != 0) throw std::runtime_error(fmt::format("LCM lost {}", url_));
   if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
-  return true;
 }
 
 bool Bus::Readable(Duration timeout) const {
@@ -105,15 +116,21 @@ bool Bus::Readable(Duration timeout) const {
 }
 
 void Bus::Drain() {
-  for (int i = 0; i < kDrained && Wait(Duration::zero()); ++i) {
+  for (int i = 0; i < kDrained; ++i) {
+    if (waiting_ > 0) {
+      Handle();  // no need to ask the kernel, nor to look at the clock
+    } else if (!Wait(Duration::zero())) {
+      return;
+    }
   }
 }
 
-void Bus::OnMessage(const _lcm_recv_buf_t* buffer, const char* /*channel*/, void* subscription) {
-  const auto& self = *static_cast<Subscription*>(subscription);
-  if (self.bus->parked_) return;
+void Bus::OnMessage(const _lcm_recv_buf_t* buffer, const char* /*channel*/, void* topic) {
+  auto& self = *static_cast<Topic*>(topic);
   try {
-    self.handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+    self.arrival.Renew({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
+                       self.bus->now_);
+    for (const Handler& handler : self.handlers) handler(self.arrival);
   } catch (...) {
     self.bus->parked_ = std::current_exception();
   }

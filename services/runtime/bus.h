@@ -6,13 +6,12 @@
 #include <deque>
 #include <exception>
 #include <functional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "services/runtime/arrival.h"
 #include "services/runtime/clock.h"
-#include "services/runtime/wire.h"
 
 struct _lcm_t;
 struct _lcm_recv_buf_t;
@@ -22,7 +21,7 @@ namespace fogline {
 /// One connection to an LCM network, for one thread. memq:// connects only its own subscribers.
 class Bus {
  public:
-  using Handler = std::function<void(Bytes)>;
+  using Handler = std::function<void(Arrival&)>;
 
   /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and asks for a receive buffer
   ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise.
@@ -32,12 +31,18 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Calls `handler` from Wait() for every message on exactly this channel; the bytes are valid
-  /// during the call. What it throws comes out of Wait().
+  /// Calls `handler` from Wait() for every message on exactly this channel, handlers of one channel
+  /// in the order of their subscription; what the message holds is valid during the call. What a
+  /// handler throws comes out of Wait().
   void Subscribe(std::string_view channel, Handler handler);
 
   /// Sends bytes; they are copied before it returns.
-  void Publish(std::string_view channel, Bytes bytes);
+  void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
+
+  /// A channel on this bus, for those that publish often: finding it by name takes its time.
+  struct Topic;
+  Topic& TopicOf(std::string_view channel);
+  void Publish(const Topic& topic, Bytes bytes);
 
   /// Handles one message, waiting for it up to `timeout`. @return whether there was one.
   bool Wait(Duration timeout);
@@ -52,23 +57,29 @@ class Bus {
   const std::string& url() const { return url_; }
 
  private:
-  struct Subscription {
-    Bus* bus;
-    Handler handler;
-  };
   bool Readable(Duration timeout) const;
-  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* subscription);
+  void Handle();
+  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
 
   std::string url_;
   _lcm_t* lcm_ = nullptr;
   int fd_ = -1;
-  std::vector<int> sockets_;                     // LCM's UDP sockets; it owns them
-  std::set<std::string, std::less<>> channels_;  // subscribed
+  std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   // Of memq, which nobody but this object publishes on: messages that wait to be handled.
   bool in_memory_;
   std::int64_t waiting_ = 0;
-  std::deque<Subscription> subscriptions_;  // stable addresses: LCM keeps pointers to them
-  std::exception_ptr parked_;               // may not pass through LCM's C code
+  TimePoint now_{};            // when Wait() handled a message last
+  std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
+  std::exception_ptr parked_;  // may not pass through LCM's C code
+};
+
+/// LCM knows of one subscription however many handlers there are: a message is dispatched once and
+/// decoded once.
+struct Bus::Topic {
+  Bus* bus;
+  std::string channel;
+  Arrival arrival;
+  std::vector<Handler> handlers;
 };
 
 /// A multicast URL of this machine only, on a port drawn at random: runs do not meet by chance.

@@ -39,7 +39,9 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
       began_(Clock::now()) {
-  bus_.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) { OnStatus(bytes); });
+  bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+    if (const auto* status = arrival.As<status_t>()) OnStatus(*status);
+  });
   bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); });
 }
 
@@ -108,9 +110,8 @@ void Conductor::Fail(std::string error) {
   error_ = std::move(error);
 }
 
-void Conductor::OnStatus(Bytes bytes) {
-  status_t status{};
-  if (!Decode(bytes, status) || status.header.run_id != options_.run_id) return;
+void Conductor::OnStatus(const status_t& status) {
+  if (status.header.run_id != options_.run_id) return;
   const auto role = RoleNamed(status.role);
   if (!role || (phase_ != Phase::kJoining && phase_ != Phase::kRunning)) return;
   const TimePoint now = Clock::now();
@@ -129,7 +130,7 @@ void Conductor::OnStatus(Bytes bytes) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
-  member.status = std::move(status);
+  member.status = status;
   member.heard = now;
   if (member.status->state == status_t::FAILED) {
     return Fail(fmt::format("{}: {}", member.status->role, member.status->error));

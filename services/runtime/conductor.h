@@ -58,7 +58,7 @@ class Conductor {
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
  private:
-  void OnStatus(Bytes bytes);
+  void OnStatus(const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady() const;
   void Announce(std::int8_t phase, std::size_t part);

@@ -11,11 +11,11 @@ constexpr Duration kMaxPatience = milliseconds(500);
 }  // namespace
 
 LeadGate::LeadGate(Bus& bus) {
-  bus.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) {
-    status_t status{};
-    if (!Decode(bytes, status) || status.header.run_id != run_id_) return;
-    if (status.role == NameOf(Role::kRecorder)) {
-      recorded_ = std::max(recorded_, status.header.step);
+  bus.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+    const auto* status = arrival.As<status_t>();
+    if (status == nullptr || status->header.run_id != run_id_) return;
+    if (status->role == NameOf(Role::kRecorder)) {
+      recorded_ = std::max(recorded_, status->header.step);
     }
   });
 }

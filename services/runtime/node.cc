@@ -61,11 +61,13 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
     const ChannelInfo& channel = kChannels[i];
     if (channel.pace != Pace::kStep) continue;
     if (channel.to.Has(role) || role == Role::kRecorder) inputs_.push_back({.channel = i});
-    if (channel.from == role) outputs_.push_back({.channel = i});
+    if (channel.from == role) {
+      outputs_.push_back({.channel = i, .topic = bus_.TopicOf(channel.name), .ring = {}});
+    }
   }
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     bus_.Subscribe(kChannels[inputs_[i].channel].name,
-                   [this, i](Bytes bytes) { OnInput(i, bytes); });
+                   [this, i](Arrival& arrival) { OnInput(i, arrival); });
   }
   bus_.Subscribe(ChannelOf<run_t>().name, [this](Bytes bytes) { OnRun(bytes); });
   bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); });
@@ -164,9 +166,10 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
                                          bytes.size(), kMaxStepMessageBytes));
   }
   for (Output& output : outputs_) {
-    if (output.channel == channel) output.ring.Store(step, bytes);
+    if (output.channel != channel) continue;
+    output.ring.Store(step, bytes);
+    bus_.Publish(output.topic, bytes);
   }
-  bus_.Publish(name, bytes);
 }
 
 void Node::OnRun(Bytes bytes) {
@@ -205,8 +208,9 @@ void Node::Join() {
   SetState(status_t::READY);
 }
 
-void Node::OnInput(std::size_t index, Bytes bytes) {
+void Node::OnInput(std::size_t index, Arrival& arrival) {
   if (!Running()) return;
+  const Bytes bytes = arrival.bytes();
   if (bytes.size() < kHeaderEnd) {
     ++status_.malformed;
     return;
@@ -236,15 +240,14 @@ void Node::OnInput(std::size_t index, Bytes bytes) {
     case StepRing::Verdict::kNew:
       break;
   }
-  if (const std::string wrong = Accept(index, step, bytes); !wrong.empty()) {
+  if (!Accept(index, step, arrival)) {
     ++status_.malformed;
     return;
   }
-  const TimePoint now = Clock::now();
   input.ring.Store(step, bytes);
-  input.heard = now;
+  input.heard = arrival.time();
   Expect(step + lead_);
-  Advance(now);
+  Advance(arrival.time());
 }
 
 void Node::OnResend(Bytes bytes) {
@@ -264,7 +267,7 @@ void Node::OnResend(Bytes bytes) {
   for (Output& output : outputs_) {
     if (kChannels[output.channel].name != resend.channel || step < 0) continue;
     if (output.ring.Has(step)) {
-      bus_.Publish(resend.channel, output.ring.Get(step));
+      bus_.Publish(output.topic, output.ring.Get(step));
       ++status_.repairs_served;
     } else if (step >= next_) {
       Expect(step);

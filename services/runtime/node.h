@@ -55,13 +55,14 @@ class Node {
   /// One channel that the node writes.
   struct Output {
     std::size_t channel;
+    Bus::Topic& topic;
     StepRing ring;
   };
 
   /// The scenario is here: make the algorithm. @throws std::exception with what is wrong
   virtual void Configure(const Scenario& scenario) = 0;
-  /// Decodes an input that is new into the place for its step; "" or what is wrong with it.
-  virtual std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) = 0;
+  /// Takes an input that is new into the place for its step; false if it is malformed.
+  virtual bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Computes a step; all inputs are there. Calls Emit() for every output.
   virtual void Compute(std::int64_t step) = 0;
   /// Whether the step may be computed now although its inputs are there.
@@ -110,7 +111,7 @@ class Node {
 
  private:
   void OnRun(Bytes bytes);
-  void OnInput(std::size_t index, Bytes bytes);
+  void OnInput(std::size_t index, Arrival& arrival);
   void OnResend(Bytes bytes);
   void Join();
   bool InputsReady(std::int64_t step) const;

@@ -43,19 +43,16 @@ class StepNode final : public Node {
     if constexpr (Traits::kStarts) gate_->Configure(scenario, run_id());
   }
 
-  std::string Accept(std::size_t input, std::int64_t step, Bytes bytes) override {
-    std::string wrong = "no such input";
+  bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) override {
+    bool accepted = false;
     WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
       using M = std::tuple_element_t<I, typename Traits::Inputs>;
       if (inputs()[input].channel != IndexOf<M>()) return;
-      M& place = std::get<I>(rings_)[RingSlot(step)];
-      if (!Decode(bytes, place)) {
-        wrong = "wrong type or size";
-      } else {
-        wrong = FirstNonFiniteField(place);
-      }
+      const M* message = arrival.As<M>();
+      accepted = message != nullptr;
+      if (accepted) std::get<I>(rings_)[RingSlot(step)] = *message;
     });
-    return wrong;
+    return accepted;
   }
 
   void Compute(std::int64_t step) override {
