@@ -111,7 +111,7 @@ void Conductor::Fail(std::string error) {
 }
 
 void Conductor::OnStatus(const status_t& status) {
-  if (status.header.run_id != options_.run_id) return;
+  if (status.header.run_id != options_.run_id) return strangers_.Hear(status);
   const auto role = RoleNamed(status.role);
   if (!role || (phase_ != Phase::kJoining && phase_ != Phase::kRunning)) return;
   const TimePoint now = Clock::now();

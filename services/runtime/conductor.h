@@ -13,6 +13,7 @@
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
+#include "services/runtime/strangers.h"
 
 namespace fogline {
 
@@ -45,6 +46,8 @@ class Conductor {
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles have refused.
   Refusals Refused() const;
+  /// Who is of another run and speaks on this network.
+  const Strangers& strangers() const { return strangers_; }
   /// Tells every role to leave; may be repeated.
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
@@ -70,6 +73,7 @@ class Conductor {
   std::vector<std::string> parts_;
   std::string hash_;
   std::array<Member, kRoles.size()> members_;
+  Strangers strangers_;
   Phase phase_ = Phase::kJoining;
   std::string error_;
   TimePoint began_;

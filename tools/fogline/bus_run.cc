@@ -184,6 +184,9 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   const std::string kept =
       options.log.empty() ? "" : fmt::format("the log so far: {}", options.log.string());
+  // Said whatever the end: a role that is missing may be one that is bound to another run.
+  const std::string strangers = conductor.strangers().Text();
+  if (options.announce && !strangers.empty()) fmt::print(stderr, "{}\n", strangers);
   if (conductor.phase() == Conductor::Phase::kFailed) {
     throw std::runtime_error(conductor.error() + (kept.empty() ? "" : "\n  " + kept));
   }
@@ -195,7 +198,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
           .repairs = conductor.Total(&status_t::repairs_asked),
-          .refused = conductor.Refused()};
+          .refused = conductor.Refused(),
+          .strangers = conductor.strangers().known()};
 }
 
 }  // namespace fogline

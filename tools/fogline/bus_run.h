@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "services/runtime/refusals.h"
+#include "services/runtime/strangers.h"
 #include "tools/fogline/experiment.h"
 
 namespace fogline {
@@ -12,6 +14,7 @@ struct BusRun {
   double wall_s = 0;
   std::int64_t repairs = 0;
   Refusals refused{};
+  std::vector<Stranger> strangers;
 };
 
 /// A run id that no other run has.

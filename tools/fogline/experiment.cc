@@ -117,6 +117,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   result.wall_s = run.wall_s;
   result.repairs = run.repairs;
   result.refused = run.refused;
+  result.strangers = run.strangers;
   result.log = options.log;
   return result;
 }

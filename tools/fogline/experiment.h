@@ -12,6 +12,7 @@
 #include "services/measures/sample.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
+#include "services/runtime/strangers.h"
 
 namespace fogline {
 
@@ -35,7 +36,8 @@ struct ExperimentResult {
   double wall_s = 0;
   std::int64_t repairs = 0;  // requests to publish something again
   Refusals refused{};
-  std::filesystem::path log;  // empty if there is none
+  std::vector<Stranger> strangers;  // of other runs, on the same network
+  std::filesystem::path log;        // empty if there is none
   RunMeasures measures;
   std::vector<Sample> samples;
 };

@@ -69,6 +69,13 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   for (std::size_t i = 0; i < kRefusals.size(); ++i) {
     json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
   }
+  json["strangers"] = nlohmann::ordered_json::array();
+  for (const Stranger& stranger : result.strangers) {
+    json["strangers"].push_back({{"role", stranger.role},
+                                 {"pid", stranger.pid},
+                                 {"host", stranger.host},
+                                 {"run_id", stranger.run_id}});
+  }
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
 }
