@@ -14,6 +14,7 @@
 
 #include "scenario/loader.h"
 #include "services/runtime/channel_filter.h"
+#include "services/runtime/multicast_route.h"
 
 namespace fogline {
 namespace {
@@ -44,6 +45,9 @@ std::string Escaped(std::string_view channel) {
 }  // namespace
 
 Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+  if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
+    throw InputError(fmt::format("error: {}", why));
+  }
   // LCM keeps its sockets to itself. They are those that opening it adds; one opens at a time.
   static std::mutex opening;
   const std::lock_guard lock(opening);
