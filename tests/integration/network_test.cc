@@ -1,0 +1,193 @@
+// The lockstep on networks of the kernel's own: machines with addresses of their own, and loss.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <deque>
+#include <map>
+
+#include "services/graph.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+// One group and port for everything: each test has networks of its own.
+constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+
+TEST_F(NetworkTest, LosingThreeOfTenDatagramsInTheKernelChangesNoResult) {
+  const Machine machine("lossy");
+  machine.RouteMulticastToItself();
+  machine.LoseUdp(30);
+  const auto run = Result(RunCommand(machine.On(Run({}))));
+  EXPECT_EQ(run["steps"], 500);
+  EXPECT_EQ(run["digest"], Undisturbed());
+  EXPECT_GT(machine.LostUdp(), 1000);
+  EXPECT_GT(run["repairs"], 500);
+}
+
+/// Three machines, and every role but the recorder started by hand on one of them.
+class ThreeMachinesTest : public NetworkTest {
+ protected:
+  nlohmann::json RunOn(const Lab& lab, std::vector<std::string> more) {
+    std::deque<Background> roles;
+    const std::map<Role, std::size_t> places{
+        {Role::kWorld, 1}, {Role::kRadar, 2},  {Role::kLidar, 1},      {Role::kFusion, 2},
+        {Role::kAcc, 0},   {Role::kDriver, 1}, {Role::kArbitrator, 2}, {Role::kFollower, 0}};
+    for (const auto& [role, place] : places) {
+      const std::string name(NameOf(role));
+      roles.emplace_back(lab[place].On({Program("fogline-" + name), "--lcm-url", kUrl}));
+      more.insert(more.end(), {"--external", name});
+    }
+    more.insert(more.end(), {"--lcm-url", kUrl});
+    const auto result = Result(RunCommand(lab[0].On(Run(more))));
+    for (Background& role : roles) EXPECT_EQ(role.Wait(), 0) << role.Err();
+    return result;
+  }
+};
+
+TEST_F(ThreeMachinesTest, RunTheSameWhenEveryRoleIsStartedByHand) {
+  const Lab lab(3);
+  const auto run = RunOn(lab, {});
+  EXPECT_EQ(run["steps"], 500);
+  EXPECT_EQ(run["digest"], Undisturbed());
+}
+
+TEST_F(ThreeMachinesTest, RunTheSameWhenEachLosesThreeOfTenDatagrams) {
+  const Lab lab(3);
+  for (const Machine& machine : lab.machines()) machine.LoseUdp(30);
+  const auto run = RunOn(lab, {"--set", "/steps=80"});
+  EXPECT_EQ(run["steps"], 80);
+  EXPECT_EQ(run["digest"], Undisturbed({"--set", "/steps=80"}));
+  for (const Machine& machine : lab.machines()) EXPECT_GT(machine.LostUdp(), 150);
+  EXPECT_GT(run["repairs"], 80);
+}
+
+TEST_F(ThreeMachinesTest, RunTheSameWhenTheSwitchSendsHalfOfTheDatagramsTwice) {
+  const Lab lab(3);
+  try {
+    lab.RepeatUdp(50);
+  } catch (const std::runtime_error& error) {
+    GTEST_SKIP() << "the kernel repeats no datagrams: " << error.what();
+  }
+  const auto run = RunOn(lab, {});
+  EXPECT_EQ(run["digest"], Undisturbed());
+  EXPECT_GT(lab.RepeatedUdp(), 1000);
+}
+
+TEST_F(ThreeMachinesTest, RunTheSameWhenTheLinksDelayRepeatAndReorder) {
+  const Lab lab(3);
+  for (const Machine& machine : lab.machines()) {
+    const Outcome netem =
+        RunCommand(machine.On({"tc", "qdisc", "add", "dev", "eth0", "root", "netem", "delay", "5ms",
+                               "3ms", "reorder", "20%", "duplicate", "10%"}));
+    if (netem.code != 0) GTEST_SKIP() << "the kernel has no netem: " << netem.err;
+  }
+  const auto run = RunOn(lab, {"--set", "/steps=80"});
+  EXPECT_EQ(run["digest"], Undisturbed({"--set", "/steps=80"}));
+}
+
+/// Where two runs are: on machines of one network, or on one machine.
+class TwoRunsTest : public NetworkTest, public testing::WithParamInterface<std::size_t> {};
+
+TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
+  const Lab lab(2);
+  // GIVEN a run that takes 1.5 s
+  Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "10"})));
+  ASSERT_TRUE(paced.WaitForErr("processes: "));
+  // WHEN there is another meanwhile, which differs from its first step on
+  const auto other =
+      Result(RunCommand(lab[GetParam()].On(Run({"--lcm-url", kUrl, "--seed", "7"}))));
+  // THEN both have the results that they have alone
+  EXPECT_EQ(other["digest"], Undisturbed({"--seed", "7"}));
+  const auto first = ResultOf(paced);
+  EXPECT_EQ(first["digest"], Undisturbed({"--set", "/steps=150"}));
+  // AND each has refused what is not its own, and knows whose it was
+  EXPECT_GT(first["refused"]["foreign"], 500);
+  EXPECT_GT(other["refused"]["foreign"], 0);
+  EXPECT_EQ(first["strangers"].size(), kRoles.size());
+  for (const auto& stranger : first["strangers"]) {
+    EXPECT_EQ(stranger["host"], lab[GetParam()].name());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Together, TwoRunsTest, testing::Values(0U, 1U), [](const auto& place) {
+  return place.param == 0 ? "OnOneMachine" : "OnTwoMachines";
+});
+
+TEST_F(NetworkTest, AProcessThatIsBoundToAnotherRunIsIgnoredAndNamed) {
+  const Lab lab(2);
+  Background stale(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", "123"}));
+  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "40"})));
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  ASSERT_EQ(result["strangers"].size(), 1U);
+  EXPECT_EQ(result["strangers"][0], nlohmann::json::parse(R"({"role": "driver", "host": "lab2",
+      "run_id": 123, "pid": )" + std::to_string(stale.pid()) +
+                                                          "}"));
+  EXPECT_THAT(run.Err(), HasSubstr("ignored: driver (pid " + std::to_string(stale.pid()) +
+                                   " on lab2) of run 123\n"));
+}
+
+TEST_F(NetworkTest, ARoleWhoseRunnerHasDiedTakesNoPartInTheNextRun) {
+  const Lab lab(2);
+  // GIVEN a run with its driver on another machine, whose runner is killed
+  Background orphan(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  Background first(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
+  ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
+  const std::string id = first.Err().substr(4, first.Err().find(" on ") - 4);
+  first.Signal(SIGKILL);
+  first.Wait();
+  // WHEN there is another run, with a driver of its own
+  Background second(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "40"})));
+  // THEN the old driver changes nothing
+  EXPECT_EQ(ResultOf(second)["digest"], Undisturbed());
+  EXPECT_THAT(second.Err(), HasSubstr("ignored: driver (pid " + std::to_string(orphan.pid()) +
+                                      " on lab2) of run " + id + "\n"));
+}
+
+TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
+  const Lab lab(3);
+  Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  const Outcome run =
+      RunCommand(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("two processes are the driver: "));
+  EXPECT_THAT(run.err, HasSubstr("pid " + std::to_string(one.pid()) + " on lab2"));
+  EXPECT_THAT(run.err, HasSubstr("pid " + std::to_string(two.pid()) + " on lab3"));
+}
+
+TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneItNeeds) {
+  const Machine machine("island");
+  for (const auto& command :
+       {Run({}), Run({"--lcm-url", kUrl}), {Program("fogline-driver"), "--lcm-url", kUrl}}) {
+    const Outcome outcome = RunCommand(machine.On(command));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("error: this machine has no route for multicast to 239.255."
+                                       "76.67; as root: \"ip route add 239.0.0.0/8 dev lo\""));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  }
+  // AND that is all it needs
+  machine.Do("ip route add 239.0.0.0/8 dev lo");
+  EXPECT_EQ(Result(RunCommand(machine.On(Run({}))))["digest"], Undisturbed());
+}
+
+TEST_F(NetworkTest, OfSeveralInterfacesTheRouteChoosesOne) {
+  // GIVEN machines whose default route leads elsewhere than to each other
+  const Lab lab(2);
+  for (const Machine& machine : lab.machines()) {
+    machine.Do(
+        "ip link add wan0 type veth peer name wan1; ip addr add 192.0.2.1/24 dev wan0;"
+        "ip link set wan0 up; ip link set wan1 up; ip route add default via 192.0.2.2");
+  }
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  const auto run = Result(RunCommand(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver"}))));
+  EXPECT_EQ(run["digest"], Undisturbed());
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,128 @@
+#include "tests/support/network.h"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace fogline::test {
+namespace {
+
+[[noreturn]] void ThrowErrno(const std::string& what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+int Open(const char* path) {
+  const int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) ThrowErrno(path);
+  return fd;
+}
+
+std::string PathOf(int fd) {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd);
+}
+
+/// The number in nft's "packets 12 bytes 345".
+std::int64_t Counted(const std::string& counter) {
+  const std::size_t at = counter.find("packets ");
+  return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));
+}
+
+}  // namespace
+
+std::string WhyNoMachines() {
+  try {
+    const Lab lab(1);
+    lab[0].LoseUdp(0);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Machine::Machine(const std::string& name) : name_(name) {
+  // A thread may leave the namespaces of its process for new ones, which stay while a file of them
+  // is open.
+  std::exception_ptr failed;
+  std::thread([this, &failed] {
+    try {
+      if (unshare(CLONE_NEWNET | CLONE_NEWUTS) != 0) ThrowErrno("unshare");
+      if (sethostname(name_.data(), name_.size()) != 0) ThrowErrno("sethostname");
+      network_ = Open("/proc/thread-self/ns/net");
+      host_name_ = Open("/proc/thread-self/ns/uts");
+    } catch (...) {
+      failed = std::current_exception();
+    }
+  }).join();
+  if (failed) std::rethrow_exception(failed);
+  Do("ip link set lo up");
+}
+
+Machine::~Machine() {
+  if (network_ >= 0) close(network_);
+  if (host_name_ >= 0) close(host_name_);
+}
+
+Machine::Machine(Machine&& other) noexcept
+    : name_(std::move(other.name_)),
+      network_(std::exchange(other.network_, -1)),
+      host_name_(std::exchange(other.host_name_, -1)) {}
+
+std::string Machine::network() const { return PathOf(network_); }
+
+std::vector<std::string> Machine::On(const std::vector<std::string>& command) const {
+  std::vector<std::string> there{"nsenter", "--net=" + network(), "--uts=" + PathOf(host_name_),
+                                 "--"};
+  there.insert(there.end(), command.begin(), command.end());
+  return there;
+}
+
+std::string Machine::Do(const std::string& script) const {
+  const Outcome outcome = RunCommand(On({"sh", "-ec", script}));
+  if (outcome.code != 0) throw std::runtime_error(script + ": " + outcome.err);
+  return outcome.out;
+}
+
+void Machine::LoseUdp(int per_cent) const {
+  Do("nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
+     " meta l4proto udp numgen random mod 100 < " +
+     std::to_string(per_cent) + " counter name lost drop; }; }'");
+}
+
+std::int64_t Machine::LostUdp() const { return Counted(Do("nft list counter inet loss lost")); }
+
+Lab::Lab(int machines) : switch_("switch") {
+  switch_.Do(
+      "ip link add bridge type bridge forward_delay 0 mcast_snooping 0; ip link set bridge up");
+  for (int i = 1; i <= machines; ++i) {
+    const std::string number = std::to_string(i);
+    const Machine& machine = machines_.emplace_back("lab" + number);
+    switch_.Do("ip link add port" + number + " type veth peer name eth0 netns " +
+               machine.network() + "; ip link set port" + number + " master bridge up");
+    machine.Do("ip addr add 10.76.67." + number +
+               "/24 dev eth0; ip link set eth0 up; ip route add 239.0.0.0/8 dev eth0");
+  }
+}
+
+void Lab::RepeatUdp(int per_cent) const {
+  std::string table = "nft 'table netdev repeat { counter repeated {};";
+  for (std::size_t i = 1; i <= machines_.size(); ++i) {
+    const std::string from = std::to_string(i);
+    const std::string to = std::to_string(i % machines_.size() + 1);
+    table += " chain port" + from + " { type filter hook ingress device port" + from +
+             " priority 0; ip protocol udp numgen random mod 100 < " + std::to_string(per_cent) +
+             " counter name repeated dup to port" + to + "; };";
+  }
+  switch_.Do(table + " }'");
+}
+
+std::int64_t Lab::RepeatedUdp() const {
+  return Counted(switch_.Do("nft list counter netdev repeat repeated"));
+}
+
+}  // namespace fogline::test

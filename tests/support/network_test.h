@@ -1,0 +1,57 @@
+// What tests on machines of their own have in common.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/network.h"
+
+namespace fogline::test {
+
+/// Skipped, with the reason, where machines cannot be made.
+class NetworkTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string why = WhyNoMachines();
+    if (!why.empty()) GTEST_SKIP() << "needs root for network namespaces: " << why;
+  }
+
+  /// The command line of a run of the paper's scenario with a log of its own.
+  std::vector<std::string> Run(const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline"),
+                                     "run",
+                                     "scenario/paper.json",
+                                     "--json",
+                                     "--stall-timeout",
+                                     "30",
+                                     "--log",
+                                     folder_.File(std::to_string(++logs_) + ".lcm")};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+
+  /// What a run printed.
+  static nlohmann::json Result(const Outcome& outcome) {
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+  }
+  static nlohmann::json ResultOf(Background& run) {
+    const int code = run.Wait();
+    return Result({code, run.Out(), run.Err()});
+  }
+
+  /// The digest of such a run in one process, without any message.
+  std::string Undisturbed(std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--transport", "direct"});
+    return Result(RunCommand(Run(more)))["digest"];
+  }
+
+ private:
+  ScratchFolder folder_;
+  int logs_ = 0;
+};
+
+}  // namespace fogline::test
