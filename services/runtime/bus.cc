@@ -15,6 +15,7 @@
 #include "scenario/loader.h"
 #include "services/runtime/channel_filter.h"
 #include "services/runtime/multicast_route.h"
+#include "services/runtime/tcpq_client.h"
 
 namespace fogline {
 namespace {
@@ -45,6 +46,12 @@ std::string Escaped(std::string_view channel) {
 }  // namespace
 
 Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+  if (url_.starts_with("tcpq://")) {
+    tcpq_ = std::make_unique<tcpq::Client>(url_);
+    url_ = tcpq_->url();
+    fd_ = tcpq_->fd();
+    return;
+  }
   if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
     throw InputError(fmt::format("error: {}", why));
   }
@@ -64,7 +71,9 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
 }
 
-Bus::~Bus() { lcm_destroy(lcm_); }
+Bus::~Bus() {
+  if (lcm_ != nullptr) lcm_destroy(lcm_);
+}
 
 Bus::Topic& Bus::TopicOf(std::string_view channel) {
   const auto found = std::ranges::find(topics_, channel, &Topic::channel);
@@ -76,6 +85,10 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
   Topic& topic = TopicOf(channel);
   topic.handlers.push_back(std::move(handler));
   if (topic.handlers.size() > 1) return;
+  if (tcpq_) {
+    return tcpq_->Subscribe(channel, Escaped(channel),
+                            [&topic](Bytes bytes) { Deliver(bytes, topic); });
+  }
   lcm_subscription_t* handle =
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
@@ -88,6 +101,7 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
 }
 
 void Bus::Publish(const Topic& topic, Bytes bytes) {
+  if (tcpq_) return tcpq_->Publish(topic.channel, bytes);
   if (lcm_publish(lcm_, topic.channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
       0) {
     throw std::runtime_error(
@@ -105,11 +119,16 @@ bool Bus::Wait(Duration timeout) {
 
 void Bus::Handle() {
   if (waiting_ > 0) --waiting_;
-  if (lcm_handle(lcm_) != 0) throw std::runtime_error(fmt::format("LCM lost {}", url_));
+  if (tcpq_) {
+    tcpq_->Handle();
+  } else if (lcm_handle(lcm_) != 0) {
+    throw std::runtime_error(fmt::format("LCM lost {}", url_));
+  }
   if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
 }
 
-bool Bus::Readable(Duration timeout) const {
+bool Bus::Readable(Duration timeout) {
+  if (tcpq_) return tcpq_->Readable(timeout);
   pollfd waited{.fd = fd_, .events = POLLIN, .revents = 0};
   const auto left = std::max(Duration::zero(), timeout);
   const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
@@ -130,13 +149,16 @@ void Bus::Drain() {
 }
 
 void Bus::OnMessage(const _lcm_recv_buf_t* buffer, const char* /*channel*/, void* topic) {
-  auto& self = *static_cast<Topic*>(topic);
+  Deliver({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
+          *static_cast<Topic*>(topic));
+}
+
+void Bus::Deliver(Bytes bytes, Topic& topic) {
   try {
-    self.arrival.Renew({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
-                       self.bus->now_);
-    for (const Handler& handler : self.handlers) handler(self.arrival);
+    topic.arrival.Renew(bytes, topic.bus->now_);
+    for (const Handler& handler : topic.handlers) handler(topic.arrival);
   } catch (...) {
-    self.bus->parked_ = std::current_exception();
+    topic.bus->parked_ = std::current_exception();
   }
 }
 

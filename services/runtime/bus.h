@@ -6,6 +6,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,14 +19,19 @@ struct _lcm_recv_buf_t;
 
 namespace fogline {
 
+namespace tcpq {
+class Client;
+}
+
 /// One connection to an LCM network, for one thread. memq:// connects only its own subscribers.
 class Bus {
  public:
   using Handler = std::function<void(Arrival&)>;
 
   /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and asks for a receive buffer
-  ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise.
-  /// @throws InputError when LCM cannot open it
+  ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise. tcpq's host
+  ///     may be a name; url() has it in numbers.
+  /// @throws InputError when LCM cannot open it, std::runtime_error if there is no tcpq relay
   explicit Bus(const std::string& url);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -52,17 +58,19 @@ class Bus {
   void Drain();
   static constexpr int kDrained = 1000;
 
-  /// Readable when Wait(0) would handle a message.
+  /// Readable when Wait(0) would handle a message; with tcpq, if all before are handled.
   int fd() const { return fd_; }
   const std::string& url() const { return url_; }
 
  private:
-  bool Readable(Duration timeout) const;
+  bool Readable(Duration timeout);
   void Handle();
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
+  static void Deliver(Bytes bytes, Topic& topic);
 
   std::string url_;
-  _lcm_t* lcm_ = nullptr;
+  _lcm_t* lcm_ = nullptr;               // one of both
+  std::unique_ptr<tcpq::Client> tcpq_;  // instead of LCM's own
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   // Of memq, which nobody but this object publishes on: messages that wait to be handled.

@@ -1,0 +1,83 @@
+// A client of a tcpq relay that takes the place of LCM's own, which aborts when the relay ends,
+// waits without limit for a server that says nothing, takes five system calls and packets for a
+// message, and loses its connection to a signal. It speaks the same protocol with the same relays.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "services/runtime/clock.h"
+#include "services/runtime/tcpq_frame.h"
+#include "services/runtime/tcpq_url.h"
+#include "services/runtime/wire.h"
+
+namespace fogline::tcpq {
+
+/// The relay has ended, or does not work any more.
+class ConnectionLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One connection, for one thread.
+///
+/// A lost one is told once, by ConnectionLost out of Publish() or Readable(). From then on
+/// Publish() drops and Readable() only waits, so that a run can be ended in order.
+class Client {
+ public:
+  using Handler = std::function<void(Bytes)>;
+
+  /// Connects to the relay of a tcpq URL; messages above `limits` lose the connection.
+  /// @throws InputError for a bad URL or an unknown host, std::runtime_error if there is no relay
+  explicit Client(const std::string& url, const Limits& limits = {});
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Calls `handler` from Handle() for every message on exactly this channel that is published
+  /// after the relay knows of it. The relay gives a publisher its own messages too.
+  /// @param pattern the regular expression for this channel
+  void Subscribe(std::string_view channel, std::string_view pattern, Handler handler);
+
+  /// Sends a message. While the relay takes nothing, what it sends is kept, so that both do not
+  /// wait for each other.
+  void Publish(std::string_view channel, Bytes bytes);
+
+  /// Waits up to `timeout` for a message; less if only a part of one comes. @return whether one is
+  /// there
+  bool Readable(Duration timeout);
+
+  /// Handles the message that is there, if any.
+  void Handle();
+
+  int fd() const { return fd_; }
+  /// In numbers, as LCM's programs need it.
+  std::string url() const { return endpoint_.Url(); }
+
+ private:
+  void Connect();
+  void Greet();
+  bool Ready(short events, Duration timeout) const;
+  void SendFrame();
+  void Receive();
+  bool Parse();
+  [[noreturn]] void Lose(std::string_view why);
+
+  Endpoint endpoint_;
+  int fd_ = -1;
+  Limits limits_;
+  FrameParser parser_;
+  std::optional<Frame> next_;           // to be handled
+  std::vector<std::uint8_t> chunk_;     // of the kernel
+  std::vector<std::uint8_t> received_;  // not yet parsed: a handler still looks at a frame
+  std::vector<std::uint8_t> frame_;     // being sent
+  std::vector<std::pair<std::string, Handler>> handlers_;
+};
+
+}  // namespace fogline::tcpq

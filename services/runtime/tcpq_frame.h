@@ -1,0 +1,81 @@
+// The frames of LCM's tcpq protocol, both ways: a byte stream in, whole frames out, no socket.
+//
+// All words are 32 bits, big endian. Each side begins with two words: its magic and the version.
+// Then frames follow:
+//   PUBLISH      1, length, channel, length, payload
+//   SUBSCRIBE    2, length, regular expression
+//   UNSUBSCRIBE  3, length, regular expression
+// A relay sends PUBLISH only, the same bytes that it got. Source: lcm_tcpq.c and TCPService.java of
+// LCM 1.3.1.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/runtime/wire.h"
+
+namespace fogline::tcpq {
+
+inline constexpr std::uint32_t kRelayMagic = 0x287617fa;
+inline constexpr std::uint32_t kClientMagic = 0x287617fb;
+inline constexpr std::uint32_t kVersion = 0x0100;
+
+enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscribe = 3 };
+
+/// What a frame may hold at most, in bytes. What is longer is refused before it is read.
+struct Limits {
+  std::size_t channel = 63;    // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
+  std::size_t pattern = 1024;  // of a subscription
+  std::size_t payload = 4 << 20;
+};
+
+/// A frame; its views are valid until the parser's next Append().
+struct Frame {
+  FrameType type;
+  std::string_view name;  // channel, or regular expression
+  Bytes payload;          // of PUBLISH
+  Bytes wire;             // the whole frame as it came
+};
+
+/// Cuts a byte stream into frames. Holds no more than one frame and what came in with its end, if
+/// the frames are taken after every Append().
+class FrameParser {
+ public:
+  /// @param magic what the other side must begin with
+  FrameParser(std::uint32_t magic, const Limits& limits) : magic_(magic), limits_(limits) {}
+
+  /// Adds what was received, in pieces of any size.
+  void Append(Bytes bytes);
+
+  /// Whether the other side has said its two first words.
+  bool Greeted();
+
+  /// The next whole frame. Nothing: more bytes are needed, or error() says what is wrong.
+  std::optional<Frame> Next();
+
+  /// Why the stream cannot be tcpq, "" as long as it can. There is no way back.
+  const std::string& error() const { return error_; }
+
+ private:
+  Bytes Rest() const { return Bytes(buffer_).subspan(begin_); }
+  std::nullopt_t Refuse(std::string error);
+
+  std::uint32_t magic_;
+  Limits limits_;
+  std::vector<std::uint8_t> buffer_;
+  std::size_t begin_ = 0;  // of what is not yet taken
+  bool greeted_ = false;
+  std::string error_;
+};
+
+/// Adds the first two words of a side.
+void AppendHello(std::uint32_t magic, std::vector<std::uint8_t>& out);
+/// Adds a frame; `payload` counts for PUBLISH only.
+void AppendFrame(FrameType type, std::string_view name, Bytes payload,
+                 std::vector<std::uint8_t>& out);
+
+}  // namespace fogline::tcpq

@@ -1,0 +1,30 @@
+// Where a tcpq relay is. LCM resolves no host names: its inet_aton() test cannot fail, and a name
+// silently becomes 0.0.0.0, this machine. Names are resolved here, before LCM's programs see them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace fogline::tcpq {
+
+inline constexpr std::uint16_t kDefaultPort = 7700;  // LCM's
+
+/// An IPv4 address in numbers and a port.
+struct Endpoint {
+  std::string address;
+  std::uint16_t port;
+
+  std::string ToString() const { return address + ":" + std::to_string(port); }
+  /// As LCM's programs take it.
+  std::string Url() const { return "tcpq://" + ToString(); }
+};
+
+/// "HOST", "HOST:PORT" or "" (127.0.0.1), where HOST is a name or an IPv4 address.
+/// @throws InputError that begins with `what` if there is no such host or port
+Endpoint Resolve(std::string_view host_and_port, std::string_view what);
+
+/// The same after "tcpq://".
+Endpoint ResolveUrl(std::string_view url);
+
+}  // namespace fogline::tcpq
