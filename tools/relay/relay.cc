@@ -1,0 +1,85 @@
+#include "tools/relay/relay.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "tools/relay/relay_client.h"
+
+namespace fogline {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+// Without room for another connection (files are short), the next try is after this.
+constexpr std::chrono::milliseconds kPause(100);
+
+}  // namespace
+
+Relay::Relay(asio::io_context& context, const tcp::endpoint& endpoint, const RelayOptions& options)
+    : context_(context), options_(options), acceptor_(context, endpoint), pause_(context) {
+  Accept();
+}
+
+Relay::~Relay() = default;
+
+void Relay::Accept() {
+  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    if (!acceptor_.is_open()) return;
+    if (error) {
+      lines_.Print(fmt::format("cannot take a connection: {}", error.message()));
+      pause_.expires_after(kPause);
+      pause_.async_wait([this](error_code stopped) {
+        if (!stopped) Accept();
+      });
+      return;
+    }
+    const auto client = std::make_shared<RelayClient>(*this, next_id_++, std::move(socket));
+    if (clients_.size() >= options_.clients) {
+      client->Drop(fmt::format("{} clients are here already", clients_.size()));
+    } else {
+      clients_.emplace(next_id_ - 1, client);
+      client->Start();
+    }
+    Accept();
+  });
+}
+
+void Relay::Forward(const tcpq::Frame& message) {
+  ++messages_in_;
+  bytes_in_ += message.payload.size();
+  for (const auto& [id, client] : clients_) client->Offer(message);
+}
+
+void Relay::Sent(std::size_t bytes) {
+  ++messages_out_;
+  bytes_out_ += bytes;
+}
+
+void Relay::Leave(std::uint64_t id, const std::string& address, const std::string& why) {
+  if (!why.empty()) {
+    ++disconnected_;
+    lines_.Print(fmt::format("{} disconnected: {}", address, why));
+  }
+  // Not now: it may be one of those that Forward() goes through.
+  asio::post(context_, [this, id] { clients_.erase(id); });
+}
+
+void Relay::Stop() {
+  error_code ignored;
+  acceptor_.close(ignored);
+  pause_.cancel();
+  for (const auto& [id, client] : clients_) client->Drop("");
+}
+
+std::string Relay::Summary() const {
+  constexpr double kMegabyte = 1e6;
+  return fmt::format(
+      "{} clients, {} disconnected; {} messages in ({:.1f} MB), {} out ({:.1f} MB); {:.1f} s",
+      served_, disconnected_, messages_in_, static_cast<double>(bytes_in_) / kMegabyte,
+      messages_out_, static_cast<double>(bytes_out_) / kMegabyte,
+      std::chrono::duration<double>(Clock::now() - began_).count());
+}
+
+}  // namespace fogline

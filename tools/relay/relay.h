@@ -1,0 +1,78 @@
+// The relay: takes messages from its clients and gives each to those that subscribed to its
+// channel, the sender included (as LCM's own relay does), in the order in which they came.
+//
+// One thread, and nothing blocks: what a client does not take waits in a queue of its own, and when
+// that is full the client is disconnected. So clients cannot hold each other up.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "services/runtime/clock.h"
+#include "services/runtime/tcpq_frame.h"
+#include "tools/relay/line_budget.h"
+
+namespace fogline {
+
+struct RelayOptions {
+  tcpq::Limits limits;
+  std::size_t queue_bytes = 16 << 20;  // for each client, at least one message
+  std::size_t clients = 128;
+  std::size_t subscriptions = 1000;  // of each client
+};
+
+class RelayClient;
+
+class Relay {
+ public:
+  using tcp = boost::asio::ip::tcp;
+
+  /// Listens, and accepts while the context runs. @throws boost::system::system_error
+  Relay(boost::asio::io_context& context, const tcp::endpoint& endpoint,
+        const RelayOptions& options);
+  ~Relay();
+
+  /// Where it listens, with the port that was chosen if it was 0.
+  tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
+
+  /// Ends all connections; the context then has nothing left to do.
+  void Stop();
+
+  /// What it has done so far, in one line.
+  std::string Summary() const;
+
+ private:
+  friend class RelayClient;
+
+  void Accept();
+  void Forward(const tcpq::Frame& message);
+  void Greeted() { ++served_; }
+  void Sent(std::size_t bytes);
+  /// A client is gone; `why` is empty if it left by itself.
+  void Leave(std::uint64_t id, const std::string& address, const std::string& why);
+
+  boost::asio::io_context& context_;
+  const RelayOptions options_;
+  tcp::acceptor acceptor_;
+  boost::asio::steady_timer pause_;  // after a connection could not be accepted
+  std::map<std::uint64_t, std::shared_ptr<RelayClient>> clients_;
+  std::uint64_t next_id_ = 0;
+  LineBudget lines_;
+  const TimePoint began_ = Clock::now();
+
+  std::uint64_t served_ = 0;
+  std::uint64_t disconnected_ = 0;
+  std::uint64_t messages_in_ = 0;
+  std::uint64_t bytes_in_ = 0;
+  std::uint64_t messages_out_ = 0;
+  std::uint64_t bytes_out_ = 0;
+};
+
+}  // namespace fogline

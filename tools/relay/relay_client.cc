@@ -1,0 +1,147 @@
+#include "tools/relay/relay_client.h"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <exception>
+#include <utility>
+
+#include <fmt/core.h>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+
+#include "tools/relay/relay.h"
+
+namespace fogline {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+constexpr std::size_t kReadBytes = 64 << 10;
+// Who connects says at once that it is a client.
+constexpr std::chrono::seconds kGreetingLimit(5);
+
+std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
+  error_code error;
+  const auto peer = socket.remote_endpoint(error);
+  if (error) return "a client that is gone already";
+  return fmt::format("{}:{}", peer.address().to_string(), peer.port());
+}
+
+/// LCM's client sends a message in five pieces, the second when the first is acknowledged. The
+/// kernel waits up to 40 ms with that unless it is told again and again not to.
+void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
+  const int on = 1;
+  setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));
+}
+
+}  // namespace
+
+RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
+    : relay_(relay),
+      id_(id),
+      socket_(std::move(socket)),
+      address_(AddressOf(socket_)),
+      greeting_(socket_.get_executor()),
+      parser_(tcpq::kClientMagic, relay.options_.limits),
+      subscriptions_(relay.options_.subscriptions),
+      read_(kReadBytes) {}
+
+void RelayClient::Start() {
+  error_code ignored;  // a socket that is gone already says so when it is read
+  socket_.set_option(tcp::no_delay(true), ignored);
+  socket_.set_option(asio::socket_base::keep_alive(true), ignored);
+  greeting_.expires_after(kGreetingLimit);
+  greeting_.async_wait([self = shared_from_this()](error_code error) {
+    if (!error && !self->greeted_) {
+      self->Drop(fmt::format("has not said in {} s that it is a client", kGreetingLimit.count()));
+    }
+  });
+  tcpq::AppendHello(tcpq::kRelayMagic, waiting_);
+  Write();
+  Read();
+}
+
+void RelayClient::Offer(const tcpq::Frame& message) {
+  if (gone_ || deaf_ || !Wants(message.name)) return;
+  const std::size_t queued = sending_.size() + waiting_.size();
+  if (queued > 0 && queued + message.wire.size() > relay_.options_.queue_bytes) {
+    return Drop(fmt::format("does not read: {} bytes wait for it", queued));
+  }
+  waiting_.insert(waiting_.end(), message.wire.begin(), message.wire.end());
+  relay_.Sent(message.payload.size());
+  Write();
+}
+
+bool RelayClient::Wants(std::string_view channel) {
+  try {
+    return subscriptions_.Match(channel);
+  } catch (const std::exception&) {
+    Drop("a subscription that takes too long to match");
+    return false;
+  }
+}
+
+void RelayClient::Drop(const std::string& why) {
+  if (std::exchange(gone_, true)) return;
+  greeting_.cancel();
+  error_code ignored;
+  socket_.close(ignored);
+  relay_.Leave(id_, address_, why);
+}
+
+void RelayClient::Read() {
+  socket_.async_read_some(asio::buffer(read_),
+                          [self = shared_from_this()](error_code error, std::size_t size) {
+                            if (self->gone_) return;
+                            if (error) return self->Drop("");
+                            self->Take(Bytes(self->read_).first(size));
+                            if (self->gone_) return;
+                            AcknowledgeAtOnce(self->socket_);
+                            self->Read();
+                          });
+}
+
+void RelayClient::Take(Bytes bytes) {
+  parser_.Append(bytes);
+  while (!gone_) {
+    const auto frame = parser_.Next();
+    if (!greeted_ && parser_.Greeted()) {
+      greeted_ = true;
+      greeting_.cancel();
+      relay_.Greeted();
+    }
+    if (!parser_.error().empty()) return Drop(parser_.error());
+    if (!frame) return;
+    Handle(*frame);
+  }
+}
+
+void RelayClient::Handle(const tcpq::Frame& frame) {
+  switch (frame.type) {
+    case tcpq::FrameType::kPublish:
+      return relay_.Forward(frame);
+    case tcpq::FrameType::kSubscribe:
+      if (const std::string wrong = subscriptions_.Add(frame.name); !wrong.empty()) Drop(wrong);
+      return;
+    case tcpq::FrameType::kUnsubscribe:
+      return subscriptions_.Remove(frame.name);
+  }
+}
+
+void RelayClient::Write() {
+  if (!sending_.empty() || waiting_.empty() || gone_) return;
+  std::swap(sending_, waiting_);
+  asio::async_write(socket_, asio::buffer(sending_),
+                    [self = shared_from_this()](error_code error, std::size_t) {
+                      self->sending_.clear();
+                      if (error) {
+                        self->deaf_ = true;
+                        self->waiting_.clear();
+                      }
+                      self->Write();
+                    });
+}
+
+}  // namespace fogline

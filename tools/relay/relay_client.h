@@ -1,0 +1,59 @@
+// One connection of the relay.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "services/runtime/tcpq_frame.h"
+#include "tools/relay/subscriptions.h"
+
+namespace fogline {
+
+class Relay;
+
+/// Lives until its last operation has ended; the relay forgets it when it has left.
+class RelayClient : public std::enable_shared_from_this<RelayClient> {
+ public:
+  using tcp = boost::asio::ip::tcp;
+
+  RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket);
+
+  void Start();
+
+  /// Sends a message if the client wants it; disconnects the client if its queue is full.
+  void Offer(const tcpq::Frame& message);
+
+  /// Ends the connection and tells the relay. @param why "" if that is nobody's fault
+  void Drop(const std::string& why);
+
+ private:
+  void Read();
+  void Take(Bytes bytes);
+  void Handle(const tcpq::Frame& frame);
+  void Write();
+  bool Wants(std::string_view channel);
+
+  Relay& relay_;
+  const std::uint64_t id_;
+  tcp::socket socket_;
+  const std::string address_;
+  boost::asio::steady_timer greeting_;  // runs until the client has said what it is
+  tcpq::FrameParser parser_;
+  Subscriptions subscriptions_;
+  std::vector<std::uint8_t> read_;
+  std::vector<std::uint8_t> sending_;  // the socket has it
+  std::vector<std::uint8_t> waiting_;  // comes next
+  bool greeted_ = false;
+  bool deaf_ = false;  // takes nothing any more; what it still has to say is heard
+  bool gone_ = false;
+};
+
+}  // namespace fogline

@@ -1,0 +1,116 @@
+// fogline-relay: carries LCM's messages over TCP where multicast is blocked. It knows nothing of
+// Fogline's messages or runs.
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <boost/asio/signal_set.hpp>
+
+#include "scenario/loader.h"
+#include "services/runtime/tcpq_url.h"
+#include "tools/relay/relay.h"
+
+namespace fogline {
+namespace {
+
+namespace asio = boost::asio;
+
+enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3 };
+
+constexpr const char* kFooter =
+    R"(Prints its URL on stdout, whom it disconnects and why on stderr, and a summary
+at the end. Ctrl-C or SIGTERM ends it. Nothing checks who connects: listen
+on 127.0.0.1 or on a network that you trust.
+
+Exit codes: 0 stopped, 2 bad usage, 3 cannot listen.
+
+Examples:
+  fogline-relay                              on this machine, port 7700
+  fogline-relay --listen 192.168.1.5:7700    for other machines
+  fogline run scenario/paper.json --transport tcpq://192.168.1.5:7700
+  lcm-logger --lcm-url=tcpq://192.168.1.5:7700 run.lcm    (LCM's own programs
+                                             need the address in numbers))";
+
+constexpr std::size_t kMebibyte = 1 << 20;
+
+/// Options as on the command line.
+struct Arguments {
+  std::string listen = "127.0.0.1:7700";
+  std::size_t message_mib = 4;
+  std::size_t queue_mib = 16;
+  RelayOptions relay;
+  bool quiet = false;
+
+  void AddTo(CLI::App& app) {
+    app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any that is free")
+        ->capture_default_str();
+    app.add_option("--max-message", message_mib, "Largest message, in MiB")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    app.add_option("--max-queue", queue_mib,
+                   "What may wait for a client before it is disconnected, in MiB")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    app.add_option("--max-clients", relay.clients, "Clients at a time")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+    app.add_option("--max-subscriptions", relay.subscriptions, "Subscriptions of one client")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    app.add_flag("--quiet", quiet, "No summary at the end");
+    app.footer(kFooter);
+  }
+};
+
+int RunRelay(const Arguments& arguments) {
+  RelayOptions options = arguments.relay;
+  options.limits.payload = arguments.message_mib * kMebibyte;
+  options.queue_bytes = arguments.queue_mib * kMebibyte;
+  const tcpq::Endpoint listen = tcpq::Resolve(arguments.listen, "--listen");
+  asio::io_context context(1);
+  std::unique_ptr<Relay> relay;
+  try {
+    relay = std::make_unique<Relay>(
+        context, asio::ip::tcp::endpoint(asio::ip::make_address(listen.address), listen.port),
+        options);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on {}: {}", listen.ToString(), error.code().message()));
+  }
+  asio::signal_set signals(context, SIGINT, SIGTERM);
+  signals.async_wait([&relay](boost::system::error_code, int) { relay->Stop(); });
+  const tcpq::Endpoint here{listen.address, relay->endpoint().port()};
+  fmt::print("{}\n", here.Url());
+  std::fflush(stdout);
+  context.run();
+  if (!arguments.quiet) fmt::print(stderr, "fogline-relay: {}\n", relay->Summary());
+  return kStopped;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app{"Carries LCM messages over TCP (tcpq://) where multicast is blocked.",
+               "fogline-relay"};
+  app.set_version_flag("--version", FOGLINE_VERSION);
+  Arguments arguments;
+  arguments.AddTo(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kStopped : kBadUsage;
+  }
+  try {
+    return RunRelay(arguments);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "fogline-relay: {}\n", error.what());
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fogline-relay: error: {}\n", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace fogline
+
+int main(int argc, char** argv) { return fogline::Main(argc, argv); }

@@ -1,0 +1,45 @@
+#include "tools/relay/subscriptions.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+// Answers kept for each client. A testbed has tens of channels; names that change all the time
+// would fill the memory.
+constexpr std::size_t kMaxKnown = 1000;
+
+}  // namespace
+
+std::string Subscriptions::Add(std::string_view pattern) {
+  if (entries_.size() >= limit_) return fmt::format("more than {} subscriptions", limit_);
+  try {
+    entries_.push_back(
+        {std::string(pattern), boost::regex(pattern.begin(), pattern.end(), boost::regex::perl)});
+  } catch (const std::exception&) {
+    return "a subscription that is no regular expression";
+  }
+  known_.clear();
+  return "";
+}
+
+void Subscriptions::Remove(std::string_view pattern) {
+  const auto found = std::ranges::find(entries_, pattern, &Entry::pattern);
+  if (found == entries_.end()) return;
+  entries_.erase(found);
+  known_.clear();
+}
+
+bool Subscriptions::Match(std::string_view channel) {
+  if (const auto known = known_.find(channel); known != known_.end()) return known->second;
+  const bool match = std::ranges::any_of(entries_, [channel](const Entry& entry) {
+    return boost::regex_match(channel.begin(), channel.end(), entry.expression);
+  });
+  if (known_.size() >= kMaxKnown) known_.clear();
+  known_.emplace(channel, match);
+  return match;
+}
+
+}  // namespace fogline
