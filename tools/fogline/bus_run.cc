@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -25,6 +26,7 @@
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/process_group.h"
 #include "tools/fogline/progress.h"
+#include "tools/fogline/relay_process.h"
 
 namespace fogline {
 namespace {
@@ -158,7 +160,7 @@ std::string UrlOf(const std::string& transport) {
     if (transport.starts_with(provider)) return transport;
   }
   throw InputError(
-      fmt::format("error: --transport {}: neither direct, memq, udpm nor an LCM URL such as "
+      fmt::format("error: --transport {}: neither direct, memq, udpm, tcpq nor an LCM URL such as "
                   "\"udpm://239.255.76.67:7667?ttl=0\"",
                   transport));
 }
@@ -173,7 +175,9 @@ std::int64_t DrawRunId() {
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log) {
-  Bus bus(UrlOf(options.transport));
+  std::optional<RelayProcess> relay;
+  if (options.transport == "tcpq") relay.emplace();
+  Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const ConductorOptions conducting = MakeConductorOptions(scenario, options);
   Conductor conductor(bus, conducting);
   const TimePoint began = Clock::now();

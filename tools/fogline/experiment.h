@@ -18,7 +18,8 @@ namespace fogline {
 
 struct ExperimentOptions {
   /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
-  /// for each role, a multicast port of its own), or an LCM URL (a process for each role there).
+  /// for each role, a multicast port of its own), tcpq (the same, a TCP relay of its own), or an
+  /// LCM URL (a process for each role there).
   std::string transport = "udpm";
   /// Event log to write. Empty: a temporary one, or with direct none at all.
   std::filesystem::path log;

@@ -52,9 +52,11 @@ struct TableArguments {
 ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
   arguments.transport.Apply(options);
-  if (!options.external.empty() && options.transport == "udpm") {
+  const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
+  if (!options.external.empty() && own_port) {
     throw InputError(
-        "error: --external needs --lcm-url: with udpm, every run has a port of its own");
+        fmt::format("error: --external needs --lcm-url: with {}, every run has a port of its own",
+                    options.transport));
   }
   return options;
 }

@@ -24,7 +24,8 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   CLI::Option* where =
       verb.add_option("--transport", transport_,
                       "direct: one process, no messages; memq: one process, LCM in memory; udpm: "
-                      "one process per role on a multicast port of its own; or an LCM URL")
+                      "one process per role on a multicast port of its own; tcpq: the same over "
+                      "TCP, through a fogline-relay of its own; or an LCM URL")
           ->capture_default_str();
   verb.add_option("--lcm-url", url_, "The same as --transport URL")->excludes(where);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
