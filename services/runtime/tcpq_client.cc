@@ -23,6 +23,9 @@ constexpr Duration kStallLimit = milliseconds(5000);
 constexpr std::size_t kReadBytes = 64 << 10;
 // What is kept of what the relay sends while it takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;
+// Who publishes so much without a look at what has come takes that look: a relay disconnects those
+// that read nothing.
+constexpr std::size_t kReadEvery = 256 << 10;
 
 }  // namespace
 
@@ -126,6 +129,10 @@ void Client::SendFrame() {
     const bool room = received_.size() < kMaxReceived;
     if (Ready(room ? POLLOUT | POLLIN : POLLOUT, *stalled + kStallLimit - now) && room) Receive();
   }
+  sent_unread_ += frame_.size();
+  if (sent_unread_ < kReadEvery) return;
+  sent_unread_ = 0;
+  while (received_.size() < kMaxReceived && Ready(POLLIN, Duration::zero())) Receive();
 }
 
 bool Client::Readable(Duration timeout) {

@@ -77,6 +77,7 @@ class Client {
   std::vector<std::uint8_t> chunk_;     // of the kernel
   std::vector<std::uint8_t> received_;  // not yet parsed: a handler still looks at a frame
   std::vector<std::uint8_t> frame_;     // being sent
+  std::size_t sent_unread_ = 0;         // bytes since it was looked what has come
   std::vector<std::pair<std::string, Handler>> handlers_;
 };
 
