@@ -56,7 +56,7 @@ class TransportTest : public testing::TestWithParam<std::string> {
 TEST_P(TransportTest, HasTheSameDigestAndMeasuresInOneProcessInMemoryAndOverTheNetwork) {
   const auto direct = Run("direct");
   ASSERT_EQ(direct["digest"].get<std::string>().size(), 64U);
-  for (const char* transport : {"memq", "udpm"}) {
+  for (const char* transport : {"memq", "udpm", "tcpq"}) {
     const auto other = Run(transport);
     EXPECT_EQ(other["steps"], direct["steps"]) << transport;
     EXPECT_EQ(other["digest"], direct["digest"]) << transport;

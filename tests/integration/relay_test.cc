@@ -1,0 +1,457 @@
+// fogline-relay with real programs: ours, Debian's, and clients that misbehave.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/bus.h"
+#include "services/runtime/tcpq_client.h"
+#include "services/runtime/tcpq_frame.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr seconds kPatience(20);
+using Payload = std::vector<std::uint8_t>;
+
+/// A relay on a free port.
+class Relay {
+ public:
+  explicit Relay(const std::vector<std::string>& more = {}) : process_(Command(more)) {
+    EXPECT_TRUE(process_.WaitForOut("\n")) << process_.Err();
+    url_ = process_.Out().substr(0, process_.Out().find('\n'));
+  }
+  const std::string& url() const { return url_; }
+  std::uint16_t port() const { return tcpq::ResolveUrl(url_).port; }
+  Background& process() { return process_; }
+  /// Ends it as a person does. @return its exit code
+  int End() {
+    process_.Signal(SIGINT);
+    return process_.Wait();
+  }
+
+ private:
+  static std::vector<std::string> Command(const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline-relay"), "--listen", "127.0.0.1:0"};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  Background process_;
+  std::string url_;
+};
+
+/// A bare connection that says what it likes.
+class RawSocket {
+ public:
+  explicit RawSocket(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    // What blocks for so long counts as blocked for ever.
+    const timeval limit{.tv_sec = kPatience.count(), .tv_usec = 0};
+    setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
+    setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  }
+  ~RawSocket() { close(fd_); }
+  RawSocket(const RawSocket&) = delete;
+  RawSocket& operator=(const RawSocket&) = delete;
+
+  /// False when the other side is gone. @pre it is not blocked
+  bool Send(Bytes bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (size < 0) {
+        EXPECT_NE(errno, EAGAIN) << "blocked";
+        return false;
+      }
+      bytes = bytes.subspan(static_cast<std::size_t>(size));
+    }
+    return true;
+  }
+  /// Reads until the other side closes; false if it does not.
+  bool WaitForClose() const {
+    Payload bytes(4096);
+    ssize_t size = 0;
+    while ((size = recv(fd_, bytes.data(), bytes.size(), 0)) > 0) {
+    }
+    return size == 0 || errno == ECONNRESET;
+  }
+  /// "127.0.0.1:PORT", as the relay sees it.
+  std::string Name() const {
+    sockaddr_in address{};
+    socklen_t size = sizeof(address);
+    getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+    return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  }
+
+ private:
+  int fd_;
+};
+
+Payload Greeting() {
+  Payload bytes;
+  tcpq::AppendHello(tcpq::kClientMagic, bytes);
+  return bytes;
+}
+
+Payload SubscriptionTo(std::string_view pattern) {
+  Payload bytes = Greeting();
+  tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, bytes);
+  return bytes;
+}
+
+Payload Message(std::string_view channel, const Payload& payload) {
+  Payload bytes;
+  tcpq::AppendFrame(tcpq::FrameType::kPublish, channel, payload, bytes);
+  return bytes;
+}
+
+/// Publishes on a channel that this bus hears itself: what it hears has gone through the relay, and
+/// so has what it sent before.
+[[nodiscard]] bool RoundTrip(Bus& bus) {
+  static int trips = 0;
+  const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);
+  bool back = false;
+  bus.Subscribe(channel, [&back](Bytes) { back = true; });
+  bus.Publish(channel, Payload(1));
+  const TimePoint end = Clock::now() + kPatience;
+  while (!back && Clock::now() < end) bus.Wait(milliseconds(100));
+  return back;
+}
+
+std::vector<std::string> RunCommandLine(const std::string& transport, const std::string& log) {
+  return {Program("fogline"),
+          "run",
+          "scenario/paper.json",
+          "--json",
+          "--transport",
+          transport,
+          "--log",
+          log};
+}
+
+std::string DigestOf(const Outcome& run) {
+  EXPECT_EQ(run.code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out, nullptr, false);
+  return json.is_object() ? json["digest"].get<std::string>() : "";
+}
+
+// ---- messages ----------------------------------------------------------------------------------
+
+TEST(RelayTest, GivesAPublisherItsOwnMessagesOnceAndInOrder) {
+  Relay relay;
+  Bus bus(relay.url());
+  std::vector<std::uint8_t> heard;
+  bus.Subscribe("A", [&](Bytes bytes) { heard.push_back(bytes[0]); });
+  for (std::uint8_t i = 0; i < 100; ++i) bus.Publish("A", Payload{i});
+  bus.Publish("B", Payload{0});
+  ASSERT_TRUE(RoundTrip(bus));
+  ASSERT_EQ(heard.size(), 100U);
+  EXPECT_TRUE(std::ranges::is_sorted(heard));
+}
+
+TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
+  // GIVEN LCM's own client, which subscribes to everything
+  Relay relay;
+  lcm_t* stock = lcm_create(relay.url().c_str());
+  ASSERT_NE(stock, nullptr);
+  std::map<std::string, std::size_t> got;
+  lcm_subscription_t* all = lcm_subscribe(
+      stock, ".*",
+      [](const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+        (*static_cast<std::map<std::string, std::size_t>*>(user))[channel] = buffer->data_size;
+      },
+      &got);
+  // WHEN it publishes, and then hears itself
+  const Payload large(100'000, 7);
+  ASSERT_EQ(lcm_publish(stock, "FROM_STOCK", large.data(), static_cast<unsigned>(large.size())), 0);
+  ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
+  EXPECT_EQ(got["FROM_STOCK"], large.size());
+  // THEN it hears ours too
+  Bus bus(relay.url());
+  bus.Publish("FROM_OURS", Payload(5));
+  ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
+  EXPECT_EQ(got["FROM_OURS"], 5U);
+  // AND after it has unsubscribed only we hear it
+  lcm_unsubscribe(stock, all);
+  std::size_t heard = 0;
+  bus.Subscribe("LAST", [&heard](Bytes bytes) { heard = bytes.size(); });
+  ASSERT_TRUE(RoundTrip(bus));
+  ASSERT_EQ(lcm_publish(stock, "LAST", large.data(), 3), 0);
+  const TimePoint end = Clock::now() + kPatience;
+  while (heard == 0 && Clock::now() < end) bus.Wait(milliseconds(100));
+  EXPECT_EQ(heard, 3U);
+  EXPECT_EQ(lcm_handle_timeout(stock, 0), 0);
+  lcm_destroy(stock);
+}
+
+TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
+  // GIVEN more than both sockets and the relay's queue hold
+  Relay relay({"--max-queue", "4", "--quiet"});
+  Bus bus(relay.url());
+  int heard = 0;
+  bus.Subscribe("BURST", [&heard](Bytes) { ++heard; });
+  // WHEN it is published in one go
+  const Payload payload(1000, 1);
+  constexpr int kMessages = 20'000;
+  for (int i = 0; i < kMessages; ++i) bus.Publish("BURST", payload);
+  // THEN nobody blocks, and all of it comes back
+  ASSERT_TRUE(RoundTrip(bus));
+  EXPECT_EQ(heard, kMessages);
+}
+
+// ---- clients that misbehave --------------------------------------------------------------------
+
+TEST(RelayTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTheOthers) {
+  Relay relay({"--max-queue", "4"});
+  const RawSocket sleeper(relay.port());
+  ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
+  Bus bus(relay.url());
+  int heard = 0;
+  bus.Subscribe("DATA", [&heard](Bytes) { ++heard; });
+  // WHEN more is published than a socket and its queue hold
+  const Payload payload(60'000, 1);
+  constexpr int kMessages = 400;
+  for (int i = 0; i < kMessages; ++i) {
+    bus.Publish("DATA", payload);
+    bus.Drain();
+  }
+  // THEN the others have everything, and the line says who does not read
+  ASSERT_TRUE(RoundTrip(bus));
+  EXPECT_EQ(heard, kMessages);
+  EXPECT_TRUE(relay.process().WaitForErr("disconnected: does not read: "));
+  EXPECT_THAT(relay.process().Err(), HasSubstr(sleeper.Name() + " disconnected"));
+}
+
+TEST(RelayTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessages) {
+  Relay relay({"--max-queue", "4"});
+  const RawSocket publisher(relay.port());
+  ASSERT_TRUE(publisher.Send(SubscriptionTo(".*")));
+  // WHEN it sends up to 100 MB and reads nothing; Send() fails the test if it blocks
+  const Payload message = Message("ECHO", Payload(100'000));
+  int sent = 0;
+  while (sent < 1000 && publisher.Send(message)) ++sent;
+  // THEN it is disconnected before
+  EXPECT_LT(sent, 1000);
+  EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read: "));
+}
+
+TEST(RelayTest, DisconnectsWhoSendsGarbageByNameAndReason) {
+  Relay relay({"--max-subscriptions", "2", "--max-message", "1"});
+  Bus bus(relay.url());
+  const std::string http = "GET / HTTP/1.1\r\n\r\n";
+  Payload subscriptions = Greeting();
+  for (const char* pattern : {"A", "B", "C"}) {
+    tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, subscriptions);
+  }
+  Payload oversized = Greeting();
+  tcpq::AppendFrame(tcpq::FrameType::kPublish, "BIG", Payload((1 << 20) + 1), oversized);
+  Payload unknown = Greeting();
+  tcpq::AppendFrame(tcpq::FrameType{9}, "A", {}, unknown);
+  const std::vector<std::pair<Payload, std::string>> cases{
+      {Payload(http.begin(), http.end()), "begins with 0x47455420"},
+      {unknown, "frame of unknown type 9"},
+      {oversized, "message of 1048577 bytes on \"BIG\"; at most 1048576"},
+      {SubscriptionTo(std::string(2000, 'a')), "pattern of 2000 bytes; at most 1024"},
+      {SubscriptionTo("("), "a subscription that is no regular expression"},
+      {subscriptions, "more than 2 subscriptions"},
+  };
+  for (const auto& [bytes, reason] : cases) {
+    const RawSocket client(relay.port());
+    client.Send(bytes);
+    EXPECT_TRUE(client.WaitForClose()) << reason;
+    EXPECT_TRUE(relay.process().WaitForErr(client.Name() + " disconnected: " + reason))
+        << reason << "\n"
+        << relay.process().Err();
+  }
+  // The others did not notice.
+  EXPECT_TRUE(RoundTrip(bus));
+  ASSERT_EQ(relay.End(), 0);
+  EXPECT_THAT(relay.process().Err(), HasSubstr("6 disconnected; "));
+}
+
+TEST(RelayTest, DisconnectsWhoNeverSaysThatItIsAClient) {
+  Relay relay;
+  const RawSocket silent(relay.port());
+  EXPECT_TRUE(silent.WaitForClose());
+  EXPECT_TRUE(relay.process().WaitForErr(silent.Name() + " disconnected: has not said in 5 s"));
+}
+
+TEST(RelayTest, TakesNoMoreClientsThanItMay) {
+  Relay relay({"--max-clients", "1"});
+  Bus bus(relay.url());
+  const RawSocket second(relay.port());
+  EXPECT_TRUE(second.WaitForClose());
+  EXPECT_TRUE(relay.process().WaitForErr(second.Name() + " disconnected: 1 clients are here"));
+  EXPECT_TRUE(RoundTrip(bus));
+}
+
+TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
+  Relay relay;
+  EXPECT_EQ(relay.url(), "tcpq://127.0.0.1:" + std::to_string(relay.port()));
+  const std::string here = "127.0.0.1:" + std::to_string(relay.port());
+  const Outcome second = RunCommand({Program("fogline-relay"), "--listen", here});
+  EXPECT_EQ(second.code, 3);
+  EXPECT_EQ(second.err,
+            "fogline-relay: error: cannot listen on " + here + ": Address already in use\n");
+  EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
+  {
+    Bus bus(relay.url());
+    bus.Publish("A", Payload(1));
+    ASSERT_TRUE(RoundTrip(bus));
+  }
+  relay.process().Signal(SIGTERM);
+  EXPECT_EQ(relay.process().Wait(), 0);
+  EXPECT_THAT(relay.process().Err(),
+              HasSubstr("1 clients, 0 disconnected; 2 messages in (0.0 MB), 1 out"));
+}
+
+// ---- a relay that is not there -----------------------------------------------------------------
+
+TEST(RelayTest, IsMissedByNameOfItsAddress) {
+  const auto end_of = [](const std::string& url) {
+    const ScratchFolder folder;
+    return RunCommand(RunCommandLine(url, folder.File("run.lcm")));
+  };
+  std::string url;
+  {
+    Relay relay;
+    url = relay.url();
+  }
+  const Outcome nobody = end_of(url);
+  EXPECT_EQ(nobody.code, 3);
+  EXPECT_EQ(nobody.err,
+            "fogline: error: nobody listens on " + url.substr(7) + "; start fogline-relay there\n");
+  const Outcome unknown = end_of("tcpq://no-such-host.invalid:7700");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("no IPv4 address for \"no-such-host.invalid\""));
+  EXPECT_EQ(std::ranges::count(unknown.err, '\n'), 1) << unknown.err;
+}
+
+TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
+  Relay relay;
+  Bus bus(relay.url());
+  ASSERT_TRUE(RoundTrip(bus));
+  relay.process().Signal(SIGKILL);
+  relay.process().Wait();
+  try {
+    const TimePoint end = Clock::now() + kPatience;
+    while (Clock::now() < end) bus.Wait(milliseconds(100));
+    FAIL() << "not noticed";
+  } catch (const tcpq::ConnectionLost& lost) {
+    EXPECT_THAT(lost.what(), HasSubstr("lost the relay " + relay.url() + ": "));
+  }
+  bus.Publish("A", Payload(1));
+  EXPECT_FALSE(bus.Wait(milliseconds(1)));
+}
+
+// ---- runs --------------------------------------------------------------------------------------
+
+TEST(RelayTest, CarriesTwoRunsAtOnceThatDoNotMix) {
+  const ScratchFolder folder;
+  Relay relay;
+  const Outcome alone = RunCommand(RunCommandLine("direct", folder.File("alone.lcm")));
+  auto command = RunCommandLine(relay.url(), folder.File("one.lcm"));
+  Background one(command);
+  const Outcome two = RunCommand(RunCommandLine(relay.url(), folder.File("two.lcm")));
+  const int code = one.Wait();
+  const std::string expected = DigestOf(alone);
+  EXPECT_EQ(DigestOf({code, one.Out(), one.Err()}), expected);
+  EXPECT_EQ(DigestOf(two), expected);
+}
+
+TEST(RelayTest, EndsARunWithOneClearLineWhenItIsKilled) {
+  const ScratchFolder folder;
+  Relay relay;
+  std::vector<std::string> command = RunCommandLine(relay.url(), folder.File("run.lcm"));
+  command.insert(command.end(), {"--pace", "1", "--quiet"});
+  Background run(command);
+  // GIVEN a run that is well under way
+  const auto size = [&] {
+    std::error_code ignored;
+    const auto bytes = std::filesystem::file_size(folder.File("run.lcm"), ignored);
+    return ignored ? 0 : bytes;
+  };
+  const TimePoint end = Clock::now() + kPatience;
+  while (size() < 20'000 && Clock::now() < end) {
+  }
+  ASSERT_GE(size(), 20'000U);
+  // WHEN its relay is killed
+  relay.process().Signal(SIGKILL);
+  // THEN it ends with code 3 and that reason, and its log is readable
+  EXPECT_EQ(run.Wait(seconds(10)), 3);
+  EXPECT_THAT(run.Err(), HasSubstr("lost the relay " + relay.url()));
+  EXPECT_EQ(RunCommand({Program("fogline"), "digest", folder.File("run.lcm")}).code, 1);
+}
+
+TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
+  // GIVEN Debian's lcm-logger on the relay
+  const ScratchFolder folder;
+  const std::string stock = folder.File("stock.lcm");
+  Relay relay;
+  Background logger(
+      {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), stock});
+  Bus bus(relay.url());
+  const auto caught_up = [&](const std::string& mark) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (Clock::now() < end) {
+      bus.Publish(mark, Payload(kHeaderEnd));
+      bus.Wait(milliseconds(20));
+      std::ifstream in(stock, std::ios::binary);
+      std::ostringstream content;
+      content << in.rdbuf();
+      if (content.str().find(mark) != std::string::npos) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(caught_up("BEFORE"));
+  // WHEN a run goes on
+  std::vector<std::string> command = RunCommandLine(relay.url(), folder.File("own.lcm"));
+  command.insert(command.end(), {"--pace", "1", "--set", "/steps=30"});
+  const std::string digest = DigestOf(RunCommand(command));
+  ASSERT_TRUE(caught_up("AFTER"));
+  logger.Signal(SIGINT);
+  ASSERT_EQ(logger.Wait(), 0);
+  // THEN its log is a log of the whole run
+  const Outcome check = RunCommand({Program("fogline"), "digest", "--json", stock});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr(digest));
+  // AND it has every payload that ours has
+  const auto payloads = [](const std::string& log) {
+    std::multimap<std::string, Payload> all;
+    EventLogReader reader(log);
+    while (const auto event = reader.Next()) {
+      all.emplace(event->channel, Payload(event->data.begin(), event->data.end()));
+    }
+    return all;
+  };
+  const auto logged = payloads(stock);
+  for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
+    if (channel == ChannelOf<run_t>().name) continue;  // ours keeps one RUN, with another phase
+    const auto [first, last] = logged.equal_range(channel);
+    EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))
+        << channel << ", step " << ReadInt64(payload, kStepOffset);
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

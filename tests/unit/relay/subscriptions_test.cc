@@ -1,0 +1,84 @@
+#include "tools/relay/subscriptions.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+namespace fogline {
+namespace {
+
+constexpr std::size_t kLimit = 10;
+
+TEST(SubscriptionsTest, MatchWholeChannelNamesOnly) {
+  Subscriptions wanted(kLimit);
+  EXPECT_FALSE(wanted.Match("TRUTH"));
+  EXPECT_EQ(wanted.Add("TRUTH"), "");
+  EXPECT_TRUE(wanted.Match("TRUTH"));
+  EXPECT_FALSE(wanted.Match("TRUTH2"));
+  EXPECT_FALSE(wanted.Match("A_TRUTH"));
+}
+
+TEST(SubscriptionsTest, AreRegularExpressionsAsLcms) {
+  Subscriptions wanted(kLimit);
+  for (const char* pattern : {"HOST_.*", "^(RADAR|LIDAR)$", R"(A\.B)", "CAM[0-9]"}) {
+    EXPECT_EQ(wanted.Add(pattern), "") << pattern;
+  }
+  for (const char* channel : {"HOST_EGO", "RADAR", "LIDAR", "A.B", "CAM7"}) {
+    EXPECT_TRUE(wanted.Match(channel)) << channel;
+  }
+  for (const char* channel : {"HOST", "AxB", "CAM10", "radar"}) {
+    EXPECT_FALSE(wanted.Match(channel)) << channel;
+  }
+}
+
+TEST(SubscriptionsTest, EndOneByOne) {
+  Subscriptions wanted(kLimit);
+  wanted.Add("A");
+  wanted.Add("A");
+  wanted.Remove("A");
+  EXPECT_TRUE(wanted.Match("A"));
+  wanted.Remove("A");
+  EXPECT_FALSE(wanted.Match("A"));
+  wanted.Remove("A");  // never added: ignored, as in LCM
+}
+
+TEST(SubscriptionsTest, ForgetAnswersWhenTheyChange) {
+  Subscriptions wanted(kLimit);
+  EXPECT_FALSE(wanted.Match("A"));
+  wanted.Add("A");
+  EXPECT_TRUE(wanted.Match("A"));
+}
+
+TEST(SubscriptionsTest, AreLimitedInNumber) {
+  Subscriptions wanted(2);
+  EXPECT_EQ(wanted.Add("A"), "");
+  EXPECT_EQ(wanted.Add("B"), "");
+  EXPECT_EQ(wanted.Add("C"), "more than 2 subscriptions");
+  EXPECT_FALSE(wanted.Match("C"));
+}
+
+TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
+  Subscriptions wanted(kLimit);
+  for (const char* pattern : {"(", "[a", "*"}) {
+    EXPECT_EQ(wanted.Add(pattern), "a subscription that is no regular expression") << pattern;
+    EXPECT_FALSE(wanted.Match("a"));
+  }
+}
+
+TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
+  // GIVEN an expression that backtracks over every way to cut the longest name into pieces
+  Subscriptions wanted(kLimit);
+  ASSERT_EQ(wanted.Add("(a|aa|a?)*(a|aa|a?)*(a|aa|a?)*b"), "");
+  const std::string longest(63, 'a');
+  // WHEN it is asked about that name
+  const auto began = std::chrono::steady_clock::now();
+  try {
+    EXPECT_FALSE(wanted.Match(longest));
+  } catch (const std::runtime_error&) {
+  }
+  // THEN that ends, here within what a busy machine needs for a million tries
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
+}
+
+}  // namespace
+}  // namespace fogline
