@@ -191,11 +191,13 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
-  // AND after it has unsubscribed only we hear it
-  lcm_unsubscribe(stock, all);
+  // AND after it has unsubscribed, with nothing else under way, only we hear it
   std::size_t heard = 0;
   bus.Subscribe("LAST", [&heard](Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
+  ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
+  ASSERT_EQ(got.size(), 3U);
+  lcm_unsubscribe(stock, all);
   ASSERT_EQ(lcm_publish(stock, "LAST", large.data(), 3), 0);
   const TimePoint end = Clock::now() + kPatience;
   while (heard == 0 && Clock::now() < end) bus.Wait(milliseconds(100));
@@ -339,8 +341,8 @@ TEST(RelayTest, IsMissedByNameOfItsAddress) {
   }
   const Outcome nobody = end_of(url);
   EXPECT_EQ(nobody.code, 3);
-  EXPECT_EQ(nobody.err,
-            "fogline: error: nobody listens on " + url.substr(7) + "; start fogline-relay there\n");
+  EXPECT_EQ(nobody.err, "fogline run: error: nobody listens on " + url.substr(7) +
+                            "; start fogline-relay there\n");
   const Outcome unknown = end_of("tcpq://no-such-host.invalid:7700");
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("no IPv4 address for \"no-such-host.invalid\""));

@@ -1,6 +1,8 @@
 #include "tools/relay/subscriptions.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -16,8 +18,11 @@ constexpr std::size_t kMaxKnown = 1000;
 std::string Subscriptions::Add(std::string_view pattern) {
   if (entries_.size() >= limit_) return fmt::format("more than {} subscriptions", limit_);
   try {
-    entries_.push_back(
-        {std::string(pattern), boost::regex(pattern.begin(), pattern.end(), boost::regex::perl)});
+    // A string of its own, with a zero behind it: Boost 1.81 looks one character beyond the end of
+    // "[" and the like.
+    std::string text(pattern);
+    boost::regex expression(text, boost::regex::perl);
+    entries_.push_back({std::move(text), std::move(expression)});
   } catch (const std::exception&) {
     return "a subscription that is no regular expression";
   }

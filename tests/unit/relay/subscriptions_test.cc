@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <random>
+#include <vector>
 
 namespace fogline {
 namespace {
@@ -63,6 +65,32 @@ TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
     EXPECT_EQ(wanted.Add(pattern), "a subscription that is no regular expression") << pattern;
     EXPECT_FALSE(wanted.Match("a"));
   }
+}
+
+TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
+  // Mostly what the parser of expressions has to look at twice; sanitizers watch.
+  constexpr std::string_view kPieces = "AB.*+?|()[]{}^$-,:=!<\\1dQEx";
+  std::mt19937_64 engine(20'260'101);
+  int refused = 0;
+  constexpr int kPatterns = 5000;
+  for (int i = 0; i < kPatterns; ++i) {
+    std::string pattern;
+    for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
+    Subscriptions wanted(1);
+    // A part of a larger buffer, as it comes from a socket: nothing behind it may be looked at.
+    const std::vector<char> exact(pattern.begin(), pattern.end());
+    if (!wanted.Add({exact.data(), exact.size()}).empty()) {
+      ++refused;
+      continue;
+    }
+    try {
+      wanted.Match("AB");
+    } catch (const std::runtime_error&) {
+    }
+  }
+  // Patterns that are all refused, or all accepted, would test nothing.
+  EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, kPatterns);
 }
 
 TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
