@@ -103,7 +103,7 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   const bool met = member.status && member.status->pid == child.pid;
   const Duration silent = now - std::max(met ? member.heard : child.started, attentive_);
   if (!child.hung.empty() || silent < (met ? options_.silence : kStartLimit)) return;
-  child.hung = fmt::format("was silent for {:.1f} s, and killed for that",
+  child.hung = fmt::format("was silent for {:.1f} s and was killed",
                            std::chrono::duration<double>(silent).count());
   kill(child.pid, SIGKILL);
 }
