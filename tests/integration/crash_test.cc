@@ -4,7 +4,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <map>
@@ -291,7 +291,10 @@ TEST(CrashCampaignTest, KillsAtRandomStepsChangeNoResult) {
     const auto result = watched.ExpectSameResult();
     int restarts = 0;
     for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
-    EXPECT_EQ(restarts, kills) << watched.run().Err();
+    // Who is killed at the very end may not be needed again.
+    const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
+    EXPECT_GE(restarts, needed) << watched.run().Err();
+    EXPECT_LE(restarts, kills);
     done += kills;
   }
 }
