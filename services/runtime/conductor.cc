@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
 // While the run goes on: a sign of life, which roles that were started elsewhere wait for.
-constexpr Duration kRepeatEvery = milliseconds(1000);
+constexpr Duration kRepeatEvery = milliseconds(200);
 // Requests for the whole scenario that come together are answered together.
 constexpr Duration kPartsEvery = milliseconds(10);
 // A role without a STATUS for this long (five heartbeats) counts as silent.

@@ -21,7 +21,8 @@ constexpr Duration kMinBetweenAsks = milliseconds(1);
 constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
-// The runner repeats itself once a second; a role that hears nothing for so long is an orphan.
+// The runner repeats itself five times a second; a role that hears nothing for so long is an
+// orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
 
 }  // namespace
