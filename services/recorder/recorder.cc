@@ -103,7 +103,10 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
   // can be read.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
   steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
-  if (steps.count <= 0) return;
+  const bool recorded = std::ranges::any_of(
+      inputs(), [channel](const Input& input) { return kChannels[input.channel].name == channel; });
+  // Reading is work, too: none of it for nothing.
+  if (steps.count <= 0 || !recorded || !budget_.Has(now)) return;
   history_->ForEach(channel, steps, [&](Bytes bytes) { Answer(channel, bytes, now); });
 }
 

@@ -16,13 +16,18 @@ class AnswerBudget {
       : per_second_(per_second), burst_(burst), left_(burst) {}
 
   /// Whether one more message may be sent now.
-  bool Take(TimePoint now) {
+  bool Has(TimePoint now) {
     const std::chrono::duration<double> passed = now - filled_;
     if (passed.count() > 0) {
       left_ = std::min(burst_, left_ + per_second_ * passed.count());
       filled_ = now;
     }
-    if (left_ < 1) return false;
+    return left_ >= 1;
+  }
+
+  /// The same, and it is sent.
+  bool Take(TimePoint now) {
+    if (!Has(now)) return false;
     left_ -= 1;
     return true;
   }

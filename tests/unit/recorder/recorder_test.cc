@@ -93,6 +93,19 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   EXPECT_TRUE(truths_.empty());
 }
 
+TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
+  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
+  truths_.clear();
+  constexpr int kRequests = 500;
+  const TimePoint began = Clock::now();
+  for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
+  const std::chrono::duration<double> took = Clock::now() - began;
+  // 3,000 at once and 30,000 a second.
+  EXPECT_GE(truths_.size(), 3000U);
+  EXPECT_LE(static_cast<double>(truths_.size()), 3001 + 30'000 * took.count());
+}
+
 TEST_F(RecorderTest, AnswersForWhatItsPredecessorHasWritten) {
   WholeLog();
   const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
