@@ -130,10 +130,11 @@ std::vector<Restarts> Supervisor::restarts() const {
     if (child != children_.end() && child->policy.restarts() > 0) {
       restarts.push_back(
           {.role = info.role, .count = child->policy.restarts(), .last = child->death});
-    } else if (member.replaced > 0) {
-      const status_t& dead = member.dead.back();
+    } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
+      // The last one may have come too late in the run to be sure that the one before it is dead.
+      const status_t& dead = member.rival ? *member.status : member.dead.back();
       restarts.push_back({.role = info.role,
-                          .count = member.replaced,
+                          .count = elsewhere,
                           .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,
                                               dead.host, dead.header.step)});
     }
