@@ -162,7 +162,8 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   }
   if (!member.status) return true;
   if (same(*member.status)) {
-    if (member.rival && now - member.rival_since > kOnItsWay) {
+    const bool speaks = status.sequence > member.status->sequence;
+    if (speaks && member.rival && now - member.rival_since > kOnItsWay) {
       Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
                        status.pid, status.host, member.rival->pid, member.rival->host));
     }
