@@ -52,6 +52,18 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file)
   pending_.reserve(2 * kWorthWriting);
 }
 
+EventLogWriter::EventLogWriter(const std::filesystem::path& file, const LogHead& head)
+    : file_(file), out_(std::fopen(file.c_str(), "r+b")), events_(head.events), size_(head.bytes) {
+  if (out_ == nullptr || ftruncate(fileno(out_), head.bytes) != 0 ||
+      std::fseek(out_, head.bytes, SEEK_SET) != 0) {
+    const std::string why = std::strerror(errno);
+    if (out_ != nullptr) std::fclose(out_);
+    throw InputError(fmt::format("{}: error: cannot go on with the log: {}", file.string(), why));
+  }
+  std::setvbuf(out_, nullptr, _IONBF, 0);
+  pending_.reserve(2 * kWorthWriting);
+}
+
 EventLogWriter::~EventLogWriter() {
   WriteOut();
   std::fclose(out_);
@@ -67,6 +79,7 @@ void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes d
   pending_.insert(pending_.end(), header.begin(), header.end());
   pending_.insert(pending_.end(), channel.begin(), channel.end());
   pending_.insert(pending_.end(), data.begin(), data.end());
+  size_ += static_cast<std::int64_t>(header.size() + channel.size() + data.size());
   if (pending_.size() >= kWorthWriting) Flush();
 }
 
@@ -115,27 +128,42 @@ EventLogReader::~EventLogReader() {
   }
 }
 
+std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why) {
+  why = "cut off";
+  if (bytes.size() < kEventHeader) return std::nullopt;
+  why = "no event";
+  if (ReadUint32(bytes, 0) != kSyncWord) return std::nullopt;
+  const std::size_t channel_size = ReadUint32(bytes, 20);
+  const std::size_t data_size = ReadUint32(bytes, 24);
+  why = "impossible channel name";
+  if (channel_size == 0 || channel_size > kMaxChannel) return std::nullopt;
+  why = "cut off";
+  if (channel_size + data_size > bytes.size() - kEventHeader) return std::nullopt;
+  why = "";
+  const auto* channel = reinterpret_cast<const char*>(bytes.data() + kEventHeader);
+  return Event{.number = ReadInt64(bytes, 4),
+               .utime = ReadInt64(bytes, 12),
+               .channel = {channel, channel_size},
+               .data = bytes.subspan(kEventHeader + channel_size, data_size)};
+}
+
+std::size_t SizeInFile(const Event& event) {
+  return kEventHeader + event.channel.size() + event.data.size();
+}
+
 std::optional<Event> EventLogReader::Next() {
   const Bytes rest = content_.subspan(offset_);
   if (rest.empty() || !torn_.empty()) return std::nullopt;
-  const auto tear = [&](std::string_view what) {
-    torn_ = fmt::format("{} after event {} (byte {}); {} bytes behind it are ignored", what,
+  std::string_view why;
+  const auto event = ParseEvent(rest, why);
+  if (!event) {
+    torn_ = fmt::format("{} after event {} (byte {}); {} bytes behind it are ignored", why,
                         events_ - 1, offset_, rest.size());
     return std::nullopt;
-  };
-  if (rest.size() < kEventHeader) return tear("cut off");
-  if (ReadUint32(rest, 0) != kSyncWord) return tear("no event");
-  const std::size_t channel_size = ReadUint32(rest, 20);
-  const std::size_t data_size = ReadUint32(rest, 24);
-  if (channel_size == 0 || channel_size > kMaxChannel) return tear("impossible channel name");
-  if (channel_size + data_size > rest.size() - kEventHeader) return tear("cut off");
-  const auto* channel = reinterpret_cast<const char*>(rest.data() + kEventHeader);
-  offset_ += kEventHeader + channel_size + data_size;
+  }
+  offset_ += SizeInFile(*event);
   ++events_;
-  return Event{.number = ReadInt64(rest, 4),
-               .utime = ReadInt64(rest, 12),
-               .channel = {channel, channel_size},
-               .data = rest.subspan(kEventHeader + channel_size, data_size)};
+  return event;
 }
 
 }  // namespace fogline

@@ -18,11 +18,19 @@
 
 namespace fogline {
 
-/// Appends events to a new file.
+/// The part of a log that is kept when writing goes on: its first bytes, that many whole events.
+struct LogHead {
+  std::int64_t bytes = 0;
+  std::int64_t events = 0;
+};
+
+/// Appends events to a new file, or to the head of an old one.
 class EventLogWriter {
  public:
   /// Opens the file for writing; an existing one is replaced. @throws InputError if it cannot
   explicit EventLogWriter(const std::filesystem::path& file);
+  /// Cuts an existing file behind `head` and goes on there. @throws InputError if it cannot
+  EventLogWriter(const std::filesystem::path& file, const LogHead& head);
   ~EventLogWriter();
   EventLogWriter(const EventLogWriter&) = delete;
   EventLogWriter& operator=(const EventLogWriter&) = delete;
@@ -33,6 +41,8 @@ class EventLogWriter {
   /// process.
   /// @throws std::runtime_error
   void Flush();
+  /// Bytes of all events so far, whether written already or not.
+  std::int64_t size() const { return size_; }
 
  private:
   bool WriteOut();
@@ -41,6 +51,7 @@ class EventLogWriter {
   std::filesystem::path file_;
   std::FILE* out_;  // without a buffer of its own
   std::int64_t events_ = 0;
+  std::int64_t size_ = 0;
   std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
 
@@ -51,6 +62,12 @@ struct Event {
   std::string_view channel;
   Bytes data;
 };
+
+/// The event that `bytes` begin with.
+/// @param why is set to what is wrong, if there is none
+std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
+/// Bytes that an event takes in a file.
+std::size_t SizeInFile(const Event& event);
 
 /// Reads a log from front to back without copying. A torn tail (a last event that is incomplete, as
 /// a kill or a full disk leaves it) ends the log and is named by torn().

@@ -1,21 +1,56 @@
 #include "services/recorder/recorder.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
+
+#include "scenario/loader.h"
 
 namespace fogline {
 namespace {
 
 // Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
+// Messages that it hands out again per second, and at once: a fifth of a processor. Every role that
+// starts again asks for its inputs of 63 steps at a time, one that has six for 378 messages.
+constexpr double kAnswersPerSecond = 30'000;
+constexpr double kAnswersAtOnce = 3'000;
 
 }  // namespace
 
-Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file)
-    : Node(bus, Role::kRecorder, run_id) {
-  log_.emplace(file);
+Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
+                   Existing existing)
+    : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
+  budget_ = AnswerBudget(kAnswersPerSecond, kAnswersAtOnce);
+  if (existing_ == Existing::kReplace) log_.emplace(file);
 }
 
-void Recorder::Configure(const Scenario& /*scenario*/) {
+void Recorder::Configure(const Scenario& scenario) {
+  if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
+  history_->Reserve(scenario.steps);
+}
+
+bool Recorder::Resume() {
+  const std::optional<Remains> remains = ReadRemains(file_, run_id(), parts().hash());
+  const auto steps = remains ? static_cast<std::int64_t>(remains->ends.size()) : 0;
+  // The world has begun a step only after the one kMaxAhead before it was on disk.
+  if (steps <= progress() - kMaxAhead) {
+    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
+                                 steps, progress() - kMaxAhead + 1));
+  }
+  if (!remains) {
+    log_.emplace(file_);
+    return false;
+  }
+  log_.emplace(file_, remains->head);
+  history_.emplace(file_, remains->begin);
+  for (const std::int64_t end : remains->ends) history_->Add(end);
+  if (remains->final) final_ = steps - 1;
+  StartAt(steps);
+  return true;
+}
+
+void Recorder::WriteScenario() {
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
     const run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
@@ -23,6 +58,7 @@ void Recorder::Configure(const Scenario& /*scenario*/) {
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
   log_->Flush();
+  history_.emplace(file_, log_->size());
 }
 
 bool Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
@@ -49,6 +85,7 @@ void Recorder::Write(std::int64_t step) {
 
 void Recorder::Compute(std::int64_t step) {
   Write(step);
+  history_->Add(log_->size());
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
     status().header.step = step;
@@ -57,13 +94,30 @@ void Recorder::Compute(std::int64_t step) {
 }
 
 void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
-  Expect(step);
+  ExpectAsked(step);
   if (next() > step) PublishStatus();
+}
+
+void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now) {
+  // Newer ones are in the ring of their producer. All that is kMaxAhead old is acknowledged, so it
+  // can be read.
+  static_assert(kAcknowledgeEvery <= kMaxAhead);
+  steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
+  const bool recorded = std::ranges::any_of(
+      inputs(), [channel](const Input& input) { return kChannels[input.channel].name == channel; });
+  // Reading is work, too: none of it for nothing.
+  if (steps.count <= 0 || !recorded || !budget_.Has(now)) return;
+  history_->ForEach(channel, steps, [&](Bytes bytes) { Answer(channel, bytes, now); });
 }
 
 void Recorder::BeforeStatus() {
   // STATUS acknowledges every step up to its own: they must be out of this process by then.
-  if (log_) log_->Flush();
+  if (!log_ || state() == status_t::FAILED) return;
+  try {
+    log_->Flush();
+  } catch (const std::exception& error) {
+    Fail(error.what());
+  }
 }
 
 void Recorder::OnLeave() {
@@ -71,7 +125,11 @@ void Recorder::OnLeave() {
   if (!log_) return;
   std::int64_t newest = -1;
   for (const Input& input : inputs()) newest = std::max(newest, input.ring.newest());
-  for (std::int64_t step = next(); step <= newest; ++step) Write(step);
+  try {
+    for (std::int64_t step = next(); step <= newest; ++step) Write(step);
+  } catch (const std::runtime_error&) {
+    // The disk is full. If that matters to the run it has been said; these steps do not.
+  }
   log_.reset();
 }
 

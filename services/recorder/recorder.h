@@ -1,32 +1,46 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
 // takes part in the lockstep: the world runs only a few steps ahead of what is on disk, so nothing
 // is lost however fast the run is. Events stand in the order of step and graph table, whatever the
-// order of arrival, so equal runs have equal logs but for the run id.
+// order of arrival, so equal runs have equal logs but for the run id. What it has written it also
+// hands out again, to roles that have been started again. When it is killed itself, another one
+// goes on where the log ends.
 #pragma once
 
 #include <filesystem>
 
 #include "services/recorder/event_log.h"
+#include "services/recorder/history.h"
 #include "services/runtime/node.h"
 
 namespace fogline {
 
 class Recorder final : public Node {
  public:
+  /// What becomes of a file that exists.
+  enum class Existing { kReplace, kResume };
+
   /// @throws InputError if the file cannot be written
-  Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file);
+  Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
+           Existing existing = Existing::kReplace);
 
  private:
   void Configure(const Scenario& scenario) override;
   bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
+  void OnAsked(std::string_view channel, StepRange steps, TimePoint now) override;
   void BeforeStatus() override;
   void OnLeave() override;
 
+  /// Goes on with what is in the file; false if that is nothing.
+  bool Resume();
+  void WriteScenario();
   void Write(std::int64_t step);
 
+  const std::filesystem::path file_;
+  const Existing existing_;
   std::optional<EventLogWriter> log_;
+  std::optional<History> history_;
   std::int64_t final_ = -1;  // step after which the run ends, once known
 };
 

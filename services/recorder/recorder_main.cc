@@ -17,15 +17,20 @@ constexpr const char* kHelpFooter =
 }  // namespace
 
 int main(int argc, char** argv) {
+  using fogline::Recorder;
   std::string file;
+  bool resume = false;
   return fogline::RunProcess(
       argc, argv, fogline::Role::kRecorder,
-      [&file](fogline::Bus& bus, std::optional<std::int64_t> run_id) {
-        return std::make_unique<fogline::Recorder>(bus, run_id, file);
+      [&](fogline::Bus& bus, std::optional<std::int64_t> run_id) {
+        return std::make_unique<Recorder>(
+            bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
       },
-      [&file](CLI::App& app) {
+      [&](CLI::App& app) {
         app.add_option("--log", file, "Event log to write; an existing file is replaced")
             ->required();
+        app.add_flag("--resume", resume,
+                     "Go on with the log of a recorder that was killed in the same run");
         app.footer(kHelpFooter);  // not the other roles', which join a run from outside
       });
 }

@@ -6,16 +6,20 @@
 
 #include <fmt/core.h>
 
+#include "services/runtime/this_process.h"
+
 namespace fogline {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
 // While the run goes on: a sign of life, which roles that were started elsewhere wait for.
-constexpr Duration kRepeatEvery = milliseconds(1000);
+constexpr Duration kRepeatEvery = milliseconds(200);
 // Requests for the whole scenario that come together are answered together.
 constexpr Duration kPartsEvery = milliseconds(10);
 // A role without a STATUS for this long (five heartbeats) counts as silent.
 constexpr Duration kSilent = milliseconds(1000);
+// A STATUS may be so long on its way; later than that its sender is alive.
+constexpr Duration kOnItsWay = milliseconds(100);
 
 double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -38,6 +42,7 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       options_(std::move(options)),
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
+      host_(HostName()),
       began_(Clock::now()) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     if (const auto* status = arrival.As<status_t>()) OnStatus(*status);
@@ -46,35 +51,42 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
 }
 
 TimePoint Conductor::Poll(TimePoint now) {
-  if (phase_ == Phase::kJoining && AllReady()) {
+  const bool ready = AllReady(now);
+  if (ready != ready_) announce_at_ = now;
+  ready_ = ready;
+  if (phase_ == Phase::kJoining && ready) {
     phase_ = Phase::kRunning;
     progressed_ = now;
-    announce_at_ = now;
   }
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       now - began_ > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
   }
   if (phase_ == Phase::kRunning && now - progressed_ > options_.stall_limit) Fail(Culprit(now));
-  const bool begun = phase_ != Phase::kRunning || step() >= 0;
-  if (now >= announce_at_ && phase_ == Phase::kJoining) {
-    Announce(run_t::PREPARE, 0);
-    announce_at_ = now + kAnnounceEvery;
-  } else if (now >= announce_at_ && phase_ == Phase::kRunning) {
-    Announce(run_t::GO, 0);
-    announce_at_ = now + (begun ? kRepeatEvery : kAnnounceEvery);
-  }
+  if (phase_ == Phase::kJoining || phase_ == Phase::kRunning) AnnounceWhenDue(now);
   return std::min(announce_at_, now + kAnnounceEvery);
 }
 
-std::int64_t Conductor::step() const {
-  const Member& world = member(Role::kWorld);
-  return world.status ? world.status->header.step : -1;
+void Conductor::AnnounceWhenDue(TimePoint now) {
+  if (now < announce_at_) return;
+  // PREPARE until every role is ready, the first time and whenever one has been started again; GO
+  // until the world goes.
+  const auto& world = member(Role::kWorld).status;
+  const bool going = ready_ && world && world->state != status_t::READY;
+  Announce(ready_ ? run_t::GO : run_t::PREPARE, 0);
+  announce_at_ = now + (going ? kRepeatEvery : kAnnounceEvery);
 }
 
-bool Conductor::AllReady() const {
-  return std::ranges::all_of(members_, [](const Member& member) {
-    return member.status && member.status->state != status_t::WAITING;
+bool Conductor::IsExternal(Role role) const {
+  return std::ranges::find(options_.external, role) != options_.external.end();
+}
+
+bool Conductor::AllReady(TimePoint now) const {
+  return std::ranges::all_of(kRoles, [&](const RoleInfo& info) {
+    const Member& role = member(info.role);
+    const bool lost =
+        phase_ == Phase::kRunning && IsExternal(info.role) && now - role.heard > kSilent;
+    return role.status && role.status->state != status_t::WAITING && !role.rival && !lost;
   });
 }
 
@@ -91,7 +103,10 @@ std::string Conductor::NotReady() const {
 
 std::int64_t Conductor::Total(std::int64_t status_t::*counter) const {
   std::int64_t total = 0;
-  for (const Member& member : members_) total += member.status ? (*member.status).*counter : 0;
+  for (const Member& member : members_) {
+    if (member.status) total += (*member.status).*counter;
+    for (const status_t& status : member.dead) total += status.*counter;
+  }
   return total;
 }
 
@@ -115,11 +130,8 @@ void Conductor::OnStatus(const status_t& status) {
   const auto role = RoleNamed(status.role);
   if (!role || (phase_ != Phase::kJoining && phase_ != Phase::kRunning)) return;
   const TimePoint now = Clock::now();
+  if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
-  if (member.status && member.status->instance != status.instance) {
-    return Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
-                            member.status->pid, member.status->host, status.pid, status.host));
-  }
   if (member.status && status.sequence <= member.status->sequence) return;  // overtaken on its way
   const bool joined = status.state == status_t::READY || status.state == status_t::RUNNING;
   if (joined && status.scenario_hash != hash_) {
@@ -130,17 +142,65 @@ void Conductor::OnStatus(const status_t& status) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
+  // A role that catches up makes progress, too. It starts below what its predecessor had done.
+  if (member.status && status.header.step > member.status->header.step) progressed_ = now;
+  progress_ = std::max(progress_, status.header.step);
   member.status = status;
   member.heard = now;
   if (member.status->state == status_t::FAILED) {
     return Fail(fmt::format("{}: {}", member.status->role, member.status->error));
   }
-  if (*role != Role::kWorld) return;
-  if (member.status->header.step > progress_) {
-    progress_ = member.status->header.step;
-    progressed_ = now;
+  if (*role == Role::kWorld && member.status->state == status_t::DONE) phase_ = Phase::kDone;
+}
+
+bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  const auto same = [&](const status_t& other) { return other.instance == status.instance; };
+  if (std::ranges::any_of(member.dead, same)) return false;
+  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
+    return false;
   }
-  if (member.status->state == status_t::DONE) phase_ = Phase::kDone;
+  if (!member.status) return true;
+  if (same(*member.status)) {
+    const bool speaks = status.sequence > member.status->sequence;
+    if (speaks && member.rival && now - member.rival_since > kOnItsWay) {
+      Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
+                       status.pid, status.host, member.rival->pid, member.rival->host));
+    }
+    return true;
+  }
+  if (!member.rival || !same(*member.rival)) {
+    member.rival = status;
+    member.rival_since = now;
+  }
+  if (!IsExternal(role) || now - member.heard <= kSilent) return false;
+  if (++member.replaced > options_.restarts) {
+    Fail(
+        fmt::format("{} was started again as pid {} on {} at step {}, after {} restarts "
+                    "(--restarts)",
+                    status.role, status.pid, status.host, step(), options_.restarts));
+    return false;
+  }
+  member.dead.push_back(std::move(*member.status));
+  member.status.reset();
+  member.rival.reset();
+  return true;
+}
+
+void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  member.pids.push_back(pid);
+  if (member.status && member.status->pid == pid && member.status->host == host_) {
+    member.dead.push_back(std::move(*member.status));
+    member.status.reset();
+  }
+  member.rival.reset();
+  progressed_ = now;  // somebody is at work to get the run going again
+}
+
+void Conductor::Launched(Role role, std::int32_t pid, TimePoint now) {
+  std::erase(members_[static_cast<std::size_t>(role)].pids, pid);
+  progressed_ = now;
 }
 
 void Conductor::OnResend(Bytes bytes) {
@@ -152,7 +212,7 @@ void Conductor::OnResend(Bytes bytes) {
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
   for (auto i = static_cast<std::size_t>(resend.header.step); i < parts_.size(); ++i) {
-    Announce(run_t::PREPARE, i);
+    Announce(ready_ ? run_t::GO : run_t::PREPARE, i);
   }
 }
 

@@ -1,5 +1,6 @@
 // The runner's side of a run: announces the scenario, waits until every role is ready, lets the
-// world start, follows everybody's STATUS, and names the culprit when a step does not complete.
+// world start, follows everybody's STATUS, tells who joins late how far the run is, and names the
+// culprit when a step does not complete.
 #pragma once
 
 #include <array>
@@ -22,7 +23,9 @@ struct ConductorOptions {
   std::string scenario_text;                  // the effective scenario
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
   Duration join_limit{};                      // for the roles to be ready; 0: no limit
-  Duration stall_limit = milliseconds(4000);  // without a completed step
+  Duration stall_limit = milliseconds(4000);  // without a completed step of any role
+  std::vector<Role> external;                 // roles that somebody else starts, and starts again
+  int restarts = 0;                           // how often, at most, each of these
 };
 
 class Conductor {
@@ -39,7 +42,7 @@ class Conductor {
   /// What went wrong, one line. Empty unless phase() is kFailed.
   const std::string& error() const { return error_; }
   /// Last step that the world has begun, -1 before the first.
-  std::int64_t step() const;
+  std::int64_t step() const { return progress_; }
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
   /// Sum over the roles of a counter of status_t.
@@ -52,18 +55,34 @@ class Conductor {
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
+  /// The role's process on this machine is dead and will be started again: what is still on its way
+  /// from it is ignored, another instance may take its place.
+  void Bury(Role role, std::int32_t pid, TimePoint now);
+  /// The role has been started again, as this process on this machine.
+  void Launched(Role role, std::int32_t pid, TimePoint now);
+  /// Whether any instance of the role has been heard of.
+  bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
   /// A role's process as its STATUS tells it.
   struct Member {
-    std::optional<status_t> status;
+    std::optional<status_t> status;  // the last one of the instance that counts
     TimePoint heard{};
+    std::vector<status_t> dead;      // the last ones of instances that are dead
+    std::vector<std::int32_t> pids;  // of processes on this machine that are dead
+    std::optional<status_t> rival;   // another instance that says that it is this role, and since
+    TimePoint rival_since{};
+    int replaced = 0;  // times that an external role was started again
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
  private:
   void OnStatus(const status_t& status);
   void OnResend(Bytes bytes);
-  bool AllReady() const;
+  bool AllReady(TimePoint now) const;
+  bool IsExternal(Role role) const;
+  /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
+  bool Admit(Role role, const status_t& status, TimePoint now);
+  void AnnounceWhenDue(TimePoint now);
   void Announce(std::int8_t phase, std::size_t part);
   /// The one line that says who holds up the run.
   std::string Culprit(TimePoint now) const;
@@ -74,7 +93,9 @@ class Conductor {
   std::string hash_;
   std::array<Member, kRoles.size()> members_;
   Strangers strangers_;
+  std::string host_;
   Phase phase_ = Phase::kJoining;
+  bool ready_ = false;  // every role, when last looked at
   std::string error_;
   TimePoint began_;
   TimePoint announce_at_{};

@@ -14,7 +14,8 @@ LeadGate::LeadGate(Bus& bus) {
   bus.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     const auto* status = arrival.As<status_t>();
     if (status == nullptr || status->header.run_id != run_id_) return;
-    if (status->role == NameOf(Role::kRecorder)) {
+    // One that has failed may not have on disk what it had computed.
+    if (status->role == NameOf(Role::kRecorder) && status->state != status_t::FAILED) {
       recorded_ = std::max(recorded_, status->header.step);
     }
   });
@@ -29,7 +30,9 @@ void LeadGate::OnGo(const run_t& run, TimePoint now) {
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);
+  // Who joins late catches up at once and goes on from there in the pace.
   start_ = now;
+  start_ -= Due(std::max<std::int64_t>(0, run.progress)) - now;
 }
 
 TimePoint LeadGate::Due(std::int64_t step) const {

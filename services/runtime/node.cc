@@ -4,54 +4,26 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <ctime>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/this_process.h"
 
 namespace fogline {
 namespace {
 
-// How long a node waits before it asks: a few times what a step usually takes, within bounds; twice
-// as long each time that it asks in vain.
-constexpr int kPatienceSteps = 4;
-constexpr Duration kMinPatience = milliseconds(2);
-constexpr Duration kMaxFirstPatience = milliseconds(50);
-constexpr Duration kMaxPatience = milliseconds(50);
 // Being asked makes a node ask at once, but no more often than this.
 constexpr Duration kMinBetweenAsks = milliseconds(1);
-// Weight of the newest step in the smoothed duration of a step.
-constexpr int kSmoothing = 8;
+// Far beyond any run, and no arithmetic on it overflows.
+constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
-// The runner repeats itself once a second; a role that hears nothing for so long is an orphan.
+// The runner repeats itself five times a second; a role that hears nothing for so long is an
+// orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
-
-struct ProcessUse {
-  std::int64_t cpu_ms;
-  std::int64_t rss_bytes;
-};
-
-ProcessUse UseOfThisProcess() {
-  timespec cpu{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-  // The second number of statm is the resident set in pages (proc(5)).
-  std::int64_t pages = 0;
-  if (std::ifstream statm("/proc/self/statm"); statm) statm >> pages >> pages;
-  return {.cpu_ms = cpu.tv_sec * 1000 + cpu.tv_nsec / 1'000'000,
-          .rss_bytes = pages * sysconf(_SC_PAGESIZE)};
-}
-
-std::string HostName() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return name.data();
-}
 
 }  // namespace
 
@@ -91,12 +63,12 @@ TimePoint Node::Poll(TimePoint now) {
   if (Running()) {
     Advance(now);
     next = std::min(next, Repair(now));
-  } else if (status_.state == status_t::WAITING && !parts_.empty()) {
-    if (now >= ask_at_) {
-      Ask(ChannelOf<run_t>().name, parts_.FirstMissing());
-      ask_at_ = now + kPartPatience;
+  } else if (status_.state == status_t::WAITING && bound_) {
+    if (now >= part_at_) {
+      Ask(ChannelOf<run_t>().name, {.first = parts_.FirstMissing(), .count = 1});
+      part_at_ = now + kPartPatience;
     }
-    next = std::min(next, ask_at_);
+    next = std::min(next, part_at_);
   }
   if (now >= status_at_) PublishStatus();
   return std::min(next, status_at_);
@@ -129,19 +101,19 @@ void Node::PublishStatus() {
   BeforeStatus();
   status_.header.run_id = *run_id_;
   status_.scenario_hash = parts_.hash();
-  const Input* missing = waiting_since_ ? FirstMissing() : nullptr;
+  const Input* missing = patience_.since() ? FirstMissing() : nullptr;
   if (missing != nullptr) {
     status_.waiting_for = kChannels[missing->channel].name;
     status_.last_heard_step = missing->ring.newest();
     status_.last_heard_ms = status_.last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
-    status_.waiting_ms = Milliseconds(now - *waiting_since_);
+    status_.waiting_ms = Milliseconds(now - *patience_.since());
   } else {
     status_.waiting_for.clear();
   }
   ++status_.sequence;
   if (now >= use_at_) {  // asking the kernel costs more than some steps
     use_at_ = now + kHeartbeat;
-    const ProcessUse use = UseOfThisProcess();
+    const ProcessUse use = MeasureThisProcess();
     status_.cpu_ms = use.cpu_ms;
     status_.rss_bytes = use.rss_bytes;
   }
@@ -149,11 +121,11 @@ void Node::PublishStatus() {
   bus_.Publish(ChannelOf<status_t>().name, buffer_);
 }
 
-void Node::Ask(std::string_view channel, std::int64_t step) {
+void Node::Ask(std::string_view channel, StepRange steps) {
   resend_t resend{};
-  resend.header = {.run_id = *run_id_, .step = step, .utime = 0};
+  resend.header = {.run_id = *run_id_, .step = steps.first, .utime = 0};
   resend.channel = channel;
-  resend.count = 1;
+  resend.count = static_cast<std::int32_t>(steps.count);
   resend.requester = NameOf(role_);
   Encode(resend, buffer_);
   bus_.Publish(ChannelOf<resend_t>().name, buffer_);
@@ -168,13 +140,20 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
   for (Output& output : outputs_) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
-    bus_.Publish(output.topic, bytes);
+    // If it is so old that it is on disk, the recorder answers for it.
+    if (step > progress_ - 2 * kMaxAhead) bus_.Publish(output.topic, bytes);
   }
+}
+
+void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
+  if (!budget_.Take(now)) return;
+  bus_.Publish(channel, bytes);
+  ++status_.repairs_served;
 }
 
 void Node::OnRun(Bytes bytes) {
   run_t run{};
-  if (!Decode(bytes, run)) {
+  if (!Decode(bytes, run) || run.progress > kMaxStep) {
     ++status_.malformed;
     return;
   }
@@ -185,6 +164,7 @@ void Node::OnRun(Bytes bytes) {
   run_id_ = run.header.run_id;
   bound_ = true;
   runner_heard_ = Clock::now();
+  OnProgress(run.progress);
   if (run.phase == run_t::STOP) {
     Leave();
   } else if (status_.state == status_t::WAITING) {
@@ -203,9 +183,21 @@ void Node::Join() {
   try {
     Configure(ParseScenario(parts_.Text()));
   } catch (const std::exception& error) {
-    return Fail(fmt::format("cannot take the scenario: {}", error.what()));
+    return Fail(fmt::format("cannot take part: {}", error.what()));
   }
+  late_ = progress_;
   SetState(status_t::READY);
+}
+
+void Node::StartAt(std::int64_t step) {
+  next_ = step;
+  status_.header.step = step - 1;
+}
+
+void Node::OnProgress(std::int64_t progress) {
+  progress_ = std::max(progress_, progress);
+  Expect(progress_);
+  if (progress_ > next_ + kMaxAhead) late_ = progress_;
 }
 
 void Node::OnInput(std::size_t index, Arrival& arrival) {
@@ -231,7 +223,8 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
       ++status_.duplicates;
       return;
     case StepRing::Verdict::kOutOfWindow:
-      ++status_.out_of_window;
+      // Who catches up hears of steps that are under way elsewhere.
+      if (!CatchingUp() || step > late_ + kRingSteps) ++status_.out_of_window;
       return;
     case StepRing::Verdict::kConflict:
       Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?",
@@ -247,6 +240,7 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
   input.ring.Store(step, bytes);
   input.heard = arrival.time();
   Expect(step + lead_);
+  if (CatchingUp()) patience_.Arrived(arrival.time());
   Advance(arrival.time());
 }
 
@@ -263,17 +257,25 @@ void Node::OnResend(Bytes bytes) {
   if (!Running()) return;
   const TimePoint now = Clock::now();
   const std::int64_t step = resend.header.step;
-  if (resend.channel == ChannelOf<status_t>().name) return OnStatusAsked(step, now);
+  if (step < 0 || step > kMaxStep) return;
+  if (resend.channel == ChannelOf<status_t>().name) {
+    if (budget_.Take(now)) OnStatusAsked(step, now);
+    return;
+  }
+  const StepRange steps{.first = step,
+                        .count = std::clamp<std::int64_t>(resend.count, 1, kRingSteps)};
   for (Output& output : outputs_) {
-    if (kChannels[output.channel].name != resend.channel || step < 0) continue;
-    if (output.ring.Has(step)) {
-      bus_.Publish(output.topic, output.ring.Get(step));
-      ++status_.repairs_served;
-    } else if (step >= next_) {
-      Expect(step);
-      if (now - asked_ >= kMinBetweenAsks) AskForMissing(now);
+    if (kChannels[output.channel].name != resend.channel) continue;
+    for (std::int64_t k = step; k < step + steps.count; ++k) {
+      if (output.ring.Has(k)) Answer(resend.channel, output.ring.Get(k), now);
+    }
+    if (step >= next_) {
+      ExpectAsked(step);
+      // Who catches up has asked already.
+      if (!CatchingUp() && now - patience_.asked() >= kMinBetweenAsks) AskForMissing(now);
     }
   }
+  OnAsked(resend.channel, steps, now);
 }
 
 bool Node::InputsReady(std::int64_t step) const {
@@ -299,40 +301,48 @@ void Node::Advance(TimePoint now) {
     }
     status_.header.step = next_;
     ++next_;
-    // Steps that had to be repaired say nothing of how long a step takes (Karn & Partridge 1987).
-    if (computed_at_ != TimePoint{} && asked_ < computed_at_) {
-      step_time_ += ((now - computed_at_) - step_time_) / kSmoothing;
-    }
-    computed_at_ = now;
-    waiting_since_.reset();
+    patience_.Computed(now);
     if (status_.state == status_t::READY) SetState(status_t::RUNNING);
   }
 }
 
 TimePoint Node::Repair(TimePoint now) {
   if (expected_ < next_ || FirstMissing() == nullptr) return now + kHeartbeat;
-  if (!waiting_since_) {
-    waiting_since_ = now;
-    patience_ = std::clamp(kPatienceSteps * step_time_, kMinPatience, kMaxFirstPatience);
-    ask_at_ = now + patience_;
-  }
-  if (now >= ask_at_) {
+  const TimePoint ask_at = patience_.Wait(now);
+  if (CatchingUp() && next_ - lead_ > asked_) {  // nothing of it can be on its way
     AskForMissing(now);
-    patience_ = std::min(2 * patience_, kMaxPatience);
-    ask_at_ = now + patience_;
+    patience_.AskedForMany(now);
+  } else if (now >= ask_at) {
+    AskForMissing(now);
+    patience_.AskedInVain(now);
   }
-  return ask_at_;
+  return patience_.Wait(now);
 }
 
 void Node::AskForMissing(TimePoint now) {
   const std::int64_t needed = next_ - lead_;
   if (needed < 0) return;
-  asked_ = now;
+  patience_.Asked(now);
+  // As far as is known to be under way, and as the rings can hold.
+  asked_ = std::clamp(expected_ - lead_, needed, needed + kRingSteps - 2);
   for (const Input& input : inputs_) {
-    if (input.ring.Has(needed)) continue;
-    Ask(kChannels[input.channel].name, needed);
+    const StepRange steps = Lacking(input, needed, asked_);
+    if (steps.count == 0) continue;
+    Ask(kChannels[input.channel].name, steps);
     ++status_.repairs_asked;
   }
+}
+
+StepRange Node::Lacking(const Input& input, std::int64_t first, std::int64_t last) const {
+  if (CatchingUp()) {  // old steps come only to those who ask
+    while (first <= last && input.ring.Has(first)) ++first;
+    while (first <= last && input.ring.Has(last)) --last;
+    return {.first = first, .count = last - first + 1};
+  }
+  // What comes after a gap may be on its way.
+  std::int64_t count = 0;
+  while (first + count <= last && !input.ring.Has(first + count)) ++count;
+  return {.first = first, .count = count};
 }
 
 }  // namespace fogline

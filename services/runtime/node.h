@@ -7,6 +7,11 @@
 // (RESEND), and who is asked for what he cannot compute yet asks further up. So any loss below 100
 // % only costs time.
 //
+// Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
+// computes everything from step 0 on again, from inputs for which it asks many steps at a time. Old
+// ones come from the recorder, the last ones from their producers. It publishes only what the
+// recorder does not answer for.
+//
 // Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
 #pragma once
 
@@ -17,8 +22,10 @@
 
 #include "scenario/scenario.h"
 #include "services/graph.h"
+#include "services/runtime/answer_budget.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/patience.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/step_ring.h"
 
@@ -77,24 +84,34 @@ class Node {
   virtual void OnLeave() {}
   /// Someone asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/, TimePoint /*now*/) {}
+  /// Someone asks for these steps of a channel, whoever its producer is.
+  virtual void OnAsked(std::string_view /*channel*/, StepRange /*steps*/, TimePoint /*now*/) {}
 
   /// Publishes the output of a step on one of the role's channels (its place in kChannels) and
-  /// keeps it.
+  /// keeps it. What the recorder answers for is kept only.
   /// @throws std::runtime_error if it is too large
   void Emit(std::size_t channel, std::int64_t step, Bytes bytes);
   /// Ends the node's part in the run with an error.
   void Fail(std::string error);
   void SetState(std::int8_t state);
   void PublishStatus();
-  void Ask(std::string_view channel, std::int64_t step);
+  void Ask(std::string_view channel, StepRange steps);
+  /// Publishes again what somebody has asked for, unless too much was asked for lately.
+  void Answer(std::string_view channel, Bytes bytes, TimePoint now);
   /// Computes every step that can be computed.
   void Advance(TimePoint now);
   /// Says that the next step is known to be under way.
   void Expect(std::int64_t step) { expected_ = std::max(expected_, step); }
+  /// The same on the word of one who asks; what he may be wrong about is bounded.
+  void ExpectAsked(std::int64_t step) { Expect(std::min(step, next_ + kRingSteps - 1)); }
+  /// The steps before this one are done, by a predecessor. Call it in Configure().
+  void StartAt(std::int64_t step);
 
   Bus& bus() { return bus_; }
   std::vector<Input>& inputs() { return inputs_; }
   std::int64_t next() const { return next_; }
+  /// Last step that the world has begun, as far as the runner knows; -1 before the first.
+  std::int64_t progress() const { return progress_; }
   std::int64_t run_id() const { return *run_id_; }
   const ScenarioParts& parts() const { return parts_; }
   std::int8_t state() const { return status_.state; }
@@ -106,6 +123,8 @@ class Node {
   /// The world reads the commands of step k - 1 to make step k: its lead is 1. Everybody else's is
   /// 0.
   std::int64_t lead_ = 0;
+  /// What a node answers. Repairs on a network that loses a third take a few hundred a second.
+  AnswerBudget budget_{2000, 500};
 
   static constexpr Duration kHeartbeat = milliseconds(200);
 
@@ -119,6 +138,11 @@ class Node {
   const Input* FirstMissing() const;
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
+  /// Steps from `first` to `last` that an input lacks and that should be asked for together.
+  StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
+  /// The next step is older than what was under way when this node joined.
+  bool CatchingUp() const { return next_ <= late_; }
+  void OnProgress(std::int64_t progress);
 
   Bus& bus_;
   const Role role_;
@@ -129,17 +153,15 @@ class Node {
   std::vector<Output> outputs_;
   std::int64_t next_ = 0;       // step to compute next
   std::int64_t expected_ = -1;  // highest step that is known to be under way
+  std::int64_t progress_ = -1;
+  std::int64_t late_ = -1;   // last step to catch up with
+  std::int64_t asked_ = -1;  // last step that was asked for
   bool left_ = false;
   status_t status_{};
   std::vector<std::uint8_t> buffer_;
 
-  // Repair: since when the next step is known to be incomplete, when to ask, how long to wait then.
-  std::optional<TimePoint> waiting_since_;
-  TimePoint ask_at_{};
-  TimePoint asked_{};
-  Duration patience_{};
-  TimePoint computed_at_{};
-  Duration step_time_{};  // smoothed
+  Patience patience_;
+  TimePoint part_at_{};  // when to ask for a part of the scenario
   TimePoint status_at_{};
   TimePoint use_at_{};
   TimePoint runner_heard_{};

@@ -78,13 +78,12 @@ class StepNode final : public Node {
   }
   TimePoint PollMore(TimePoint now) override {
     if constexpr (Traits::kStarts) {
-      if (Running() && gate_->Finished(next())) {
-        if (AllInputsOf(next() - 1)) SetState(status_t::DONE);
-      } else if (Running() && gate_->started()) {
-        Expect(next());
+      if (Running() && gate_->started()) Expect(next());
+      if (Running() && gate_->Finished(next()) && AllInputsOf(next() - 1)) {
+        SetState(status_t::DONE);
       }
       if (const auto step = gate_->WantsRecorded(next(), now)) {
-        Ask(ChannelOf<status_t>().name, *step);
+        Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
       }
       return gate_->NextPoll(next(), now);
     }

@@ -11,9 +11,17 @@
 namespace fogline {
 
 /// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder,
-/// so whatever somebody may still ask for is in the ring of its producer.
+/// so whatever somebody may still ask for is in the ring of its producer; what is older than
+/// kRingSteps is on disk, and the recorder answers for it.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
+static_assert(2 * kMaxAhead <= kRingSteps, "there would be steps that nobody answers for");
+
+/// Steps `first` to `first + count - 1`.
+struct StepRange {
+  std::int64_t first;
+  std::int64_t count;
+};
 
 /// Where a step lies in any ring.
 inline constexpr std::size_t RingSlot(std::int64_t step) {

@@ -1,4 +1,5 @@
-// What happens to a run when a process, the runner or the user ends it.
+// What happens to a run when a process, the runner or the user ends it. (When roles may be started
+// again: crash_test.cc.)
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,12 +16,12 @@ using SteadyClock = std::chrono::steady_clock;
 // Steps after which a run counts as well under way: one second of it.
 constexpr int kUnderWay = 10;
 
-/// A run in real speed that is well under way.
+/// A run in real speed that is well under way and ends when a role does.
 class PacedRun {
  public:
   PacedRun()
-      : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--log",
-              folder_.File("run.lcm")}) {
+      : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
+              "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
     // Under way: so many steps are on disk.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);

@@ -3,10 +3,10 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <csignal>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -24,20 +24,19 @@
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
 #include "tools/fogline/interrupt.h"
-#include "tools/fogline/process_group.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/relay_process.h"
+#include "tools/fogline/supervisor.h"
 
 namespace fogline {
 namespace {
 
-// How long a role may take to be ready, and to leave when it is told to.
+// How long a role may take to be ready.
 constexpr Duration kJoinLimit = milliseconds(10'000);
-constexpr Duration kLeaveLimit = milliseconds(1500);
 // How often the runner looks after its processes while no message comes.
 constexpr Duration kLookEvery = milliseconds(20);
-// STOP is said this often to roles that run elsewhere: their leaving cannot be seen.
-constexpr int kStopRepeats = 5;
+// A process that is silent for so long hangs: ten of its signs of life.
+constexpr Duration kHangLimit = milliseconds(2000);
 
 ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
   // A slow pace is no stall: a step is expected to take its time.
@@ -46,7 +45,9 @@ ConductorOptions MakeConductorOptions(const Scenario& scenario, const Experiment
           .scenario_text = PrintScenario(scenario),
           .pace = options.pace,
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
-          .stall_limit = options.stall_limit + duration_cast<Duration>(step)};
+          .stall_limit = options.stall_limit + duration_cast<Duration>(step),
+          .external = options.external,
+          .restarts = options.restarts};
 }
 
 // ---- memq --------------------------------------------------------------------------------------
@@ -82,75 +83,46 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
 
 // ---- processes ---------------------------------------------------------------------------------
 
-std::filesystem::path ProgramOf(Role role) {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
-         fmt::format("fogline-{}", NameOf(role));
-}
-
-void StartProcesses(ProcessGroup& group, const std::string& url, std::int64_t run_id,
-                    const ExperimentOptions& options, const std::filesystem::path& log) {
-  for (const RoleInfo& info : kRoles) {
-    if (std::ranges::find(options.external, info.role) != options.external.end()) continue;
-    std::vector<std::string> arguments{"--lcm-url", url, "--run-id", std::to_string(run_id)};
-    if (info.role == Role::kRecorder) arguments.insert(arguments.end(), {"--log", log.string()});
-    group.Start(info.role, ProgramOf(info.role), arguments);
+void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
+                       const std::vector<Role>& external) {
+  fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
+  if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
+  for (const Role role : external) {
+    fmt::print(stderr, "waiting for the {}, which is started elsewhere\n", NameOf(role));
   }
 }
 
-/// One line that says who died, then what it had to say.
-std::string Obituary(const ProcessGroup::Exit& exit, const Conductor& conductor) {
-  std::string text = fmt::format("{} (pid {}) {} at step {}", NameOf(exit.role), exit.pid, exit.how,
-                                 conductor.step());
-  for (const std::string& line : exit.lines) {
-    text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
-  }
-  return text;
-}
-
-/// Says STOP until every process has left; those that do not are killed.
-void EndProcesses(Bus& bus, Conductor& conductor, ProcessGroup& group,
-                  const ExperimentOptions& options) {
-  const TimePoint began = Clock::now();
-  int said = 0;
-  while ((!group.empty() && Clock::now() - began < kLeaveLimit) ||
-         (said < kStopRepeats && !options.external.empty())) {
-    conductor.Stop();
-    ++said;
-    const TimePoint pause = Clock::now() + kLookEvery;
-    while (bus.Wait(pause - Clock::now())) {
-    }
-    group.Collect();
-  }
-}
-
-void RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scenario& scenario,
-                    const ExperimentOptions& options, const std::filesystem::path& log) {
-  ProcessGroup group;
-  StartProcesses(group, bus.url(), run_id, options, log);
-  if (options.announce) {
-    fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
-    if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
-    for (const Role role : options.external) {
-      fmt::print(stderr, "waiting for the {}, which is started elsewhere\n", NameOf(role));
-    }
-  }
+std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id,
+                                     const Scenario& scenario, const ExperimentOptions& options,
+                                     const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
+  Supervisor supervisor(bus, conductor,
+                        {.url = bus.url(),
+                         .run_id = run_id,
+                         .log = log,
+                         .external = options.external,
+                         .restarts = options.restarts,
+                         // Whoever hangs is found before the run counts as stalled.
+                         .silence = std::min(kHangLimit, options.stall_limit / 2),
+                         .say = [&](const std::string& line) {
+                           if (options.announce) progress.Say(line);
+                         }});
+  if (options.announce) AnnounceProcesses(bus, run_id, supervisor.group(), options.external);
   try {
     while (conductor.phase() == Conductor::Phase::kJoining ||
            conductor.phase() == Conductor::Phase::kRunning) {
       const TimePoint now = Clock::now();
       const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
       if (bus.Wait(next - now)) bus.Drain();
-      for (const ProcessGroup::Exit& exit : group.Collect()) {
-        conductor.Fail(Obituary(exit, conductor));
-      }
+      supervisor.Look(Clock::now());
       progress.Show(conductor.step());
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
     conductor.Fail(error.what());  // the processes are still ended in order
   }
-  EndProcesses(bus, conductor, group, options);
+  supervisor.End();
+  return supervisor.restarts();
 }
 
 std::string UrlOf(const std::string& transport) {
@@ -181,10 +153,11 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const ConductorOptions conducting = MakeConductorOptions(scenario, options);
   Conductor conductor(bus, conducting);
   const TimePoint began = Clock::now();
+  std::vector<Restarts> restarts;
   if (bus.url().starts_with("memq")) {
     RunInMemory(bus, conductor, conducting.run_id, scenario, log);
   } else {
-    RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
+    restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
   }
   const std::string kept =
       options.log.empty() ? "" : fmt::format("the log so far: {}", options.log.string());
@@ -203,7 +176,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
           .repairs = conductor.Total(&status_t::repairs_asked),
           .refused = conductor.Refused(),
-          .strangers = conductor.strangers().known()};
+          .strangers = conductor.strangers().known(),
+          .restarts = std::move(restarts)};
 }
 
 }  // namespace fogline

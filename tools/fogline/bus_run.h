@@ -15,6 +15,7 @@ struct BusRun {
   std::int64_t repairs = 0;
   Refusals refused{};
   std::vector<Stranger> strangers;
+  std::vector<Restarts> restarts;
 };
 
 /// A run id that no other run has.

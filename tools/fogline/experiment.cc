@@ -107,7 +107,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
-  const BusRun run = RunOnBus(scenario, options, log);
+  BusRun run = RunOnBus(scenario, options, log);
   LoggedRun logged = ReadLoggedRun(log);
   if (!logged.complete) {
     throw std::runtime_error(
@@ -118,6 +118,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   result.repairs = run.repairs;
   result.refused = run.refused;
   result.strangers = run.strangers;
+  result.restarts = std::move(run.restarts);
   result.log = options.log;
   return result;
 }

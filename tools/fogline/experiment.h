@@ -26,7 +26,15 @@ struct ExperimentOptions {
   double pace = 0;             // simulated seconds per second; 0: as fast as it goes
   std::vector<Role> external;  // roles that somebody else starts
   Duration stall_limit = milliseconds(4000);
+  int restarts = 10;      // of each role that is killed or hangs; 0: that ends the run
   bool announce = false;  // say on stderr where the run is and which processes take part
+};
+
+/// How often a role was started again.
+struct Restarts {
+  Role role;
+  int count;
+  std::string last;  // how the last one before the present one ended
 };
 
 struct ExperimentResult {
@@ -38,7 +46,8 @@ struct ExperimentResult {
   std::int64_t repairs = 0;  // requests to publish something again
   Refusals refused{};
   std::vector<Stranger> strangers;  // of other runs, on the same network
-  std::filesystem::path log;        // empty if there is none
+  std::vector<Restarts> restarts;
+  std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<Sample> samples;
 };

@@ -55,8 +55,8 @@ ProcessGroup::~ProcessGroup() {
   }
 }
 
-void ProcessGroup::Start(Role role, const std::filesystem::path& program,
-                         const std::vector<std::string>& arguments) {
+pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
+                          const std::vector<std::string>& arguments) {
   // Inherited as ignored, it would keep the ends of processes from us.
   std::signal(SIGCHLD, SIG_DFL);
   std::array<int, 2> ends{};
@@ -77,6 +77,7 @@ void ProcessGroup::Start(Role role, const std::filesystem::path& program,
     throw std::runtime_error(fmt::format("cannot start {}: {}", path, std::strerror(errno)));
   }
   processes_.push_back({.role = role, .pid = pid, .output = ends[0], .partial = {}, .lines = {}});
+  return pid;
 }
 
 std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
@@ -94,7 +95,7 @@ std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
     exits.push_back({.role = process->role,
                      .pid = process->pid,
                      .how = HowItEnded(status),
-                     .clean = WIFEXITED(status) && WEXITSTATUS(status) == 0,
+                     .killed = WIFSIGNALED(status),
                      .lines = {process->lines.begin(), process->lines.end()}});
     process = processes_.erase(process);
   }

@@ -22,16 +22,17 @@ class ProcessGroup {
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  /// Starts a program for a role; what it prints is kept. @throws std::runtime_error
-  void Start(Role role, const std::filesystem::path& program,
-             const std::vector<std::string>& arguments);
+  /// Starts a program for a role; what it prints is kept.
+  /// @return its process id @throws std::runtime_error
+  pid_t Start(Role role, const std::filesystem::path& program,
+              const std::vector<std::string>& arguments);
 
   /// A process that has ended.
   struct Exit {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool clean;                      // exit code 0
+    bool killed;                     // by a signal: it could not say why
     std::vector<std::string> lines;  // the last ones that it printed
   };
   /// Reads what the processes print and collects those that have ended since the last call.

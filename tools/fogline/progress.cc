@@ -46,4 +46,8 @@ void Progress::Show(std::int64_t done, std::string_view note) {
   std::fflush(stderr);
 }
 
+void Progress::Say(std::string_view line) {
+  fmt::print(stderr, "{}{}\n", shown_ ? "\r\033[K" : "", line);
+}
+
 }  // namespace fogline

@@ -21,6 +21,8 @@ class Progress {
 
   /// @param note how it goes, behind the rest
   void Show(std::int64_t done, std::string_view note = "");
+  /// Prints a line on stderr, in place of the bar.
+  void Say(std::string_view line);
 
  private:
   std::string what_;

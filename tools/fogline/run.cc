@@ -17,7 +17,8 @@ namespace {
 constexpr const char* kExamples =
     R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
 otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
-its log, and gives exit code 130.
+its log, and gives exit code 130. A process that is killed or hangs is started
+again and catches up, and the result is the same.
 
 Examples:
   fogline run scenario/paper.json
@@ -40,6 +41,11 @@ struct RunArguments {
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
         ->check(CLI::Range(1.0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--restarts", options.restarts,
+                    "Start a role that is killed, or says nothing for 2 s, again: at most so often "
+                    "in the run (0: its death ends the run)")
+        ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
@@ -75,6 +81,11 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
                                  {"pid", stranger.pid},
                                  {"host", stranger.host},
                                  {"run_id", stranger.run_id}});
+  }
+  json["restarts"] = nlohmann::ordered_json::array();
+  for (const Restarts& role : result.restarts) {
+    json["restarts"].push_back(
+        {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
   }
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
@@ -114,6 +125,10 @@ int Run(RunArguments& arguments) {
         fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
   }
   if (!refused.empty()) fmt::print("refused messages: {}\n", refused);
+  for (const Restarts& role : result.restarts) {
+    fmt::print("{} was started again {}: {}\n", NameOf(role.role),
+               role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
+  }
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result.measures));

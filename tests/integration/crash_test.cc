@@ -1,0 +1,305 @@
+// Processes of a run are killed or hang, and the run ends as if nothing had happened.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <random>
+
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Far longer than anything here takes on a busy machine.
+constexpr Duration kPatience = std::chrono::seconds(30);
+// Steps of a run that is watched, and its pace: a millisecond a step.
+constexpr int kSteps = 300;
+constexpr int kPace = 100;
+
+std::vector<std::string> PaperOf(int steps, const std::vector<std::string>& more) {
+  std::vector<std::string> command{Program("fogline"), "run",   "scenario/paper.json",
+                                   "--json",           "--set", "/steps=" + std::to_string(steps)};
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+/// Digest of the run that nothing happens to.
+std::string UndisturbedDigest(int steps) {
+  static std::map<int, std::string> known;
+  std::string& digest = known[steps];
+  if (digest.empty()) {
+    const Outcome outcome = RunCommand(PaperOf(steps, {"--transport", "direct"}));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    digest = nlohmann::json::parse(outcome.out).at("digest");
+  }
+  return digest;
+}
+
+/// A run over the network whose STATUS messages tell this test who is who.
+class WatchedRun {
+ public:
+  explicit WatchedRun(const std::vector<std::string>& more = {}, int steps = kSteps,
+                      int pace = kPace)
+      : steps_(steps),
+        bus_(FreshMulticastUrl()),
+        log_(folder_.File("run.lcm")),
+        run_(Command(more, pace)) {
+    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
+      truth_t truth{};
+      if (Decode(bytes, truth)) step_ = std::max(step_, truth.header.step);
+    });
+    bus_.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) {
+      status_t status{};
+      if (Decode(bytes, status)) last_[status.role][status.pid] = status;
+    });
+  }
+
+  /// Handles messages until something is so. @throws std::runtime_error if it never is
+  template <class Condition>
+  void WaitUntil(const Condition& condition, const std::string& what) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (!condition()) {
+      bus_.Wait(milliseconds(20));
+      if (Clock::now() > end || !IsAlive(run_.pid())) {
+        throw std::runtime_error("waited in vain for " + what + "\n" + run_.Err());
+      }
+    }
+  }
+  void WaitForStep(std::int64_t step) {
+    WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
+  }
+
+  /// The process that is a role now: one that this test has not killed.
+  pid_t PidOf(const std::string& role) {
+    pid_t pid = 0;
+    WaitUntil(
+        [&] {
+          for (const auto& [candidate, status] : last_[role]) {
+            if (!gone_.contains(candidate)) pid = candidate;
+          }
+          return pid != 0;
+        },
+        role);
+    return pid;
+  }
+  void Signal(const std::string& role, int signal) {
+    const pid_t pid = PidOf(role);
+    gone_[pid] = true;
+    kill(pid, signal);
+  }
+  void WaitForState(const std::string& role, std::int8_t state) {
+    const pid_t pid = PidOf(role);
+    WaitUntil([&] { return last_[role][pid].state == state; }, "another state of " + role);
+  }
+
+  /// Waits for the end. @return the result, which must be that of the undisturbed run
+  nlohmann::json ExpectSameResult() {
+    EXPECT_EQ(run_.Wait(), 0) << run_.Err();
+    const auto result = nlohmann::json::parse(run_.Out(), nullptr, false);
+    EXPECT_EQ(result.value("digest", ""), UndisturbedDigest(steps_)) << run_.Err();
+    EXPECT_EQ(result.value("steps", 0), steps_);
+    return result;
+  }
+  /// How often the result says that a role was started again.
+  static int RestartsOf(const nlohmann::json& result, const std::string& role) {
+    for (const auto& entry : result.at("restarts")) {
+      if (entry.at("role") == role) return entry.at("count");
+    }
+    return 0;
+  }
+
+  Background& run() { return run_; }
+  const std::string& url() const { return bus_.url(); }
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+ private:
+  std::vector<std::string> Command(const std::vector<std::string>& more, int pace) const {
+    std::vector<std::string> arguments{"--lcm-url", bus_.url(), "--log",
+                                       log_,        "--pace",   std::to_string(pace)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return PaperOf(steps_, arguments);
+  }
+
+  const int steps_;
+  ScratchFolder folder_;
+  Bus bus_;
+  std::string log_;
+  Background run_;
+  std::int64_t step_ = -1;
+  std::map<std::string, std::map<pid_t, status_t>> last_;
+  std::map<pid_t, bool> gone_;
+};
+
+std::vector<std::string> AllRoles() {
+  std::vector<std::string> names;
+  for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+  return names;
+}
+
+class CrashOfARoleTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(CrashOfARoleTest, ChangesNoResultAndIsReported) {
+  const std::string& role = GetParam();
+  // A step of its own for each role, the same every time.
+  std::mt19937 random(static_cast<unsigned>(role.size() * 256 + static_cast<unsigned>(role[0])));
+  const int step = std::uniform_int_distribution(80, 200)(random);
+  WatchedRun watched;
+  watched.WaitForStep(step);
+  watched.Signal(role, SIGKILL);
+  const auto result = watched.ExpectSameResult();
+  ASSERT_EQ(result["restarts"].size(), 1U) << result["restarts"];
+  EXPECT_EQ(WatchedRun::RestartsOf(result, role), 1);
+  EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(),
+              HasSubstr("was killed by signal 9 (Killed) at step "));
+  EXPECT_THAT(watched.run().Err(), HasSubstr("; started again as pid "));
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryRole, CrashOfARoleTest, testing::ValuesIn(AllRoles()),
+                         [](const auto& role) { return role.param; });
+
+TEST(CrashTest, OfEveryRoleAtOnceChangesNoResult) {
+  WatchedRun watched;
+  watched.WaitForStep(150);
+  for (const std::string& role : AllRoles()) watched.Signal(role, SIGKILL);
+  const auto result = watched.ExpectSameResult();
+  EXPECT_EQ(result["restarts"].size(), kRoles.size());
+}
+
+TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
+  WatchedRun watched;
+  watched.WaitForStep(100);
+  // Again as soon as anything is heard of the next one: before, while or after it catches up.
+  for (int i = 0; i < 5; ++i) {
+    for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
+  }
+  const auto result = watched.ExpectSameResult();
+  for (const char* role : {"fusion", "recorder", "world"}) {
+    EXPECT_EQ(WatchedRun::RestartsOf(result, role), 5) << role;
+  }
+}
+
+TEST(CrashTest, WhileTheRunIsJoinedIsRepairedToo) {
+  // GIVEN a run that waits for a driver
+  WatchedRun watched({"--external", "driver"});
+  watched.WaitForState("radar", status_t::READY);
+  // WHEN others are killed before it comes
+  for (const char* role : {"radar", "world", "recorder"}) watched.Signal(role, SIGKILL);
+  for (const char* role : {"radar", "world", "recorder"}) {
+    watched.WaitForState(role, status_t::READY);
+  }
+  // THEN the run is as always
+  const Background driver({Program("fogline-driver"), "--lcm-url", watched.url()});
+  const auto result = watched.ExpectSameResult();
+  EXPECT_EQ(result["restarts"].size(), 3U);
+}
+
+TEST(CrashTest, AProcessThatHangsIsKilledAndStartedAgain) {
+  WatchedRun watched({"--stall-timeout", "2"});
+  watched.WaitForStep(100);
+  for (const char* role : {"world", "acc", "recorder"}) watched.Signal(role, SIGSTOP);
+  const auto result = watched.ExpectSameResult();
+  ASSERT_EQ(result["restarts"].size(), 3U);
+  for (const char* role : {"world", "acc", "recorder"}) {
+    EXPECT_EQ(WatchedRun::RestartsOf(result, role), 1) << role;
+  }
+  EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(),
+              testing::MatchesRegex("was silent for 1\\.[0-9] s and was killed at step [0-9]+"));
+}
+
+TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
+  WatchedRun watched({"--restarts", "2"});
+  watched.WaitForStep(100);
+  for (int i = 0; i < 3; ++i) watched.Signal("fusion", SIGKILL);
+  EXPECT_EQ(watched.run().Wait(), 3);
+  EXPECT_THAT(watched.run().Err(), HasSubstr("error: fusion (pid "));
+  EXPECT_THAT(watched.run().Err(), HasSubstr(", after 2 restarts (--restarts)\n"));
+}
+
+TEST(CrashTest, OfARoleFromElsewhereIsOverWhenSomebodyStartsItAgain) {
+  // GIVEN a run that goes on for longer than it takes to be sure of a death
+  WatchedRun watched({"--external", "driver"}, 1500);
+  const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
+  const Background first(command);
+  watched.WaitForStep(100);
+  watched.Signal("driver", SIGKILL);
+  // It knows nothing of the run but what it hears.
+  const Background second(command);
+  const auto result = watched.ExpectSameResult();
+  ASSERT_EQ(WatchedRun::RestartsOf(result, "driver"), 1);
+  EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(), HasSubstr("fell silent at step "));
+}
+
+TEST(CrashTest, ASecondProcessOfARoleThatLivesEndsTheRunByBothNames) {
+  WatchedRun watched({}, 100'000);
+  watched.WaitForStep(100);
+  const std::string ours = std::to_string(watched.PidOf("acc"));
+  const Background second({Program("fogline-acc"), "--lcm-url", watched.url()});
+  EXPECT_EQ(watched.run().Wait(), 3);
+  const std::string err = watched.run().Err();
+  EXPECT_THAT(err, HasSubstr("error: two processes are the acc: pid "));
+  EXPECT_THAT(err, HasSubstr("pid " + ours + " on "));
+  EXPECT_THAT(err, HasSubstr("pid " + std::to_string(second.pid()) + " on "));
+}
+
+TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can mount a small file system";
+  if (RunCommand({"unshare", "--mount", "true"}).code != 0) {
+    GTEST_SKIP() << "no mount namespace here";
+  }
+  const ScratchFolder folder;
+  // 64 KiB are about fifty steps. It is mounted for these two commands alone.
+  const Outcome outcome =
+      RunCommand({"unshare", "--mount", "sh", "-c",
+                  "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
+                  "\"$0\" run scenario/paper.json --quiet --log \"$1/run.lcm\"\ncode=$?\n"
+                  "\"$0\" digest \"$1/run.lcm\"\nexit $code",
+                  Program("fogline"), folder.path().string()});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("error: recorder: cannot write to " + folder.File("run.lcm") +
+                                     ": No space left on device\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("cut off after event "));
+  EXPECT_THAT(outcome.out, testing::MatchesRegex("[0-9a-f]+ .*run.lcm\n"));
+}
+
+/// How many processes are to be killed: a few, unless the campaign wants more.
+int KillsWanted() {
+  const char* kills = std::getenv("FOGLINE_TEST_KILLS");
+  return kills == nullptr ? 6 : std::atoi(kills);
+}
+
+TEST(CrashCampaignTest, KillsAtRandomStepsChangeNoResult) {
+  constexpr int kKillsPerRun = 10;
+  std::mt19937 random(2024);
+  const std::vector<std::string> roles = AllRoles();
+  for (int done = 0; done < KillsWanted();) {
+    const int kills = std::min(kKillsPerRun, KillsWanted() - done);
+    std::vector<int> steps(static_cast<std::size_t>(kills));
+    for (int& step : steps) step = std::uniform_int_distribution(1, kSteps - 2)(random);
+    std::ranges::sort(steps);
+    WatchedRun watched;
+    for (const int step : steps) {
+      watched.WaitForStep(step);
+      watched.Signal(roles[std::uniform_int_distribution<std::size_t>(0, roles.size() - 1)(random)],
+                     SIGKILL);
+    }
+    const auto result = watched.ExpectSameResult();
+    int restarts = 0;
+    for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
+    // Who is killed at the very end may not be needed again.
+    const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
+    EXPECT_GE(restarts, needed) << watched.run().Err();
+    EXPECT_LE(restarts, kills);
+    done += kills;
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

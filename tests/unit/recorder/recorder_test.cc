@@ -1,0 +1,170 @@
+// The recorder on a bus in memory: what it answers for, and how it goes on with a log.
+#include "services/recorder/recorder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/command.h"
+#include "tests/unit/runtime/script.h"
+
+namespace fogline {
+namespace {
+
+using test::Script;
+using testing::HasSubstr;
+
+constexpr std::int64_t kSteps = 150;
+
+std::string Content(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class RecorderTest : public testing::Test {
+ protected:
+  /// What the others say in a step.
+  static void SayStep(Script& script, std::int64_t step) {
+    ForEachStepChannel([&]<class M>(std::size_t) {
+      M message = Script::Of<M>(step);
+      if constexpr (std::is_same_v<M, truth_t>) message.last = step == kSteps - 1;
+      script.Say(message);
+    });
+  }
+  /// A recorder of the run that has got so far.
+  std::unique_ptr<Recorder> Record(Script& script, const std::string& name,
+                                   Recorder::Existing existing, std::int64_t progress = -1) {
+    auto recorder =
+        std::make_unique<Recorder>(script.bus(), Script::kRunId, folder_.File(name), existing);
+    script.SayRun(run_t::GO, progress);
+    return recorder;
+  }
+  /// Records the whole run, or what is left of it.
+  void RecordAll(const std::string& name, Recorder::Existing existing) {
+    Script script;
+    const auto recorder = Record(script, name, existing);
+    EXPECT_EQ(recorder->error(), "");
+    for (std::int64_t step = 0; step < kSteps; ++step) SayStep(script, step);
+    recorder->Leave();
+  }
+  /// The log of the whole run.
+  std::string WholeLog() {
+    RecordAll("whole", Recorder::Existing::kReplace);
+    return Content(folder_.File("whole"));
+  }
+
+  const test::ScratchFolder folder_;
+  Script script_;
+  std::vector<status_t>& status_ = script_.Listen<status_t>();
+  std::vector<truth_t>& truths_ = script_.Listen<truth_t>();
+};
+
+TEST_F(RecorderTest, GoesOnWithALogThatIsCutAnywhereAndCompletesItByteByByte) {
+  const std::string whole = WholeLog();
+  ASSERT_GT(whole.size(), 100'000U);
+  // In the scenario, in its last part, in the first step, between and within events and steps.
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{40}, std::size_t{3000}, std::size_t{8000}, std::size_t{20'000},
+        whole.size() / 2, whole.size() / 2 + 1, whole.size() / 2 + 100, whole.size() - 1,
+        whole.size()}) {
+    std::ofstream(folder_.File("cut"), std::ios::binary)
+        .write(whole.data(), static_cast<long>(size));
+    RecordAll("cut", Recorder::Existing::kResume);
+    EXPECT_TRUE(Content(folder_.File("cut")) == whole) << size << " bytes";
+  }
+}
+
+TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
+  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
+  truths_.clear();
+  script_.AskFor("TRUTH", 10, 63);
+  // 10 to 72 are asked for, 0 to 67 are older than kMaxAhead steps.
+  ASSERT_EQ(truths_.size(), 58U);
+  for (std::size_t i = 0; i < truths_.size(); ++i) {
+    EXPECT_EQ(truths_[i].header.step, static_cast<std::int64_t>(10 + i));
+  }
+  truths_.clear();
+  script_.AskFor("TRUTH", 68, 10);
+  script_.AskFor("TRUTH", 1000, 10);
+  script_.AskFor("TRUTH", -5, 10);
+  script_.AskFor("TRUTHS", 0, 10);
+  EXPECT_TRUE(truths_.empty());
+}
+
+TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
+  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
+  truths_.clear();
+  constexpr int kRequests = 500;
+  const TimePoint began = Clock::now();
+  for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
+  const std::chrono::duration<double> took = Clock::now() - began;
+  // 3,000 at once and 30,000 a second.
+  EXPECT_GE(truths_.size(), 3000U);
+  EXPECT_LE(static_cast<double>(truths_.size()), 3001 + 30'000 * took.count());
+}
+
+TEST_F(RecorderTest, AnswersForWhatItsPredecessorHasWritten) {
+  WholeLog();
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  EXPECT_EQ(status_.back().header.step, kSteps - 1);
+  truths_.clear();
+  script_.AskFor("TRUTH", 0, 2);
+  ASSERT_EQ(truths_.size(), 2U);
+  EXPECT_EQ(truths_[1].header.step, 1);
+}
+
+TEST_F(RecorderTest, LeavesTheLogOfAnotherRunAlone) {
+  const std::string whole = WholeLog();
+  Script others;
+  Recorder recorder(others.bus(), Script::kRunId + 1, folder_.File("whole"),
+                    Recorder::Existing::kResume);
+  const std::vector<std::string> parts = SplitScenario(others.text());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    others.Say(MakeRunPart(Script::kRunId + 1, run_t::GO, 0, HashOf(others.text()), parts, i));
+  }
+  EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of run 7, not of 8"));
+  EXPECT_TRUE(Content(folder_.File("whole")) == whole);
+}
+
+TEST_F(RecorderTest, LeavesTheLogOfAnotherScenarioAlone) {
+  const std::string whole = WholeLog();
+  Script others;
+  Recorder recorder(others.bus(), Script::kRunId, folder_.File("whole"),
+                    Recorder::Existing::kResume);
+  Scenario scenario;
+  scenario.seed += 1;
+  const std::string text = PrintScenario(scenario);
+  const std::vector<std::string> parts = SplitScenario(text);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    others.Say(MakeRunPart(Script::kRunId, run_t::GO, 0, HashOf(text), parts, i));
+  }
+  EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of another scenario"));
+  EXPECT_TRUE(Content(folder_.File("whole")) == whole);
+}
+
+TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
+  std::ofstream(folder_.File("text")) << "hello, world";
+  const auto recorder = Record(script_, "text", Recorder::Existing::kResume);
+  EXPECT_THAT(recorder->error(), HasSubstr("not an LCM event log"));
+  EXPECT_EQ(Content(folder_.File("text")), "hello, world");
+}
+
+TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
+  WholeLog();
+  // The world has begun step 1000, so step 968 was on disk.
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, 1000);
+  EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 969 were in it"));
+}
+
+TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
+  Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
+  script_.SayRun(run_t::GO, -1);
+  EXPECT_THAT(recorder.error(), HasSubstr("cannot write to /dev/full: No space left on device"));
+  EXPECT_EQ(status_.back().state, status_t::FAILED);
+}
+
+}  // namespace
+}  // namespace fogline

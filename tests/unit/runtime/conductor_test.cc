@@ -1,0 +1,159 @@
+#include "services/runtime/conductor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "services/runtime/digest.h"
+#include "services/runtime/this_process.h"
+#include "tests/unit/runtime/script.h"
+
+namespace fogline {
+namespace {
+
+using test::Script;
+using testing::HasSubstr;
+
+class ConductorTest : public testing::Test {
+ protected:
+  ConductorTest() {
+    for (const RoleInfo& info : kRoles) {
+      status_t& status = roles_[static_cast<std::size_t>(info.role)];
+      status = Script::Of<status_t>(-1);
+      status.role = info.name;
+      status.host = HostName();
+      status.pid = 100 + static_cast<std::int32_t>(info.role);
+      status.instance = status.pid;
+      status.state = status_t::READY;
+      status.scenario_hash = HashOf(script_.text());
+      status.type_fingerprint = TypeFingerprint();
+    }
+  }
+
+  status_t& role(Role role) { return roles_[static_cast<std::size_t>(role)]; }
+  void SayStatus(Role who) {
+    ++role(who).sequence;
+    script_.Say(role(who));
+  }
+  /// Says something on behalf of everybody, so that the run is at a step.
+  void BeAtStep(std::int64_t step) {
+    for (const RoleInfo& info : kRoles) {
+      role(info.role).header.step = step;
+      role(info.role).state = step < 0 ? status_t::READY : status_t::RUNNING;
+      SayStatus(info.role);
+    }
+    Poll(Clock::now());
+  }
+  void Poll(TimePoint now) {
+    conductor_.Poll(now);
+    script_.bus().Drain();
+  }
+  /// Another process takes the place of a role.
+  void Replace(Role who) {
+    role(who).pid += 1000;
+    role(who).instance += 1000;
+    role(who).sequence = 0;
+    role(who).header.step = -1;
+    role(who).state = status_t::READY;
+  }
+
+  Script script_;
+  std::vector<run_t>& said_ = script_.Listen<run_t>();
+  Conductor conductor_{script_.bus(), {.run_id = Script::kRunId, .scenario_text = script_.text()}};
+  std::array<status_t, kRoles.size()> roles_{};
+};
+
+TEST_F(ConductorTest, SaysPrepareUntilEveryRoleIsReadyAndThenGo) {
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE);
+  EXPECT_EQ(said_.back().progress, -1);
+  BeAtStep(-1);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+}
+
+TEST_F(ConductorTest, TellsWhoJoinsHowFarTheRunIs) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  role(Role::kRecorder).header.step = 48;
+  SayStatus(Role::kRecorder);
+  Poll(Clock::now() + milliseconds(300));
+  EXPECT_EQ(said_.back().progress, 48);
+  EXPECT_EQ(conductor_.step(), 48);
+}
+
+TEST_F(ConductorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  // WHEN the fusion has died
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE);
+  EXPECT_EQ(said_.back().progress, 40);
+  // AND a last word of it comes, THEN that does not count
+  SayStatus(Role::kFusion);
+  Poll(Clock::now());
+  EXPECT_FALSE(conductor_.member(Role::kFusion).status);
+  // WHEN the next one is there
+  Replace(Role::kFusion);
+  SayStatus(Role::kFusion);
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
+}
+
+TEST_F(ConductorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_FALSE(conductor_.member(Role::kFusion).status);
+  // Unless the system has given its number to the next one.
+  conductor_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_TRUE(conductor_.member(Role::kFusion).status);
+}
+
+TEST_F(ConductorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
+  role(Role::kFusion).repairs_asked = 3;
+  BeAtStep(-1);
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  role(Role::kFusion).repairs_asked = 4;
+  SayStatus(Role::kFusion);
+  EXPECT_EQ(conductor_.Total(&status_t::repairs_asked), 7);
+}
+
+TEST_F(ConductorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
+  BeAtStep(-1);
+  const status_t first = role(Role::kAcc);
+  Replace(Role::kAcc);
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning) << "the first may be dead";
+  // WHEN the first speaks long after the second has come
+  const TimePoint end = Clock::now() + milliseconds(120);
+  while (Clock::now() < end) Poll(Clock::now());
+  role(Role::kAcc) = first;
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+  EXPECT_THAT(conductor_.error(), HasSubstr("two processes are the acc: pid 104 on "));
+  EXPECT_THAT(conductor_.error(), HasSubstr(" and pid 1104 on "));
+}
+
+TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  Poll(Clock::now() + milliseconds(3900));
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  for (const std::int64_t step : {-1, 10, 20}) {
+    role(Role::kFusion).header.step = step;
+    SayStatus(Role::kFusion);
+  }
+  Poll(Clock::now() + milliseconds(3900));
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
+  EXPECT_EQ(conductor_.step(), 40) << "of the run, not of who catches up";
+  Poll(Clock::now() + milliseconds(4100));
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+}
+
+}  // namespace
+}  // namespace fogline

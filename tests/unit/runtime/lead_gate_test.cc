@@ -1,0 +1,71 @@
+#include "services/runtime/lead_gate.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/runtime/script.h"
+
+namespace fogline {
+namespace {
+
+using test::Script;
+
+class LeadGateTest : public testing::Test {
+ protected:
+  LeadGateTest() { gate_.Configure(Scenario{}, Script::kRunId); }
+
+  void Go(double pace, std::int64_t progress) {
+    run_t run{};
+    run.pace = pace;
+    run.progress = progress;
+    gate_.OnGo(run, now_);
+  }
+  void Recorded(std::int64_t step, std::int8_t state = status_t::RUNNING) {
+    auto status = Script::Of<status_t>(step);
+    status.role = "recorder";
+    status.state = state;
+    script_.Say(status);
+  }
+
+  const TimePoint now_ = Clock::now();
+  Script script_;
+  LeadGate gate_{script_.bus()};
+};
+
+TEST_F(LeadGateTest, IsClosedUntilTheRunnerSaysGo) {
+  EXPECT_FALSE(gate_.Open(0, now_));
+  Go(0, -1);
+  EXPECT_TRUE(gate_.Open(0, now_));
+}
+
+TEST_F(LeadGateTest, LetsTheWorldRunOnlySoFarAheadOfWhatIsOnDisk) {
+  Go(0, -1);
+  EXPECT_TRUE(gate_.Open(kMaxAhead - 1, now_));
+  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  Recorded(10);
+  EXPECT_TRUE(gate_.Open(kMaxAhead + 10, now_));
+  EXPECT_FALSE(gate_.Open(kMaxAhead + 11, now_));
+}
+
+TEST_F(LeadGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {
+  Go(0, -1);
+  Recorded(10, status_t::FAILED);
+  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+}
+
+TEST_F(LeadGateTest, HoldsTheWorldToThePace) {
+  Go(1, -1);
+  EXPECT_TRUE(gate_.Open(0, now_));
+  EXPECT_FALSE(gate_.Open(10, now_));
+  EXPECT_TRUE(gate_.Open(10, now_ + milliseconds(1000)));
+}
+
+TEST_F(LeadGateTest, LetsAWorldThatJoinsLateCatchUpAtOnceAndHoldsItToThePaceFromThere) {
+  Go(1, 100);
+  Recorded(100);
+  EXPECT_TRUE(gate_.Open(100, now_));
+  EXPECT_FALSE(gate_.Open(110, now_));
+  EXPECT_TRUE(gate_.Open(110, now_ + milliseconds(1000)));
+}
+
+}  // namespace
+}  // namespace fogline

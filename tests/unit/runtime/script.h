@@ -1,0 +1,85 @@
+// A node or a conductor alone on a bus in memory: a test says what the others say, and sees what it
+// answers.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenario/loader.h"
+#include "services/runtime/bus.h"
+#include "services/runtime/node.h"
+#include "services/runtime/scenario_parts.h"
+
+namespace fogline::test {
+
+/// Everybody else of a run.
+class Script {
+ public:
+  static constexpr std::int64_t kRunId = 7;
+
+  Script() : text_(PrintScenario(Scenario{})) {}
+
+  Bus& bus() { return bus_; }
+  const std::string& text() const { return text_; }
+
+  /// Keeps what is said on the channel of M from now on, whoever says it.
+  template <class M>
+  std::vector<M>& Listen() {
+    auto& heard = std::get<std::vector<M>>(heard_);
+    bus_.Subscribe(ChannelOf<M>().name, [&heard](Bytes bytes) {
+      M message{};
+      if (Decode(bytes, message)) heard.push_back(message);
+    });
+    return heard;
+  }
+
+  template <class M>
+  void Say(const M& message) {
+    std::vector<std::uint8_t> bytes;
+    Encode(message, bytes);
+    bus_.Publish(ChannelOf<M>().name, bytes);
+    bus_.Drain();
+  }
+
+  /// A message of a step, all zero but for the header.
+  template <class M>
+  static M Of(std::int64_t step) {
+    M message{};
+    message.header = {.run_id = kRunId, .step = step, .utime = step * 100'000};
+    return message;
+  }
+
+  /// The runner announces the run, all parts of the scenario.
+  void SayRun(std::int8_t phase, std::int64_t progress) {
+    const std::vector<std::string> parts = SplitScenario(text_);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      run_t run = MakeRunPart(kRunId, phase, 0, HashOf(text_), parts, i);
+      run.progress = progress;
+      Say(run);
+    }
+  }
+
+  void AskFor(std::string_view channel, std::int64_t first, std::int32_t count) {
+    auto resend = Of<resend_t>(first);
+    resend.channel = channel;
+    resend.count = count;
+    resend.requester = "test";
+    Say(resend);
+  }
+
+  /// Lets the node do what is due at a time.
+  void Poll(Node& node, TimePoint now = Clock::now()) {
+    node.Poll(now);
+    bus_.Drain();
+  }
+
+ private:
+  std::string text_;
+  std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
+             std::vector<driver_command_t>>
+      heard_;
+  Bus bus_{"memq://"};
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,145 @@
+#include "tools/fogline/supervisor.h"
+
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+// How long the roles may take to leave when they are told to.
+constexpr Duration kLeaveLimit = milliseconds(1500);
+constexpr Duration kLookEvery = milliseconds(20);
+// STOP is said this often to roles that run elsewhere: their leaving cannot be seen.
+constexpr int kStopRepeats = 5;
+// A process that is not heard of for so long after its start hangs.
+constexpr Duration kStartLimit = milliseconds(5000);
+// If it has not looked for so long (a suspended machine, Ctrl-Z), silence means nothing yet.
+constexpr Duration kAway = milliseconds(500);
+
+std::filesystem::path ProgramOf(Role role) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
+         fmt::format("fogline-{}", NameOf(role));
+}
+
+}  // namespace
+
+Supervisor::Supervisor(Bus& bus, Conductor& conductor, Options options)
+    : bus_(bus),
+      conductor_(conductor),
+      options_(std::move(options)),
+      looked_(Clock::now()),
+      attentive_(looked_) {
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(options_.external, info.role) != options_.external.end()) continue;
+    children_.push_back({.role = info.role, .policy = RestartPolicy(options_.restarts)});
+    Start(children_.back(), looked_);
+  }
+}
+
+void Supervisor::Start(Child& child, TimePoint now) {
+  std::vector<std::string> arguments{"--lcm-url", options_.url, "--run-id",
+                                     std::to_string(options_.run_id)};
+  if (child.role == Role::kRecorder) {
+    arguments.insert(arguments.end(), {"--log", options_.log.string()});
+    // Only if it is the log of this run: before that it may be an old one that is to be replaced.
+    if (conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
+  }
+  child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
+  child.started = now;
+  child.start_at.reset();
+  child.hung.clear();
+  conductor_.Launched(child.role, child.pid, now);
+}
+
+void Supervisor::Look(TimePoint now) {
+  if (now - looked_ > kAway) attentive_ = now;
+  looked_ = now;
+  const std::vector<ProcessGroup::Exit> exits = group_.Collect();
+  if (!exits.empty()) {
+    // What they said last comes before their end.
+    bus_.Wait(kLookEvery);
+    bus_.Drain();
+  }
+  for (const ProcessGroup::Exit& exit : exits) OnExit(exit, now);
+  for (Child& child : children_) {
+    if (child.start_at && now >= *child.start_at) {
+      const pid_t before = child.pid;
+      Start(child, now);
+      options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})",
+                               NameOf(child.role), before, child.death, child.pid,
+                               child.policy.restarts(), child.policy.limit()));
+    } else if (!child.start_at && options_.restarts > 0) {
+      KillIfItHangs(child, now);
+    }
+  }
+}
+
+void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
+  const auto child = std::ranges::find(children_, exit.role, &Child::role);
+  const std::string how = child->hung.empty() ? exit.how : child->hung;
+  child->death = fmt::format("{} at step {}", how, conductor_.step());
+  const auto wait = exit.killed ? child->policy.OnDeath(conductor_.step()) : std::nullopt;
+  if (wait) {
+    conductor_.Bury(exit.role, exit.pid, now);
+    child->start_at = now + *wait;
+    return;
+  }
+  // One line that says who died, then what it had to say.
+  std::string text = fmt::format("{} (pid {}) {}", NameOf(exit.role), exit.pid, child->death);
+  if (exit.killed && options_.restarts > 0) {
+    text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
+  }
+  for (const std::string& line : exit.lines) {
+    text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
+  }
+  conductor_.Fail(std::move(text));
+}
+
+void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
+  const Conductor::Member& member = conductor_.member(child.role);
+  const bool met = member.status && member.status->pid == child.pid;
+  const Duration silent = now - std::max(met ? member.heard : child.started, attentive_);
+  if (!child.hung.empty() || silent < (met ? options_.silence : kStartLimit)) return;
+  child.hung = fmt::format("was silent for {:.1f} s and was killed",
+                           std::chrono::duration<double>(silent).count());
+  kill(child.pid, SIGKILL);
+}
+
+void Supervisor::End() {
+  const TimePoint began = Clock::now();
+  int said = 0;
+  while ((!group_.empty() && Clock::now() - began < kLeaveLimit) ||
+         (said < kStopRepeats && !options_.external.empty())) {
+    conductor_.Stop();
+    ++said;
+    const TimePoint pause = Clock::now() + kLookEvery;
+    while (bus_.Wait(pause - Clock::now())) {
+    }
+    group_.Collect();
+  }
+}
+
+std::vector<Restarts> Supervisor::restarts() const {
+  std::vector<Restarts> restarts;
+  for (const RoleInfo& info : kRoles) {
+    const auto child = std::ranges::find(children_, info.role, &Child::role);
+    const Conductor::Member& member = conductor_.member(info.role);
+    if (child != children_.end() && child->policy.restarts() > 0) {
+      restarts.push_back(
+          {.role = info.role, .count = child->policy.restarts(), .last = child->death});
+    } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
+      // The last one may have come too late in the run to be sure that the one before it is dead.
+      const status_t& dead = member.rival ? *member.status : member.dead.back();
+      restarts.push_back({.role = info.role,
+                          .count = elsewhere,
+                          .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,
+                                              dead.host, dead.header.step)});
+    }
+  }
+  return restarts;
+}
+
+}  // namespace fogline
