@@ -93,11 +93,20 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
   lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  if (watcher_) return;                            // wants everything
   std::vector<std::string> subscribed;
   for (const Topic& other : topics_) {
     if (!other.handlers.empty()) subscribed.push_back(other.channel);
   }
   for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(subscribed));
+}
+
+void Bus::SubscribeAll(Watcher watcher) {
+  watcher_ = std::move(watcher);
+  lcm_subscription_t* handle = lcm_subscribe(lcm_, ".*", &Bus::OnAnything, this);
+  if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
+  lcm_subscription_set_queue_capacity(handle, 0);
+  for (const int socket : sockets_) DetachFilter(socket);
 }
 
 void Bus::Publish(const Topic& topic, Bytes bytes) {
@@ -159,6 +168,15 @@ void Bus::Deliver(Bytes bytes, Topic& topic) {
     for (const Handler& handler : topic.handlers) handler(topic.arrival);
   } catch (...) {
     topic.bus->parked_ = std::current_exception();
+  }
+}
+
+void Bus::OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus) {
+  auto& self = *static_cast<Bus*>(bus);
+  try {
+    self.watcher_(channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+  } catch (...) {
+    self.parked_ = std::current_exception();
   }
 }
 

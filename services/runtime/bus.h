@@ -42,6 +42,11 @@ class Bus {
   /// handler throws comes out of Wait().
   void Subscribe(std::string_view channel, Handler handler);
 
+  /// Calls `watcher` from Wait() for every message on any channel, and lets the kernel drop none of
+  /// them. Once at most.
+  using Watcher = std::function<void(std::string_view channel, Bytes)>;
+  void SubscribeAll(Watcher watcher);
+
   /// Sends bytes; they are copied before it returns.
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
@@ -67,6 +72,7 @@ class Bus {
   void Handle();
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
+  static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
 
   std::string url_;
   _lcm_t* lcm_ = nullptr;               // one of both
@@ -78,6 +84,7 @@ class Bus {
   std::int64_t waiting_ = 0;
   TimePoint now_{};            // when Wait() handled a message last
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
+  Watcher watcher_;            // of all channels, if there is one
   std::exception_ptr parked_;  // may not pass through LCM's C code
 };
 

@@ -105,4 +105,9 @@ void AttachFilter(int socket, std::vector<sock_filter> program) {
   setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter));
 }
 
+void DetachFilter(int socket) {
+  constexpr int kIgnored = 0;
+  setsockopt(socket, SOL_SOCKET, SO_DETACH_FILTER, &kIgnored, sizeof(kIgnored));
+}
+
 }  // namespace fogline

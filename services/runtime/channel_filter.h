@@ -26,4 +26,7 @@ std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels);
 /// will not, the socket goes on receiving everything.
 void AttachFilter(int socket, std::vector<sock_filter> program);
 
+/// Lets the socket receive everything again.
+void DetachFilter(int socket);
+
 }  // namespace fogline

@@ -1,0 +1,72 @@
+#include "tools/watch/terminal.h"
+
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+constexpr const char* kEnter = "\033[?1049h\033[?25l";  // alternate screen, no cursor
+constexpr const char* kLeave = "\033[?25h\033[?1049l";
+constexpr const char* kHome = "\033[H";
+constexpr const char* kClearLine = "\033[K";
+constexpr const char* kClearBelow = "\033[J";
+constexpr const char* kBold = "\033[1m";
+constexpr const char* kRed = "\033[31m";
+constexpr const char* kNormal = "\033[0m";
+
+void Write(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+Terminal::Terminal() {
+  if (isatty(STDIN_FILENO) == 1 && tcgetattr(STDIN_FILENO, &before_) == 0) {
+    fd_ = STDIN_FILENO;
+    termios keys = before_;
+    keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // stopped, it would leave the shell without echo
+    tcsetattr(fd_, TCSANOW, &keys);
+  }
+  Write(kEnter);
+}
+
+Terminal::~Terminal() {
+  Write(kLeave);
+  if (fd_ >= 0) tcsetattr(fd_, TCSANOW, &before_);
+}
+
+void Terminal::Draw(std::vector<Line> lines) {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
+    lines = Fit(std::move(lines), size.ws_col, size.ws_row);
+  }
+  std::string text = kHome;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = lines[i];
+    const char* style = line.style == Line::Style::kHeading ? kBold
+                        : line.style == Line::Style::kBad   ? kRed
+                                                            : "";
+    text += fmt::format("{}{}{}{}{}", i == 0 ? "" : "\r\n", style, line.text,
+                        *style == '\0' ? "" : kNormal, kClearLine);
+  }
+  Write(text + kClearBelow);
+}
+
+std::optional<char> Terminal::Key() {
+  pollfd keys{.fd = fd_, .events = POLLIN, .revents = 0};
+  char key = 0;
+  if (fd_ < 0 || poll(&keys, 1, 0) <= 0 || read(fd_, &key, 1) != 1) return std::nullopt;
+  return key;
+}
+
+}  // namespace fogline

@@ -1,0 +1,198 @@
+#include "tools/watch/traffic_text.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kMilli = 1e-3;
+constexpr double kKilo = 1e3;
+constexpr double kMega = 1e6;
+// Characters of a scenario's hash that tell two scenarios apart.
+constexpr std::size_t kHashShown = 12;
+
+std::string Printable(std::string_view text) {
+  std::string printable(text);
+  std::ranges::replace_if(
+      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return printable;
+}
+
+std::string Number(const std::optional<double>& value, double unit, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
+}
+
+std::string NameOfUndecodable(const Undecodable& undecodable) {
+  std::string text;
+  for (const auto& [type, count] : undecodable) {
+    text += fmt::format("{}{} of {}", text.empty() ? "undecodable: " : ", ", count,
+                        type == "unknown" ? "no known type" : type);
+  }
+  return text;
+}
+
+// What matters most fits 80 columns.
+constexpr const char* kChannelRow =
+    " {:<16}{:>9}{:>8}{:>10}{:>8}{:>7}{:>8}{:>6}{:>7}{:>6}{:>6}  {:<18}  {}";
+
+Line ChannelHeading() {
+  return {fmt::format(kChannelRow, "channel", "messages", "rate/s", "jitter ms", "kB/s", "age s",
+                      "step", "lost", "undec.", "late", "twice", "type", ""),
+          Line::Style::kHeading};
+}
+
+Line ChannelLine(const ChannelView& channel) {
+  const auto step = [&channel](std::int64_t StepSequence::Counts::*count) {
+    return channel.steps ? std::to_string((*channel.steps).*count) : std::string("-");
+  };
+  const ArrivalView& arrivals = channel.arrivals;
+  const bool bad = !channel.undecodable.empty() || (channel.steps && channel.steps->lost > 0);
+  return {
+      fmt::format(kChannelRow, Printable(channel.channel), arrivals.messages,
+                  Number(arrivals.rate_hz, 1, 1), Number(arrivals.jitter_s, kMilli, 2),
+                  Number(arrivals.bandwidth_bytes_per_s, kKilo, 1), Number(arrivals.age_s, 1, 1),
+                  step(&StepSequence::Counts::newest), step(&StepSequence::Counts::lost),
+                  channel.NumUndecodable(), step(&StepSequence::Counts::late),
+                  step(&StepSequence::Counts::duplicate), channel.type.empty() ? "?" : channel.type,
+                  NameOfUndecodable(channel.undecodable)),
+      bad ? Line::Style::kBad : Line::Style::kPlain};
+}
+
+constexpr const char* kRoleRow = " {:<11}{:<8}{:>7}{:>7}{:>8}{:>7}{:>7}{:>7}  {:<16}  {}";
+
+Line RoleHeading() {
+  return {fmt::format(kRoleRow, "role", "state", "step", "asked", "served", "CPU %", "MB", "age s",
+                      "process", ""),
+          Line::Style::kHeading};
+}
+
+/// What is wrong with a role or holds it up.
+std::string Remarks(const RoleView& role) {
+  std::string text;
+  const auto add = [&text](const std::string& remark) {
+    text += (text.empty() ? "" : "; ") + remark;
+  };
+  const status_t& status = role.status;
+  if (role.silent) add("silent");
+  if (!status.error.empty()) add(Printable(status.error));
+  if (!status.waiting_for.empty()) {
+    add(fmt::format("waits for {} for {:.1f} s", Printable(status.waiting_for),
+                    kMilli * static_cast<double>(status.waiting_ms)));
+  }
+  for (const RefusalKind& kind : kRefusals) {
+    const std::int64_t count = status.*kind.counter;
+    if (count != 0) add(fmt::format("refused {} {}", count, kind.what));
+  }
+  return text;
+}
+
+Line RoleLine(const RoleView& role) {
+  const status_t& status = role.status;
+  const bool bad = role.silent || status.state == status_t::FAILED;
+  return {
+      fmt::format(kRoleRow, Printable(status.role), StateName(status.state), status.header.step,
+                  status.repairs_asked, status.repairs_served, Number(role.cpu_percent, 1, 1),
+                  Number(static_cast<double>(status.rss_bytes), kMega, 1), Number(role.age_s, 1, 1),
+                  fmt::format("{}@{}", status.pid, Printable(status.host)), Remarks(role)),
+      bad ? Line::Style::kBad : Line::Style::kPlain};
+}
+
+Line RunHeading(const RunView& run) {
+  std::string text = fmt::format("run {}", run.run_id);
+  if (run.step >= 0) text += fmt::format("  step {}", run.step);
+  if (run.phase) {
+    text += fmt::format("  {}  {}  scenario {}", PhaseName(*run.phase),
+                        run.pace > 0 ? fmt::format("pace {:g}", run.pace) : "as fast as it goes",
+                        Printable(run.scenario_hash.substr(0, kHashShown)));
+  }
+  return {text, Line::Style::kHeading};
+}
+
+Line Summary(const TrafficView& view, std::string_view url) {
+  double rate_hz = 0;
+  double bandwidth_bytes_per_s = 0;
+  const auto add = [&](const std::vector<ChannelView>& channels) {
+    for (const ChannelView& channel : channels) {
+      rate_hz += channel.arrivals.rate_hz;
+      bandwidth_bytes_per_s += channel.arrivals.bandwidth_bytes_per_s;
+    }
+  };
+  for (const RunView& run : view.runs) add(run.channels);
+  add(view.others);
+  return {fmt::format("{}: {} run{}, {:.1f} messages/s, {:.1f} kB/s in the last {:.1f} s", url,
+                      view.runs.size(), view.runs.size() == 1 ? "" : "s", rate_hz,
+                      bandwidth_bytes_per_s / kKilo, view.interval_s),
+          Line::Style::kHeading};
+}
+
+}  // namespace
+
+std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
+  std::vector<Line> lines{Summary(view, url)};
+  for (const RunView& run : view.runs) {
+    lines.push_back({});
+    lines.push_back(RunHeading(run));
+    if (!run.channels.empty()) lines.push_back(ChannelHeading());
+    for (const ChannelView& channel : run.channels) lines.push_back(ChannelLine(channel));
+    if (!run.roles.empty()) lines.push_back(RoleHeading());
+    for (const RoleView& role : run.roles) lines.push_back(RoleLine(role));
+  }
+  if (!view.others.empty()) {
+    lines.push_back({});
+    lines.push_back({"of no run", Line::Style::kHeading});
+    lines.push_back(ChannelHeading());
+    for (const ChannelView& channel : view.others) lines.push_back(ChannelLine(channel));
+  }
+  if (view.runs.empty() && view.others.empty()) {
+    lines.push_back({"no messages so far; `fogline doctor` names the runs of this machine"});
+  }
+  if (view.forgotten > 0) {
+    lines.push_back({fmt::format("{} runs, channels or roles are forgotten, there were too many",
+                                 view.forgotten)});
+  }
+  return lines;
+}
+
+std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows) {
+  if (lines.size() > rows && rows > 0) {
+    const std::size_t hidden = lines.size() - rows + 1;
+    lines.resize(rows - 1);
+    lines.push_back({fmt::format("{} more lines: make the window taller", hidden)});
+  }
+  for (Line& line : lines) line.text.resize(std::min(line.text.size(), columns));
+  return lines;
+}
+
+std::string_view StateName(std::int8_t state) {
+  switch (state) {
+    case status_t::WAITING:
+      return "WAITING";
+    case status_t::READY:
+      return "READY";
+    case status_t::RUNNING:
+      return "RUNNING";
+    case status_t::DONE:
+      return "DONE";
+    case status_t::FAILED:
+      return "FAILED";
+    default:
+      return "?";
+  }
+}
+
+std::string_view PhaseName(std::int8_t phase) {
+  switch (phase) {
+    case run_t::PREPARE:
+      return "PREPARE";
+    case run_t::GO:
+      return "GO";
+    case run_t::STOP:
+      return "STOP";
+    default:
+      return "?";
+  }
+}
+
+}  // namespace fogline

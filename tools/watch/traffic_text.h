@@ -1,0 +1,34 @@
+// TrafficView for people: lines of text that fit a window, or one JSON document.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/watch/traffic_statistics.h"
+
+namespace fogline {
+
+/// One line, without a line feed.
+struct Line {
+  enum class Style { kPlain, kHeading, kBad };
+  std::string text;
+  Style style = Style::kPlain;
+};
+
+/// The view as a table. What came from the network is printed with '?' for everything but ASCII
+/// letters, digits, signs and spaces: nobody on it can send commands to the terminal.
+std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
+
+/// The lines that a window has room for; the last one says how many it has not.
+std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows);
+
+nlohmann::ordered_json TrafficJson(const TrafficView& view, std::string_view url);
+
+/// Names of status_t's states and run_t's phases.
+std::string_view StateName(std::int8_t state);
+std::string_view PhaseName(std::int8_t phase);
+
+}  // namespace fogline
