@@ -113,8 +113,8 @@ void Bus::Publish(const Topic& topic, Bytes bytes) {
   if (tcpq_) return tcpq_->Publish(topic.channel, bytes);
   if (lcm_publish(lcm_, topic.channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
       0) {
-    throw std::runtime_error(
-        fmt::format("LCM cannot publish {} bytes on {}", bytes.size(), topic.channel));
+    throw std::runtime_error(fmt::format("LCM cannot publish {} bytes on {}: {}", bytes.size(),
+                                         topic.channel, WhyNoMulticast(url_)));
   }
   if (in_memory_ && !topic.handlers.empty()) ++waiting_;
 }

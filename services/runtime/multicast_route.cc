@@ -1,37 +1,97 @@
 #include "services/runtime/multicast_route.h"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
-#include <string_view>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
 
 #include <fmt/core.h>
 
 namespace fogline {
+namespace {
 
-std::string WhyNoMulticast(const std::string& url) {
-  constexpr std::string_view kProvider = "udpm://";
-  if (!url.starts_with(kProvider)) return "";
-  const std::string group =
-      url.substr(kProvider.size(), url.find_first_of(":?", kProvider.size()) - kProvider.size());
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(1);  // any: nothing is sent
-  if (inet_pton(AF_INET, group.c_str(), &address.sin_addr) != 1) return "";
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return "";
-  // Connecting a datagram socket chooses a route and does no more.
-  const int result = connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
-  const bool unreachable = result != 0 && errno == ENETUNREACH;
-  close(fd);
-  if (!unreachable) return "";
+constexpr std::string_view kDefaultGroup = "239.255.76.67";
+
+std::optional<in_addr> ToAddress(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) return std::nullopt;
+  return address;
+}
+
+}  // namespace
+
+std::optional<std::string> GroupOf(std::string_view url) {
+  for (const std::string_view provider : {"udpm://", "mpudpm://"}) {
+    if (!url.starts_with(provider)) continue;
+    const std::string_view rest = url.substr(provider.size());
+    const std::string_view group = rest.substr(0, rest.find_first_of(":?"));
+    return std::string(group.empty() ? kDefaultGroup : group);
+  }
+  return std::nullopt;
+}
+
+std::string RouteError(const std::string& address) {
+  const auto numeric = ToAddress(address);
+  if (!numeric) return "not an IPv4 address";
+  // A UDP socket is connected without a packet: the kernel only looks for the route.
+  constexpr std::uint16_t kAnyPort = 7667;
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(kAnyPort);
+  to.sin_addr = *numeric;
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return std::strerror(errno);
+  const int result = connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  const std::string error = result == 0 ? "" : std::strerror(errno);
+  close(probe);
+  return error;
+}
+
+std::string RouteInterface(std::string_view table, const std::string& address) {
+  const auto numeric = ToAddress(address);
+  if (!numeric) return "";
+  std::istringstream lines{std::string(table)};
+  std::string line;
+  std::getline(lines, line);  // headings
+  std::string best;
+  int best_prefix = -1;
+  std::uint32_t best_metric = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    std::string interface;
+    std::string gateway;
+    std::string flags;
+    std::string references;
+    std::string uses;
+    std::uint32_t destination = 0;
+    std::uint32_t metric = 0;
+    std::uint32_t mask = 0;
+    fields >> interface >> std::hex >> destination >> gateway >> flags >> references >> uses >>
+        std::dec >> metric >> std::hex >> mask;
+    if (!fields || (numeric->s_addr & mask) != destination) continue;
+    const int prefix = std::popcount(mask);
+    if (prefix < best_prefix || (prefix == best_prefix && metric >= best_metric)) continue;
+    best = interface;
+    best_prefix = prefix;
+    best_metric = metric;
+  }
+  return best;
+}
+
+std::string WhyNoMulticast(std::string_view url) {
+  const auto group = GroupOf(url);
+  if (!group || !ToAddress(*group)) return "";
+  const std::string error = RouteError(*group);
+  if (error.empty()) return "";
   return fmt::format(
-      "this machine has no route for multicast to {}; as root: \"ip route add 239.0.0.0/8 dev lo\" "
-      "for traffic on this machine alone, or with the network's interface in place of lo",
-      group);
+      "this machine has no route for multicast to {} ({}); as root: \"{}\" for traffic on this "
+      "machine alone, or with the network's interface in place of lo",
+      *group, error, kLoopbackRoute);
 }
 
 }  // namespace fogline

@@ -2,11 +2,28 @@
 // names an address that nobody has given and a command that few systems have.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace fogline {
 
+/// Lets LCM work on a machine without a network. Needs root.
+inline constexpr std::string_view kLoopbackRoute =
+    "ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo";
+
+/// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; none for
+/// other URLs.
+std::optional<std::string> GroupOf(std::string_view url);
+
+/// What the kernel says when asked for a route to an IPv4 address, "" if it has one.
+std::string RouteError(const std::string& address);
+
+/// The interface of the route to an IPv4 address in a table as /proc/net/route has it (longest
+/// prefix, then lowest metric), "" if there is no such route or `address` is none.
+std::string RouteInterface(std::string_view table, const std::string& address);
+
 /// Why a udpm:// URL cannot be opened, and what to do about it; "" if nothing is known against it.
-std::string WhyNoMulticast(const std::string& url);
+std::string WhyNoMulticast(std::string_view url);
 
 }  // namespace fogline
