@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/version.h"
 
 namespace fogline {
 namespace {
@@ -51,7 +52,7 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                   "and leaves when the runner says so.",
                   NameOf(role), purpose),
       name};
-  app.set_version_flag("--version", FOGLINE_VERSION);
+  app.set_version_flag("--version", VersionText());
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   app.add_option("--lcm-url", url, "LCM network to join")
       ->envname("LCM_DEFAULT_URL")

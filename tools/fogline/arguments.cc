@@ -69,6 +69,20 @@ std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
 
 void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
 
+void CheckNetworkUrl(const std::string& url) {
+  if (url.starts_with("memq:")) {
+    throw InputError(
+        fmt::format("error: --lcm-url {}: the memory of one process, which no other can look into; "
+                    "give the run a udpm:// URL",
+                    url));
+  }
+  for (const char* provider : {"udpm://", "mpudpm://", "tcpq://"}) {
+    if (url.starts_with(provider)) return;
+  }
+  throw InputError(fmt::format(
+      "error: --lcm-url {}: not an LCM network such as \"udpm://239.255.76.67:7667?ttl=0\"", url));
+}
+
 std::string MeasuresJson(const RunMeasures& measures) {
   nlohmann::ordered_json json;
   VisitMeasures(measures, [&json]<class V>(std::string_view name, const V& value, std::string_view,

@@ -51,6 +51,10 @@ std::filesystem::path FreshLog(const std::filesystem::path& scenario_file);
 /// --json output: `text` and a newline on stdout.
 void PrintJson(const std::string& text);
 
+/// For those who look at a network from outside: refuses URLs that name none.
+/// @throws InputError
+void CheckNetworkUrl(const std::string& url);
+
 /// {"name": value, ...} of a run's measures, to stand in a larger JSON text.
 std::string MeasuresJson(const RunMeasures& measures);
 

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/version.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/refusal.h"
@@ -18,7 +19,7 @@ namespace {
 
 int Main(int argc, char** argv) {
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
-  app.set_version_flag("--version", FOGLINE_VERSION);
+  app.set_version_flag("--version", VersionText());
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormatter>());
   app.footer(
@@ -29,7 +30,7 @@ int Main(int argc, char** argv) {
       "  fogline table --help");
   Action action;
   for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest,
-                         AddDiff, AddGraph, AddCheck, AddTop}) {
+                         AddDiff, AddGraph, AddCheck, AddTop, AddDoctor}) {
     add(app, action);
   }
   try {

@@ -63,30 +63,12 @@ Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// @throws InputError for what cannot be looked at from outside
-void CheckUrl(const std::string& url) {
-  if (url.starts_with("memq:")) {
-    throw InputError(
-        fmt::format("error: --lcm-url {}: memory of one process, which no other can look into; "
-                    "give the run a udpm:// URL",
-                    url));
-  }
-  for (const char* provider : {"udpm://", "mpudpm://", "tcpq://"}) {
-    if (url.starts_with(provider)) return;
-  }
-  throw InputError(fmt::format(
-      "error: --lcm-url {}: not an LCM network such as \"udpm://239.255.76.67:7667?ttl=0\"", url));
-}
-
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
       : arguments_(arguments), bus_(arguments.url), statistics_(Clock::now()) {
     bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
-      // LCM's own: with the first it tries whether the network works, with the second it spreads
-      // channels over ports.
-      if (channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm")) return;
-      statistics_.Add(channel, bytes, Clock::now());
+      if (!IsLcmsOwn(channel)) statistics_.Add(channel, bytes, Clock::now());
     });
     if (isatty(STDOUT_FILENO) == 1 && !arguments.once && !arguments.json) terminal_.emplace();
   }
@@ -151,7 +133,7 @@ void AddTop(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<TopArguments>(*verb);
   verb->callback([&action, arguments] {
     action = [arguments] {
-      CheckUrl(arguments->url);
+      CheckNetworkUrl(arguments->url);
       WatchInterrupts();
       return Top(*arguments).Run();
     };

@@ -31,5 +31,6 @@ void AddDiff(CLI::App& app, Action& action);
 void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 void AddTop(CLI::App& app, Action& action);
+void AddDoctor(CLI::App& app, Action& action);
 
 }  // namespace fogline

@@ -58,6 +58,10 @@ std::int64_t ChannelView::NumUndecodable() const {
   return sum;
 }
 
+bool IsLcmsOwn(std::string_view channel) {
+  return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm");
+}
+
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
   const std::size_t index = IndexOfChannel(channel);
   if (index < kNumChannels && bytes.size() >= kHeaderEnd) {

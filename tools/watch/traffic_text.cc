@@ -13,13 +13,6 @@ constexpr double kMega = 1e6;
 // Characters of a scenario's hash that tell two scenarios apart.
 constexpr std::size_t kHashShown = 12;
 
-std::string Printable(std::string_view text) {
-  std::string printable(text);
-  std::ranges::replace_if(
-      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
-  return printable;
-}
-
 std::string Number(const std::optional<double>& value, double unit, int decimals) {
   return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
 }
@@ -153,6 +146,13 @@ std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
                                  view.forgotten)});
   }
   return lines;
+}
+
+std::string Printable(std::string_view text) {
+  std::string printable(text);
+  std::ranges::replace_if(
+      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return printable;
 }
 
 std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows) {

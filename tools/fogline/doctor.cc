@@ -1,0 +1,116 @@
+// fogline doctor: examines machine, network and types, and says what to do.
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <memory>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/doctor/findings.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+using Level = Finding::Level;
+
+constexpr const char* kExplanation =
+    R"(Each finding is a line: ok, warning (it works, but slower or without some convenience) or problem
+(runs will fail), what was found, and after -> what to do. Nothing is changed on the machine, and no
+process is ended. Takes about two seconds. Exit codes: 0 no problem, 1 a problem, 2 bad input.
+
+Examples:
+  fogline doctor
+  fogline doctor --lcm-url 'udpm://239.255.76.67:7700?ttl=1'
+  fogline doctor --json | jq '.findings[] | select(.level != "ok")')";
+
+struct DoctorArguments {
+  explicit DoctorArguments(CLI::App& verb) {
+    verb.add_option("--lcm-url", url, "LCM network to examine")
+        ->envname("LCM_DEFAULT_URL")
+        ->capture_default_str();
+    verb.add_flag("--json", json, "Print the findings as JSON");
+    verb.footer(kExplanation);
+  }
+
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  bool json = false;
+};
+
+/// An examination that fails is a finding too.
+void Attempt(const char* check, Findings& findings, const std::function<void()>& examine) {
+  try {
+    examine();
+  } catch (const std::exception& error) {
+    findings.push_back({check, Level::kProblem, error.what(), ""});
+  }
+}
+
+Findings Examine(const std::string& url) {
+  const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  Findings findings;
+  Attempt("network", findings, [&] { ExamineNetwork(url, findings); });
+  const bool works = std::ranges::none_of(
+      findings, [](const Finding& finding) { return finding.level == Level::kProblem; });
+  if (works) Attempt("other_runs", findings, [&] { ExamineTraffic(url, findings); });
+  Attempt("processes", findings, [&] { ExamineProcesses(findings); });
+  Attempt("programs", findings, [&] { ExaminePrograms(programs, findings); });
+  Attempt("tools", findings, [&] { ExamineTools(programs, findings); });
+  Attempt("machine", findings, [&] { ExamineMachine(findings); });
+  return findings;
+}
+
+void PrintAsJson(const std::string& url, const Findings& findings) {
+  nlohmann::ordered_json json{
+      {"lcm_url", url}, {"problems", 0}, {"warnings", 0}, {"findings", nlohmann::json::array()}};
+  for (const Finding& finding : findings) {
+    if (finding.level == Level::kProblem) json["problems"] = json["problems"].get<int>() + 1;
+    if (finding.level == Level::kWarning) json["warnings"] = json["warnings"].get<int>() + 1;
+    json["findings"].push_back({{"check", finding.check},
+                                {"level", NameOf(finding.level)},
+                                {"what", finding.what},
+                                {"remedy", finding.remedy}});
+  }
+  PrintJson(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void PrintAsText(const Findings& findings) {
+  for (const Finding& finding : findings) {
+    fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), finding.what,
+               finding.remedy.empty() ? "" : "  -> ", finding.remedy);
+  }
+}
+
+int Doctor(const DoctorArguments& arguments) {
+  CheckNetworkUrl(arguments.url);
+  const Findings findings = Examine(arguments.url);
+  arguments.json ? PrintAsJson(arguments.url, findings) : PrintAsText(findings);
+  const bool problem = std::ranges::any_of(
+      findings, [](const Finding& finding) { return finding.level == Level::kProblem; });
+  return problem ? kCheckFailed : kDone;
+}
+
+}  // namespace
+
+std::string_view NameOf(Finding::Level level) {
+  switch (level) {
+    case Level::kOk:
+      return "ok";
+    case Level::kWarning:
+      return "warning";
+    case Level::kProblem:
+      return "problem";
+  }
+  return "?";
+}
+
+void AddDoctor(CLI::App& app, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("doctor", "Examine machine, network and types, and say what to do");
+  const auto arguments = std::make_shared<DoctorArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return Doctor(*arguments); }; });
+}
+
+}  // namespace fogline

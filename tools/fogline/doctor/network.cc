@@ -1,0 +1,225 @@
+// The network that LCM uses: route, multicast, buffers; who else is on it.
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "services/runtime/bus.h"
+#include "services/runtime/multicast_route.h"
+#include "tools/fogline/doctor/findings.h"
+#include "tools/watch/traffic_statistics.h"
+#include "tools/watch/traffic_text.h"
+
+namespace fogline {
+namespace {
+
+using Level = Finding::Level;
+
+std::string Content(const char* file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Value of a number in a URL's options, `otherwise` if it has none.
+int UrlOption(const std::string& url, const std::string& name, int otherwise) {
+  const std::size_t at = url.find(name + "=");
+  if (at == std::string::npos) return otherwise;
+  int value = otherwise;
+  const char* begin = url.data() + at + name.size() + 1;
+  std::from_chars(begin, url.data() + url.size(), value);
+  return value;
+}
+
+bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
+  const std::string error = RouteError(group);
+  if (!error.empty()) {
+    findings.push_back({"multicast_route", Level::kProblem,
+                        fmt::format("no route to {}: {}", group, error),
+                        fmt::format("without a network, as root: {}", kLoopbackRoute)});
+    return false;
+  }
+  const std::string interface = RouteInterface(Content("/proc/net/route"), group);
+  const std::string through = interface.empty() ? "a route that is not in the main table"
+                                                : fmt::format("interface {}", interface);
+  if (ttl > 0 && interface == "lo") {
+    findings.push_back(
+        {"multicast_route", Level::kProblem,
+         fmt::format("{} goes through lo: with ttl={} no other machine hears it", group, ttl),
+         "ip route replace 224.0.0.0/4 dev INTERFACE"});
+    return true;
+  }
+  findings.push_back({"multicast_route", Level::kOk,
+                      fmt::format("{} goes through {}, {}", group, through,
+                                  ttl > 0 ? fmt::format("to other machines (ttl={})", ttl)
+                                          : "and stays on this machine (ttl=0)"),
+                      ""});
+  return true;
+}
+
+/// Sends a message forth and back between two connections. @return the time that it took, zero if
+/// it was lost
+Duration RoundTrip(Bus& here, Bus& there, bool& back) {
+  constexpr Duration kLimit = milliseconds(300);
+  const std::vector<std::uint8_t> message(kHeaderEnd);
+  const TimePoint began = Clock::now();
+  back = false;
+  here.Publish("FOGLINE_PING", message);
+  while (!back && Clock::now() - began < kLimit) {
+    there.Wait(milliseconds(1));
+    here.Wait(milliseconds(1));
+  }
+  return back ? Clock::now() - began : Duration::zero();
+}
+
+/// A real LCM message, on a port that nobody else uses.
+void ExamineLoopback(const std::string& group, Findings& findings) {
+  constexpr int kRounds = 50;
+  std::string url = FreshMulticastUrl();
+  url.replace(url.find("239.255.76.67"), std::string_view("239.255.76.67").size(), group);
+  Bus here(url);
+  Bus there(url);
+  bool back = false;
+  there.Subscribe("FOGLINE_PING",
+                  [&there](Arrival& arrival) { there.Publish("FOGLINE_PONG", arrival.bytes()); });
+  here.Subscribe("FOGLINE_PONG", [&back](Arrival&) { back = true; });
+  std::vector<double> times_us;
+  for (int i = 0; i < kRounds; ++i) {
+    const Duration time = RoundTrip(here, there, back);
+    if (time > Duration::zero()) {
+      times_us.push_back(std::chrono::duration<double, std::micro>(time).count());
+    } else if (times_us.empty()) {
+      break;
+    }
+  }
+  if (times_us.empty()) {
+    findings.push_back({"multicast_loopback", Level::kProblem,
+                        fmt::format("a message to {} does not come back to this machine", group),
+                        "let the firewall pass multicast (nft list ruleset; iptables -L)"});
+    return;
+  }
+  std::ranges::sort(times_us);
+  findings.push_back({"multicast_loopback", Level::kOk,
+                      fmt::format("LCM messages go to {} and back in {:.0f} us (median of {})",
+                                  group, times_us[times_us.size() / 2], times_us.size()),
+                      ""});
+}
+
+void ExamineReceiveBuffer(int wanted, Findings& findings) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  int granted = 0;
+  socklen_t size = sizeof(granted);
+  setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted));
+  getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  close(probe);
+  granted /= 2;  // the kernel says twice what may be used, see socket(7)
+  if (granted >= wanted) {
+    findings.push_back({"receive_buffer", Level::kOk,
+                        fmt::format("the kernel grants receive buffers of {} bytes", granted), ""});
+    return;
+  }
+  findings.push_back(
+      {"receive_buffer", Level::kWarning,
+       fmt::format("receive buffers have {} bytes instead of {}: bursts are lost and sent again",
+                   granted, wanted),
+       fmt::format("as root: sysctl -w net.core.rmem_max={0}; to keep it, "
+                   "net.core.rmem_max={0} in /etc/sysctl.d/fogline.conf",
+                   wanted)});
+}
+
+/// Whether somebody takes connections there. @return the error, "" if so
+std::string ConnectError(const std::string& host, int port) {
+  constexpr int kLimitMs = 1000;
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (inet_pton(AF_INET, host.c_str(), &to.sin_addr) != 1) {
+    return "LCM takes numeric addresses only, and this machine for any name";
+  }
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  pollfd waited{.fd = probe, .events = POLLOUT, .revents = 0};
+  int error = ETIMEDOUT;
+  socklen_t size = sizeof(error);
+  if (poll(&waited, 1, kLimitMs) == 1) getsockopt(probe, SOL_SOCKET, SO_ERROR, &error, &size);
+  close(probe);
+  return error == 0 ? "" : std::strerror(error);
+}
+
+void ExamineRelay(const std::string& url, Findings& findings) {
+  constexpr int kDefaultPort = 7700;
+  std::string host = url.substr(std::string_view("tcpq://").size());
+  host = host.substr(0, host.find('?'));
+  int port = kDefaultPort;
+  if (const std::size_t colon = host.find(':'); colon != std::string::npos) {
+    std::from_chars(host.data() + colon + 1, host.data() + host.size(), port);
+    host.resize(colon);
+  }
+  if (host.empty()) host = "127.0.0.1";
+  const std::string error = ConnectError(host, port);
+  if (error.empty()) {
+    findings.push_back(
+        {"relay", Level::kOk, fmt::format("{}:{} takes connections", host, port), ""});
+  } else {
+    findings.push_back({"relay", Level::kProblem,
+                        fmt::format("no relay at {}:{}: {}", host, port, error),
+                        "start the relay there, and name it by its numeric address"});
+  }
+}
+
+std::string DescribeRun(const RunView& run) {
+  std::string text = fmt::format("run {} at step {}", run.run_id, run.step);
+  for (const RoleView& role : run.roles) {
+    text += fmt::format("{} {} {}@{}", &role == run.roles.data() ? ":" : ",",
+                        Printable(role.status.role), role.status.pid, Printable(role.status.host));
+  }
+  return text;
+}
+
+}  // namespace
+
+void ExamineNetwork(const std::string& url, Findings& findings) {
+  constexpr int kReceiveBuffer = 2 << 20;  // what a Bus asks for
+  if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
+  const auto group = GroupOf(url);
+  if (group && ExamineRoute(*group, UrlOption(url, "ttl", 0), findings)) {
+    ExamineLoopback(*group, findings);
+  }
+  ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);
+}
+
+void ExamineTraffic(const std::string& url, Findings& findings) {
+  constexpr Duration kListen = milliseconds(1000);
+  Bus bus(url);
+  const TimePoint end = Clock::now() + kListen;
+  TrafficStatistics statistics(Clock::now());
+  bus.SubscribeAll([&statistics](std::string_view channel, Bytes bytes) {
+    if (!IsLcmsOwn(channel)) statistics.Add(channel, bytes, Clock::now());
+  });
+  for (TimePoint now = Clock::now(); now < end; now = Clock::now()) bus.Wait(end - now);
+  const TrafficView view = statistics.Observe(Clock::now());
+  for (const RunView& run : view.runs) {
+    findings.push_back(
+        {"other_runs", Level::kOk, fmt::format("on {}: {}", url, DescribeRun(run)), ""});
+  }
+  for (const ChannelView& other : view.others) {
+    findings.push_back({"other_runs", Level::kWarning,
+                        fmt::format("on {}: {} messages of no run on channel {}", url,
+                                    other.arrivals.messages, Printable(other.channel)),
+                        "fogline top shows more; another port keeps a run apart"});
+  }
+  if (view.runs.empty() && view.others.empty()) {
+    findings.push_back({"other_runs", Level::kOk, fmt::format("nobody is heard on {}", url), ""});
+  }
+}
+
+}  // namespace fogline
