@@ -85,13 +85,11 @@ std::string RouteInterface(std::string_view table, const std::string& address) {
 
 std::string WhyNoMulticast(std::string_view url) {
   const auto group = GroupOf(url);
-  if (!group || !ToAddress(*group)) return "";
-  const std::string error = RouteError(*group);
-  if (error.empty()) return "";
+  if (!group || !ToAddress(*group) || RouteError(*group).empty()) return "";
   return fmt::format(
-      "this machine has no route for multicast to {} ({}); as root: \"{}\" for traffic on this "
-      "machine alone, or with the network's interface in place of lo",
-      *group, error, kLoopbackRoute);
+      "this machine has no route for multicast to {}; as root: \"{}\" for traffic on this machine "
+      "alone, or with the network's interface in place of lo",
+      *group, kLoopbackRoute);
 }
 
 }  // namespace fogline

@@ -9,8 +9,7 @@
 namespace fogline {
 
 /// Lets LCM work on a machine without a network. Needs root.
-inline constexpr std::string_view kLoopbackRoute =
-    "ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo";
+inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev lo";
 
 /// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; none for
 /// other URLs.

@@ -5,7 +5,7 @@
 namespace fogline {
 
 void StepSequence::Add(std::int64_t step, TimePoint now) {
-  if (step < 0) {
+  if (step < 0 || step > kMaxStep) {
     ++counts_.stray;
     return;
   }

@@ -20,7 +20,7 @@ class StepSequence {
     std::int64_t missing = 0;    // in the window, not seen yet: a repair may still bring them
     std::int64_t late = 0;       // seen for the first time after a newer one
     std::int64_t duplicate = 0;  // seen before, or older than the window
-    std::int64_t stray = 0;      // negative, or so far ahead that they belong to nothing
+    std::int64_t stray = 0;      // impossible, or so far ahead that they belong to nothing
   };
 
   void Add(std::int64_t step, TimePoint now);
@@ -28,6 +28,8 @@ class StepSequence {
 
   /// Nobody but the recorder can repeat a step that is so much older than the newest.
   static constexpr std::int64_t kWindow = kRingSteps;
+  /// No run has so many steps; the arithmetic below has no end in sight.
+  static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
   /// A step so far ahead is believed only when its successor follows at once: MAX_DROPOUT of the
   /// algorithm for sequence numbers of RTP (RFC 3550, appendix A.1), as is the rule. What lies
   /// between is not counted as lost, nobody knows whether it was ever sent.

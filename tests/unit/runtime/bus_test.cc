@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenario/loader.h"
 
 namespace fogline {
@@ -35,6 +37,25 @@ TEST(BusTest, TakesChannelNamesLiterally) {
   bus.Drain();
   EXPECT_EQ(literal, 1);
   EXPECT_EQ(other, 2);
+}
+
+TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
+  const std::string url = FreshMulticastUrl();
+  Bus sender(url);
+  Bus bus(url);
+  int subscribed = 0;
+  std::vector<std::string> watched;
+  bus.Subscribe("BEFORE", [&subscribed](Bytes) { ++subscribed; });
+  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
+  bus.Subscribe("AFTER", [&subscribed](Bytes) { ++subscribed; });
+  for (const char* channel : {"BEFORE", "OTHER", "AFTER", "LAST"}) {
+    sender.Publish(channel, Payload(0));
+  }
+  while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
+  }
+  std::erase(watched, "LCM_SELF_TEST");
+  EXPECT_EQ(watched, (std::vector<std::string>{"BEFORE", "OTHER", "AFTER", "LAST"}));
+  EXPECT_EQ(subscribed, 2);
 }
 
 TEST(BusTest, HandsAnExceptionOfAHandlerToTheCallerOfWait) {

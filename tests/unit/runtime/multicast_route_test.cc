@@ -1,0 +1,49 @@
+#include "services/runtime/multicast_route.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr const char* kGroup = "239.255.76.67";
+
+// As the kernel prints it: addresses as hexadecimal numbers in the order of memory.
+constexpr const char* kHeading =
+    "Iface\tDestination\tGateway\tFlags\tRefCnt\tUse\tMetric\tMask\tMTU\tWindow\tIRTT\n";
+constexpr const char* kDefault = "eth0\t00000000\t010200C0\t0003\t0\t0\t0\t00000000\t0\t0\t0\n";
+constexpr const char* kNetwork = "eth0\t000200C0\t00000000\t0001\t0\t0\t0\t00FFFFFF\t0\t0\t0\n";
+constexpr const char* kMulticast = "lo\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\t0\t0\t0\n";
+constexpr const char* kSlowDefault =
+    "wlan0\t00000000\t010200C0\t0003\t0\t0\t600\t00000000\t0\t0\t0\n";
+
+TEST(MulticastRouteTest, FindsTheGroupOfAUrl) {
+  EXPECT_EQ(GroupOf("udpm://239.255.1.2:7700?ttl=1"), "239.255.1.2");
+  EXPECT_EQ(GroupOf("udpm://?ttl=1"), kGroup);
+  EXPECT_EQ(GroupOf("mpudpm://239.1.1.1"), "239.1.1.1");
+  EXPECT_EQ(GroupOf("tcpq://127.0.0.1"), std::nullopt);
+}
+
+TEST(MulticastRouteTest, PrefersTheLongestPrefixAndThenTheLowestMetric) {
+  const std::string table = std::string(kHeading) + kSlowDefault + kDefault + kNetwork;
+  EXPECT_EQ(RouteInterface(table, kGroup), "eth0");
+  EXPECT_EQ(RouteInterface(table + kMulticast, kGroup), "lo");
+  EXPECT_EQ(RouteInterface(std::string(kHeading) + kMulticast + kDefault, kGroup), "lo");
+  EXPECT_EQ(RouteInterface(table + kMulticast, "192.0.2.9"), "eth0");
+}
+
+TEST(MulticastRouteTest, HasNoInterfaceWithoutARoute) {
+  EXPECT_EQ(RouteInterface("", kGroup), "");
+  EXPECT_EQ(RouteInterface(std::string(kHeading) + kNetwork, kGroup), "");
+  EXPECT_EQ(RouteInterface(std::string(kHeading) + kDefault, "no address"), "");
+  EXPECT_EQ(RouteInterface(std::string(kHeading) + "eth0\ttorn", kGroup), "");
+}
+
+TEST(MulticastRouteTest, ReachesThisMachineWithoutAHint) {
+  EXPECT_EQ(RouteError("127.0.0.1"), "");
+  EXPECT_EQ(RouteHint("udpm://127.0.0.1:7667"), "");
+  EXPECT_EQ(RouteHint("tcpq://127.0.0.1"), "");
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,179 @@
+#include "tools/watch/traffic_statistics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+const TimePoint kBegin = TimePoint{} + std::chrono::hours(1);
+constexpr std::int64_t kRun = 4711;
+
+template <class M>
+std::vector<std::uint8_t> Encoded(const M& message) {
+  std::vector<std::uint8_t> bytes;
+  Encode(message, bytes);
+  return bytes;
+}
+
+std::vector<std::uint8_t> Radar(std::int64_t run_id, std::int64_t step) {
+  radar_t radar{};
+  radar.header = {.run_id = run_id, .step = step, .utime = 100'000 * step};
+  return Encoded(radar);
+}
+
+status_t Status(const std::string& role, std::int64_t instance, std::int64_t sequence) {
+  status_t status{};
+  status.header = {.run_id = kRun, .step = 12, .utime = 0};
+  status.role = role;
+  status.host = "lab";
+  status.instance = instance;
+  status.sequence = sequence;
+  status.state = status_t::RUNNING;
+  return status;
+}
+
+class TrafficStatisticsTest : public testing::Test {
+ protected:
+  void Add(std::string_view channel, const std::vector<std::uint8_t>& bytes, int at_ms = 0) {
+    statistics_.Add(channel, bytes, kBegin + milliseconds(at_ms));
+  }
+  TrafficView Observe(int at_ms) { return statistics_.Observe(kBegin + milliseconds(at_ms)); }
+
+  TrafficStatistics statistics_{kBegin};
+};
+
+TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
+  for (int step = 0; step < 10; ++step) Add("RADAR", Radar(kRun, step), 100 * step);
+  for (int step = 0; step < 5; ++step) Add("RADAR", Radar(kRun + 1, 2 * step), 900);
+  const TrafficView view = Observe(1000);
+  ASSERT_EQ(view.runs.size(), 2U);
+  EXPECT_EQ(view.runs[0].run_id, kRun);
+  EXPECT_EQ(view.runs[0].step, 9);
+  ASSERT_EQ(view.runs[0].channels.size(), 1U);
+  EXPECT_EQ(view.runs[0].channels[0].channel, "RADAR");
+  EXPECT_EQ(view.runs[0].channels[0].type, "radar_t");
+  EXPECT_DOUBLE_EQ(view.runs[0].channels[0].arrivals.rate_hz, 10);
+  EXPECT_EQ(view.runs[0].channels[0].steps->missing, 0);
+  EXPECT_EQ(view.runs[1].run_id, kRun + 1);
+  EXPECT_DOUBLE_EQ(view.runs[1].channels[0].arrivals.rate_hz, 5);
+  EXPECT_EQ(view.runs[1].channels[0].steps->missing, 4);
+  EXPECT_TRUE(view.others.empty());
+}
+
+TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
+  lidar_t lidar{};
+  lidar.header = {.run_id = kRun, .step = 1, .utime = 0};
+  std::vector<std::uint8_t> cut = Radar(kRun, 2);
+  cut.pop_back();
+  Add("RADAR", Radar(kRun, 0));
+  Add("RADAR", Encoded(lidar));  // of this run, by its header
+  Add("RADAR", cut);
+  Add("RADAR", {1, 2, 3});  // of no run
+  const TrafficView view = Observe(1000);
+  ASSERT_EQ(view.runs.size(), 1U);
+  const ChannelView& radar = view.runs[0].channels[0];
+  EXPECT_EQ(radar.arrivals.messages, 3);
+  EXPECT_EQ(radar.NumUndecodable(), 2);
+  EXPECT_THAT(radar.undecodable, ElementsAre(Pair("lidar_t", 1), Pair("radar_t", 1)));
+  EXPECT_EQ(radar.steps->newest, 0);
+  ASSERT_EQ(view.others.size(), 1U);
+  EXPECT_EQ(view.others[0].channel, "RADAR");
+  EXPECT_THAT(view.others[0].undecodable, ElementsAre(Pair("unknown", 1)));
+}
+
+TEST_F(TrafficStatisticsTest, ListsChannelsThatItDoesNotKnow) {
+  Add("CAMERA", {1, 2, 3}, 100);
+  Add("CAMERA", {}, 300);
+  Add("RADAR_AGAIN", Radar(kRun, 0), 500);
+  const TrafficView view = Observe(1000);
+  EXPECT_TRUE(view.runs.empty());
+  ASSERT_EQ(view.others.size(), 2U);
+  EXPECT_EQ(view.others[0].channel, "CAMERA");
+  EXPECT_EQ(view.others[0].type, "");
+  EXPECT_DOUBLE_EQ(view.others[0].arrivals.rate_hz, 2);
+  EXPECT_EQ(view.others[0].NumUndecodable(), 0);
+  EXPECT_FALSE(view.others[0].steps);
+  EXPECT_EQ(view.others[1].type, "radar_t");
+}
+
+TEST_F(TrafficStatisticsTest, KnowsPhaseAndPaceFromRun) {
+  run_t run{};
+  run.header = {.run_id = kRun, .step = 0, .utime = 0};
+  run.phase = run_t::GO;
+  run.pace = 2;
+  run.scenario_hash = "abc";
+  Add("RUN", Encoded(run));
+  const TrafficView view = Observe(1000);
+  ASSERT_EQ(view.runs.size(), 1U);
+  EXPECT_EQ(view.runs[0].phase, std::optional<std::int8_t>(run_t::GO));
+  EXPECT_EQ(view.runs[0].pace, 2);
+  EXPECT_EQ(view.runs[0].scenario_hash, "abc");
+}
+
+TEST_F(TrafficStatisticsTest, ComputesProcessorUseFromTwoReadings) {
+  // GIVEN 50 ms of processor time within 200 ms
+  status_t status = Status("fusion", 1, 1);
+  status.cpu_ms = 1000;
+  Add("STATUS", Encoded(status), 100);
+  EXPECT_FALSE(Observe(200).runs.at(0).roles.at(0).cpu_percent);
+  status.sequence = 2;
+  status.cpu_ms = 1050;
+  Add("STATUS", Encoded(status), 300);
+  EXPECT_DOUBLE_EQ(Observe(400).runs.at(0).roles.at(0).cpu_percent.value(), 25);
+  // WHEN nothing new is said THEN the last value stands
+  EXPECT_DOUBLE_EQ(Observe(500).runs.at(0).roles.at(0).cpu_percent.value(), 25);
+}
+
+TEST_F(TrafficStatisticsTest, CallsARoleSilentAfterASecond) {
+  Add("STATUS", Encoded(Status("fusion", 1, 1)), 0);
+  EXPECT_FALSE(Observe(1000).runs.at(0).roles.at(0).silent);
+  EXPECT_TRUE(Observe(1001).runs.at(0).roles.at(0).silent);
+  // A copy of an old STATUS is no sign of life.
+  Add("STATUS", Encoded(Status("fusion", 1, 1)), 1100);
+  EXPECT_TRUE(Observe(1200).runs.at(0).roles.at(0).silent);
+  Add("STATUS", Encoded(Status("fusion", 1, 2)), 1300);
+  EXPECT_FALSE(Observe(1400).runs.at(0).roles.at(0).silent);
+}
+
+TEST_F(TrafficStatisticsTest, KeepsRolesInTheOrderOfTheGraphAndInstancesApart) {
+  Add("STATUS", Encoded(Status("recorder", 3, 1)), 0);
+  Add("STATUS", Encoded(Status("world", 1, 1)), 0);
+  Add("STATUS", Encoded(Status("recorder", 4, 1)), 500);
+  const auto roles = Observe(1000).runs.at(0).roles;
+  ASSERT_EQ(roles.size(), 3U);
+  EXPECT_EQ(roles[0].status.role, "world");
+  EXPECT_EQ(roles[1].status.instance, 3);
+  EXPECT_EQ(roles[2].status.instance, 4);
+  // One that another has followed is forgotten in time; the last one of a role never is.
+  const auto later = Observe(60'000).runs.at(0).roles;
+  ASSERT_EQ(later.size(), 2U);
+  EXPECT_EQ(later[0].status.role, "world");
+  EXPECT_EQ(later[1].status.instance, 4);
+}
+
+TEST_F(TrafficStatisticsTest, RemembersNoMoreThanItsBoundsWhateverArrives) {
+  for (int i = 0; i < 1000; ++i) {
+    Add("RADAR", Radar(kRun, i), i);
+    Add("RADAR", Radar(100'000 + i, 0), i);
+    Add("CHANNEL_" + std::to_string(i), {}, i);
+    Add("STATUS", Encoded(Status("world", i, 1)), i);
+  }
+  const TrafficView view = Observe(1000);
+  EXPECT_EQ(view.runs.size(), TrafficStatistics::kMaxRuns);
+  EXPECT_EQ(view.others.size(), TrafficStatistics::kMaxOthers);
+  EXPECT_EQ(view.forgotten, (1001 - static_cast<int>(TrafficStatistics::kMaxRuns)) +
+                                (1000 - static_cast<int>(TrafficStatistics::kMaxOthers)) +
+                                (1000 - static_cast<int>(TrafficStatistics::kMaxRoles)));
+  // The run that speaks all the time is still there, with all that it said.
+  const auto run = std::ranges::find(view.runs, kRun, &RunView::run_id);
+  ASSERT_NE(run, view.runs.end());
+  EXPECT_EQ(run->channels.at(0).arrivals.messages, 1000);
+  EXPECT_EQ(run->roles.size(), TrafficStatistics::kMaxRoles);
+}
+
+}  // namespace
+}  // namespace fogline
