@@ -1,0 +1,288 @@
+// `fogline top` on live traffic and on a log that lcm-logplayer plays; `fogline doctor` on machines
+// with and without a network.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <functional>
+#include <set>
+
+#include "services/runtime/bus.h"
+#include "services/runtime/multicast_route.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+// Programs start and messages arrive within this even when every processor is busy.
+constexpr seconds kPatience(30);
+
+const json& Find(const json& array, const std::string& key, const std::string& value) {
+  static const json kNone;
+  for (const json& element : array) {
+    if (element[key] == value) return element;
+  }
+  ADD_FAILURE() << "no " << key << " " << value << " in " << array.dump(1);
+  return kNone;
+}
+
+/// `fogline top --json`, which prints a document for each interval until the test ends.
+class Top {
+ public:
+  explicit Top(Bus& bus)
+      : bus_(bus),
+        process_({Program("fogline"), "top", "--json", "--interval", "0.2", "--for", "60",
+                  "--lcm-url", bus.url()}) {}
+
+  /// Waits until it shows everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (process_.Out().find("\"" + mark + "\"") == std::string::npos) {
+      if (Clock::now() > end) return false;
+      bus_.Publish(mark, std::vector<std::uint8_t>{0});
+      bus_.Wait(milliseconds(10));
+    }
+    return true;
+  }
+  /// The last whole document.
+  json Last() const {
+    std::string out = process_.Out();
+    out.erase(out.rfind('\n'));
+    const std::size_t begin = out.rfind('\n');
+    return json::parse(begin == std::string::npos ? out : out.substr(begin + 1));
+  }
+
+ private:
+  Bus& bus_;
+  Background process_;
+};
+
+TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
+  // GIVEN a run in real speed, 10 steps a second, that is under way
+  const ScratchFolder folder;
+  Bus bus(FreshMulticastUrl());
+  std::int64_t step = -1;
+  bus.Subscribe(ChannelOf<truth_t>().name,
+                [&step](Bytes bytes) { step = ReadInt64(bytes, kStepOffset); });
+  const Background run({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--quiet",
+                        "--lcm-url", bus.url(), "--log", folder.File("run.lcm")});
+  const TimePoint end = Clock::now() + kPatience;
+  while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
+  ASSERT_GE(step, 5) << run.Err();
+  // WHEN it is looked at for two seconds
+  const Outcome top = RunCommand(
+      {Program("fogline"), "top", "--once", "--json", "--interval", "2", "--lcm-url", bus.url()});
+  ASSERT_EQ(top.code, 0) << top.err;
+  // THEN the run is there, with every channel that has a message in every step, at 10 per second
+  const json document = json::parse(top.out);
+  ASSERT_EQ(document["runs"].size(), 1U) << top.out;
+  const json& seen = document["runs"][0];
+  EXPECT_GT(seen["step"], 5);
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace != Pace::kStep) continue;
+    SCOPED_TRACE(channel.name);
+    const json& row = Find(seen["channels"], "channel", std::string(channel.name));
+    // One message more or less at either end, and a machine that is busy.
+    EXPECT_NEAR(row["rate_hz"].get<double>(), 10, 1.5);
+    EXPECT_EQ(row["lost"], 0);
+    EXPECT_EQ(row["undecodable"], 0);
+    EXPECT_GT(row["bandwidth_bytes_per_s"], 10.0 * kHeaderEnd * 0.8);
+  }
+  // AND every role runs
+  ASSERT_EQ(seen["roles"].size(), kRoles.size());
+  for (const RoleInfo& info : kRoles) {
+    SCOPED_TRACE(info.name);
+    const json& role = Find(seen["roles"], "role", std::string(info.name));
+    EXPECT_EQ(role["state"], "RUNNING");
+    EXPECT_TRUE(IsAlive(role["pid"]));
+    EXPECT_GT(role["rss_bytes"], 1'000'000);
+    EXPECT_TRUE(role["cpu_percent"].is_number());
+    EXPECT_EQ(role["refused"], json::object());
+  }
+}
+
+TEST(TopTest, CountsWhatItCannotDecodeByTheTypeThatItSeemsToBe) {
+  Bus bus(FreshMulticastUrl());
+  Top top(bus);
+  ASSERT_TRUE(top.CatchUp("BEFORE"));
+  std::vector<std::uint8_t> lidar;
+  Encode(lidar_t{}, lidar);
+  std::vector<std::uint8_t> cut;
+  Encode(radar_t{}, cut);
+  cut.pop_back();
+  for (int i = 0; i < 3; ++i) bus.Publish("RADAR", std::vector<std::uint8_t>{1, 2, 3});
+  for (int i = 0; i < 2; ++i) bus.Publish("RADAR", lidar);
+  bus.Publish("RADAR", cut);
+  ASSERT_TRUE(top.CatchUp("AFTER"));
+  const json document = top.Last();
+  const json& radar = Find(document["others"], "channel", "RADAR");
+  EXPECT_EQ(radar["messages"], 6);
+  EXPECT_EQ(radar["undecodable"], 6);
+  EXPECT_EQ(radar["undecodable_as"], (json{{"unknown", 3}, {"lidar_t", 2}, {"radar_t", 1}}));
+  EXPECT_TRUE(document["runs"].empty());
+}
+
+TEST(TopTest, ShowsALogThatLogplayerPlays) {
+  constexpr int kSteps = 100;
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--set",
+                                  "/steps=" + std::to_string(kSteps), "--transport", "memq",
+                                  "--quiet", "--log", log});
+  ASSERT_EQ(run.code, 0) << run.err;
+  Bus bus(FreshMulticastUrl());
+  Top top(bus);
+  ASSERT_TRUE(top.CatchUp("BEFORE"));
+  const Outcome player = RunCommand({"lcm-logplayer", "--speed=10", "--lcm-url=" + bus.url(), log});
+  ASSERT_EQ(player.code, 0) << player.err;
+  ASSERT_TRUE(top.CatchUp("AFTER"));
+  const json document = top.Last();
+  ASSERT_EQ(document["runs"].size(), 1U);
+  const json& seen = document["runs"][0];
+  EXPECT_EQ(seen["step"], kSteps - 1);
+  EXPECT_TRUE(seen["roles"].empty());  // nobody is there to send STATUS
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace != Pace::kStep) continue;
+    SCOPED_TRACE(channel.name);
+    const json& row = Find(seen["channels"], "channel", std::string(channel.name));
+    EXPECT_EQ(row["messages"], kSteps);
+    EXPECT_EQ(row["lost"].get<int>() + row["missing"].get<int>(), 0);
+    EXPECT_EQ(row["undecodable"], 0);
+  }
+}
+
+TEST(TopTest, DrawsOnATerminalAndGivesItBackWhenQIsPressed) {
+  Bus bus(FreshMulticastUrl());
+  const Outcome top = RunCommand({"sh", "-c",
+                                  "printf q | script -qec '" + Program("fogline") +
+                                      " top --lcm-url " + bus.url() + "' /dev/null"},
+                                 kPatience);
+  EXPECT_EQ(top.code, 0);
+  EXPECT_THAT(top.out, HasSubstr("\033[?1049h"));
+  EXPECT_THAT(top.out, HasSubstr("0 runs"));
+  EXPECT_THAT(top.out, testing::EndsWith("\033[?1049l"));
+}
+
+TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
+  for (const char* verb : {"top", "doctor"}) {
+    const Outcome memory = RunCommand({Program("fogline"), verb, "--lcm-url", "memq://"});
+    EXPECT_EQ(memory.code, 2);
+    EXPECT_THAT(memory.err, HasSubstr("the memory of one process"));
+    EXPECT_EQ(memory.out, "");
+    const Outcome file = RunCommand({Program("fogline"), verb, "--lcm-url", "file://run.lcm"});
+    EXPECT_EQ(file.code, 2);
+    EXPECT_THAT(file.err, HasSubstr("not an LCM network"));
+  }
+}
+
+/// Levels of all findings of one check.
+std::multiset<std::string> Levels(const json& document, const std::string& check) {
+  std::multiset<std::string> levels;
+  for (const json& finding : document["findings"]) {
+    if (finding["check"] == check) levels.insert(finding["level"].get<std::string>());
+  }
+  return levels;
+}
+
+TEST(DoctorTest, ExaminesThisMachineWithoutFindingAProblemThatTheOtherTestsWouldHave) {
+  const Outcome doctor = RunCommand({Program("fogline"), "doctor", "--json"});
+  const json document = json::parse(doctor.out);
+  EXPECT_EQ(doctor.code, document["problems"] == 0 ? 0 : 1);
+  for (const char* check : {"multicast_route", "multicast_loopback", "receive_buffer", "other_runs",
+                            "processes", "programs", "lcm", "lcm_tools", "java", "clock", "wakeup",
+                            "time_sync", "cpus", "governor", "disk"}) {
+    EXPECT_FALSE(Levels(document, check).empty()) << check;
+  }
+  for (const char* check : {"multicast_route", "multicast_loopback", "programs"}) {
+    EXPECT_EQ(Levels(document, check), std::multiset<std::string>{"ok"}) << doctor.out;
+  }
+  for (const json& finding : document["findings"]) {
+    EXPECT_NE(finding["what"], "");
+    EXPECT_TRUE(finding["level"] == "ok" || finding["remedy"] != "") << finding;
+  }
+}
+
+TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
+  const std::string url = FreshMulticastUrl();
+  const Background role({Program("fogline-radar"), "--lcm-url", url, "--run-id", "4711"});
+  const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
+  const TimePoint end = Clock::now() + kPatience;
+  Outcome doctor{};
+  do {  // until it has become the program that it is to be
+    doctor = RunCommand({Program("fogline"), "doctor"});
+  } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
+  EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
+                                    " is left of a run whose runner is gone  -> kill " +
+                                    std::to_string(role.pid()) + "\n"));
+  EXPECT_TRUE(IsAlive(role.pid()));
+}
+
+TEST(DoctorTest, MissesARelay) {
+  const Outcome none =
+      RunCommand({Program("fogline"), "doctor", "--lcm-url", "tcpq://127.0.0.1:1"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.out, HasSubstr("problem  no relay at 127.0.0.1:1"));
+  const Outcome name =
+      RunCommand({Program("fogline"), "doctor", "--lcm-url", "tcpq://localhost:1"});
+  EXPECT_EQ(name.code, 1);
+  EXPECT_THAT(name.out, HasSubstr("numeric addresses only"));
+}
+
+/// A machine without a network: a network namespace in which nothing is set up.
+class OfflineTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (geteuid() != 0) GTEST_SKIP() << "making a network namespace needs root";
+    if (RunCommand({"unshare", "--net", "true"}).code != 0) {
+      GTEST_SKIP() << "this machine allows no network namespaces";
+    }
+  }
+  static Outcome Offline(const std::string& command) {
+    return RunCommand({"unshare", "--net", "sh", "-c", command});
+  }
+};
+
+TEST_F(OfflineTest, DoctorFindsTheMissingRoute) {
+  const Outcome doctor = Offline(Program("fogline") + " doctor --json");
+  EXPECT_EQ(doctor.code, 1) << doctor.err;
+  const json document = json::parse(doctor.out);
+  EXPECT_EQ(document["problems"], 1);
+  const json& route = Find(document["findings"], "check", "multicast_route");
+  EXPECT_EQ(route["level"], "problem");
+  EXPECT_THAT(route["what"].get<std::string>(), HasSubstr("no route to 239.255.76.67"));
+  EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(kLoopbackRoute)));
+}
+
+TEST_F(OfflineTest, TheRemedyOfTheMissingRouteIsOne) {
+  const Outcome doctor =
+      Offline(std::string(kLoopbackRoute) + " && " + Program("fogline") + " doctor --json");
+  EXPECT_EQ(doctor.code, 0) << doctor.out << doctor.err;
+  const json document = json::parse(doctor.out);
+  EXPECT_THAT(Find(document["findings"], "check", "multicast_route")["what"].get<std::string>(),
+              HasSubstr("interface lo"));
+  EXPECT_EQ(Levels(document, "multicast_loopback"), std::multiset<std::string>{"ok"});
+}
+
+TEST_F(OfflineTest, DoctorWarnsThatNoOtherMachineHearsWhatGoesThroughLoopback) {
+  const Outcome doctor = Offline(std::string(kLoopbackRoute) + " && " + Program("fogline") +
+                                 " doctor --lcm-url 'udpm://239.255.76.67:7700?ttl=1'");
+  EXPECT_EQ(doctor.code, 1);
+  EXPECT_THAT(doctor.out, HasSubstr("no other machine hears it"));
+}
+
+TEST_F(OfflineTest, ARunSaysWhatToDo) {
+  const ScratchFolder folder;
+  const Outcome run =
+      Offline(Program("fogline") + " run scenario/paper.json --log " + folder.File("run.lcm"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr(std::string(kLoopbackRoute)));
+}
+
+}  // namespace
+}  // namespace fogline::test
