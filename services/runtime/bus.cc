@@ -103,6 +103,10 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
 
 void Bus::SubscribeAll(Watcher watcher) {
   watcher_ = std::move(watcher);
+  if (tcpq_) {
+    return tcpq_->SubscribeAll(
+        [this](std::string_view channel, Bytes bytes) { Watch(channel, bytes); });
+  }
   lcm_subscription_t* handle = lcm_subscribe(lcm_, ".*", &Bus::OnAnything, this);
   if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
   lcm_subscription_set_queue_capacity(handle, 0);
@@ -172,11 +176,15 @@ void Bus::Deliver(Bytes bytes, Topic& topic) {
 }
 
 void Bus::OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus) {
-  auto& self = *static_cast<Bus*>(bus);
+  static_cast<Bus*>(bus)->Watch(
+      channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+}
+
+void Bus::Watch(std::string_view channel, Bytes bytes) {
   try {
-    self.watcher_(channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+    watcher_(channel, bytes);
   } catch (...) {
-    self.parked_ = std::current_exception();
+    parked_ = std::current_exception();
   }
 }
 

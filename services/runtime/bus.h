@@ -73,6 +73,7 @@ class Bus {
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
   static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
+  void Watch(std::string_view channel, Bytes bytes);
 
   std::string url_;
   _lcm_t* lcm_ = nullptr;               // one of both

@@ -100,6 +100,13 @@ void Client::Subscribe(std::string_view channel, std::string_view pattern, Handl
   SendFrame();
 }
 
+void Client::SubscribeAll(Watcher watcher) {
+  watcher_ = std::move(watcher);
+  frame_.clear();
+  AppendFrame(FrameType::kSubscribe, ".*", {}, frame_);
+  SendFrame();
+}
+
 void Client::Publish(std::string_view channel, Bytes bytes) {
   if (channel.size() > limits_.channel || bytes.size() > limits_.payload) {
     throw std::runtime_error(
@@ -160,6 +167,7 @@ void Client::Handle() {
   for (const auto& [channel, handler] : handlers_) {
     if (channel == frame.name) handler(frame.payload);
   }
+  if (watcher_) watcher_(frame.name, frame.payload);
 }
 
 bool Client::Ready(short events, Duration timeout) const {

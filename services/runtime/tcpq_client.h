@@ -45,6 +45,11 @@ class Client {
   /// @param pattern the regular expression for this channel
   void Subscribe(std::string_view channel, std::string_view pattern, Handler handler);
 
+  /// Calls `watcher` from Handle() for every message that is published on any channel after the
+  /// relay knows of it. Once at most.
+  using Watcher = std::function<void(std::string_view channel, Bytes)>;
+  void SubscribeAll(Watcher watcher);
+
   /// Sends a message. While the relay takes nothing, what it sends is kept, so that both do not
   /// wait for each other.
   void Publish(std::string_view channel, Bytes bytes);
@@ -79,6 +84,7 @@ class Client {
   std::vector<std::uint8_t> frame_;     // being sent
   std::size_t sent_unread_ = 0;         // bytes since it was looked what has come
   std::vector<std::pair<std::string, Handler>> handlers_;
+  Watcher watcher_;
 };
 
 }  // namespace fogline::tcpq

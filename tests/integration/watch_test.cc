@@ -2,16 +2,15 @@
 // with and without a network.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <csignal>
-#include <functional>
 #include <set>
 
 #include "services/runtime/bus.h"
 #include "services/runtime/multicast_route.h"
 #include "tests/support/command.h"
+#include "tests/support/network.h"
 
 namespace fogline::test {
 namespace {
@@ -107,8 +106,9 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   }
 }
 
-TEST(TopTest, CountsWhatItCannotDecodeByTheTypeThatItSeemsToBe) {
-  Bus bus(FreshMulticastUrl());
+/// What top makes of messages on RADAR that are none of radar_t.
+void ExpectUndecodableCounted(const std::string& url) {
+  Bus bus(url);
   Top top(bus);
   ASSERT_TRUE(top.CatchUp("BEFORE"));
   std::vector<std::uint8_t> lidar;
@@ -126,6 +126,16 @@ TEST(TopTest, CountsWhatItCannotDecodeByTheTypeThatItSeemsToBe) {
   EXPECT_EQ(radar["undecodable"], 6);
   EXPECT_EQ(radar["undecodable_as"], (json{{"unknown", 3}, {"lidar_t", 2}, {"radar_t", 1}}));
   EXPECT_TRUE(document["runs"].empty());
+}
+
+TEST(TopTest, CountsWhatItCannotDecodeByTheTypeThatItSeemsToBe) {
+  ExpectUndecodableCounted(FreshMulticastUrl());
+}
+
+TEST(TopTest, LooksAtARelayToo) {
+  Background relay({Program("fogline-relay"), "--listen", "127.0.0.1:0"});
+  ASSERT_TRUE(relay.WaitForOut("\n")) << relay.Err();
+  ExpectUndecodableCounted(relay.Out().substr(0, relay.Out().find('\n')));
 }
 
 TEST(TopTest, ShowsALogThatLogplayerPlays) {
@@ -158,11 +168,10 @@ TEST(TopTest, ShowsALogThatLogplayerPlays) {
 }
 
 TEST(TopTest, DrawsOnATerminalAndGivesItBackWhenQIsPressed) {
-  Bus bus(FreshMulticastUrl());
-  const Outcome top = RunCommand({"sh", "-c",
-                                  "printf q | script -qec '" + Program("fogline") +
-                                      " top --lcm-url " + bus.url() + "' /dev/null"},
-                                 kPatience);
+  const Outcome top =
+      RunCommand({"env", "LCM_DEFAULT_URL=" + FreshMulticastUrl(), "sh", "-c",
+                  "printf q | script -qec '" + Program("fogline") + " top' /dev/null"},
+                 kPatience);
   EXPECT_EQ(top.code, 0);
   EXPECT_THAT(top.out, HasSubstr("\033[?1049h"));
   EXPECT_THAT(top.out, HasSubstr("0 runs"));
@@ -223,65 +232,75 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   EXPECT_TRUE(IsAlive(role.pid()));
 }
 
-TEST(DoctorTest, MissesARelay) {
-  const Outcome none =
-      RunCommand({Program("fogline"), "doctor", "--lcm-url", "tcpq://127.0.0.1:1"});
-  EXPECT_EQ(none.code, 1);
-  EXPECT_THAT(none.out, HasSubstr("problem  no relay at 127.0.0.1:1"));
-  const Outcome name =
-      RunCommand({Program("fogline"), "doctor", "--lcm-url", "tcpq://localhost:1"});
-  EXPECT_EQ(name.code, 1);
-  EXPECT_THAT(name.out, HasSubstr("numeric addresses only"));
+TEST(DoctorTest, ExaminesARelay) {
+  Background relay({Program("fogline-relay"), "--listen", "127.0.0.1:0"});
+  ASSERT_TRUE(relay.WaitForOut("\n")) << relay.Err();
+  const std::string url = relay.Out().substr(0, relay.Out().find('\n'));
+  const Outcome there = RunCommand({Program("fogline"), "doctor", "--lcm-url", url});
+  EXPECT_THAT(there.out, HasSubstr("ok       the relay " + url + " answers\n"));
+  EXPECT_THAT(there.out, HasSubstr("nobody is heard on " + url));
+  relay.Signal(SIGTERM);
+  EXPECT_EQ(relay.Wait(), 0);
+  const Outcome gone = RunCommand({Program("fogline"), "doctor", "--lcm-url", url});
+  EXPECT_EQ(gone.code, 1);
+  EXPECT_THAT(gone.out, HasSubstr("problem  nobody listens on "));
 }
 
-/// A machine without a network: a network namespace in which nothing is set up.
-class OfflineTest : public testing::Test {
+/// Machines without a network, or with one of their own.
+class DoctorOnMachineTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (geteuid() != 0) GTEST_SKIP() << "making a network namespace needs root";
-    if (RunCommand({"unshare", "--net", "true"}).code != 0) {
-      GTEST_SKIP() << "this machine allows no network namespaces";
+    if (const std::string why = WhyNoMachines(); !why.empty()) {
+      GTEST_SKIP() << "machines of their own need root and nftables: " << why;
     }
   }
-  static Outcome Offline(const std::string& command) {
-    return RunCommand({"unshare", "--net", "sh", "-c", command});
+  static Outcome Doctor(const Machine& machine, const std::string& url) {
+    return RunCommand(machine.On({Program("fogline"), "doctor", "--lcm-url", url, "--json"}));
   }
 };
 
-TEST_F(OfflineTest, DoctorFindsTheMissingRoute) {
-  const Outcome doctor = Offline(Program("fogline") + " doctor --json");
-  EXPECT_EQ(doctor.code, 1) << doctor.err;
-  const json document = json::parse(doctor.out);
+constexpr const char* kHere = "udpm://239.255.76.67:7700?ttl=0";
+constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
+
+TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
+  const Machine island("island");
+  const Outcome before = Doctor(island, kHere);
+  EXPECT_EQ(before.code, 1) << before.err;
+  const json document = json::parse(before.out);
   EXPECT_EQ(document["problems"], 1);
   const json& route = Find(document["findings"], "check", "multicast_route");
   EXPECT_EQ(route["level"], "problem");
-  EXPECT_THAT(route["what"].get<std::string>(), HasSubstr("no route to 239.255.76.67"));
+  EXPECT_EQ(route["what"], "no route to 239.255.76.67: Network is unreachable");
   EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(kLoopbackRoute)));
+  // WHEN that is done
+  island.Do(std::string(kLoopbackRoute));
+  const Outcome after = Doctor(island, kHere);
+  EXPECT_EQ(after.code, 0) << after.out << after.err;
+  const json mended = json::parse(after.out);
+  EXPECT_EQ(Find(mended["findings"], "check", "multicast_route")["what"],
+            "239.255.76.67 goes through interface lo, and stays on this machine (ttl=0)");
+  EXPECT_EQ(Levels(mended, "multicast_loopback"), std::multiset<std::string>{"ok"});
+  // THEN it is enough for this machine, but not for others
+  const Outcome wider = Doctor(island, kEverywhere);
+  EXPECT_EQ(wider.code, 1);
+  EXPECT_THAT(wider.out, HasSubstr("no other machine hears it"));
 }
 
-TEST_F(OfflineTest, TheRemedyOfTheMissingRouteIsOne) {
-  const Outcome doctor =
-      Offline(std::string(kLoopbackRoute) + " && " + Program("fogline") + " doctor --json");
+TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
+  const ScratchFolder folder;
+  const Lab lab(2);
+  Background run(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--pace", "1",
+                            "--lcm-url", kEverywhere, "--log", folder.File("run.lcm")}));
+  ASSERT_TRUE(run.WaitForErr("processes: ")) << run.Err();
+  const Outcome doctor = Doctor(lab[1], kEverywhere);
   EXPECT_EQ(doctor.code, 0) << doctor.out << doctor.err;
   const json document = json::parse(doctor.out);
-  EXPECT_THAT(Find(document["findings"], "check", "multicast_route")["what"].get<std::string>(),
-              HasSubstr("interface lo"));
-  EXPECT_EQ(Levels(document, "multicast_loopback"), std::multiset<std::string>{"ok"});
-}
-
-TEST_F(OfflineTest, DoctorWarnsThatNoOtherMachineHearsWhatGoesThroughLoopback) {
-  const Outcome doctor = Offline(std::string(kLoopbackRoute) + " && " + Program("fogline") +
-                                 " doctor --lcm-url 'udpm://239.255.76.67:7700?ttl=1'");
-  EXPECT_EQ(doctor.code, 1);
-  EXPECT_THAT(doctor.out, HasSubstr("no other machine hears it"));
-}
-
-TEST_F(OfflineTest, ARunSaysWhatToDo) {
-  const ScratchFolder folder;
-  const Outcome run =
-      Offline(Program("fogline") + " run scenario/paper.json --log " + folder.File("run.lcm"));
-  EXPECT_EQ(run.code, 2);
-  EXPECT_THAT(run.err, HasSubstr(std::string(kLoopbackRoute)));
+  const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
+  EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
+  for (const RoleInfo& info : kRoles) {
+    const pid_t pid = PidOf(run.Err(), std::string(info.name));
+    EXPECT_THAT(heard, HasSubstr(std::string(info.name) + " " + std::to_string(pid) + "@lab1"));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/loader.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/doctor/findings.h"
 #include "tools/fogline/verbs.h"
@@ -43,6 +44,8 @@ struct DoctorArguments {
 void Attempt(const char* check, Findings& findings, const std::function<void()>& examine) {
   try {
     examine();
+  } catch (const InputError&) {
+    throw;
   } catch (const std::exception& error) {
     findings.push_back({check, Level::kProblem, error.what(), ""});
   }

@@ -2,6 +2,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -59,6 +60,9 @@ struct TopArguments {
   bool json = false;
 };
 
+// How often it looks at what poll() does not see: messages that a flood has left undrained.
+constexpr Duration kLookEvery = milliseconds(50);
+
 Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
@@ -99,7 +103,8 @@ class Top {
       std::array<pollfd, 2> waited{
           pollfd{.fd = bus_.fd(), .events = POLLIN, .revents = 0},
           pollfd{.fd = terminal_ ? terminal_->fd() : -1, .events = POLLIN, .revents = 0}};
-      poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(until - now)) + 1);
+      const Duration wait = std::min(until - now, kLookEvery);
+      poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(wait)) + 1);
       if (WasInterrupted()) return false;
       bus_.Drain();
       if (terminal_ && terminal_->Key() == 'q') return false;

@@ -39,10 +39,10 @@ TEST(MulticastRouteTest, HasNoInterfaceWithoutARoute) {
   EXPECT_EQ(RouteInterface(std::string(kHeading) + "eth0\ttorn", kGroup), "");
 }
 
-TEST(MulticastRouteTest, ReachesThisMachineWithoutAHint) {
+TEST(MulticastRouteTest, KnowsNothingAgainstAnAddressThatIsAlwaysThere) {
   EXPECT_EQ(RouteError("127.0.0.1"), "");
-  EXPECT_EQ(RouteHint("udpm://127.0.0.1:7667"), "");
-  EXPECT_EQ(RouteHint("tcpq://127.0.0.1"), "");
+  EXPECT_EQ(WhyNoMulticast("udpm://127.0.0.1:7667"), "");
+  EXPECT_EQ(WhyNoMulticast("tcpq://127.0.0.1"), "");
 }
 
 }  // namespace

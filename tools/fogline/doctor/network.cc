@@ -1,6 +1,4 @@
 // The network that LCM uses: route, multicast, buffers; who else is on it.
-#include <arpa/inet.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -12,8 +10,10 @@
 
 #include <fmt/core.h>
 
+#include "scenario/loader.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/multicast_route.h"
+#include "services/runtime/tcpq_client.h"
 #include "tools/fogline/doctor/findings.h"
 #include "tools/watch/traffic_statistics.h"
 #include "tools/watch/traffic_text.h"
@@ -45,7 +45,9 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   if (!error.empty()) {
     findings.push_back({"multicast_route", Level::kProblem,
                         fmt::format("no route to {}: {}", group, error),
-                        fmt::format("without a network, as root: {}", kLoopbackRoute)});
+                        fmt::format("as root: {} for this machine alone, or with the network's "
+                                    "interface in place of lo",
+                                    kLoopbackRoute)});
     return false;
   }
   const std::string interface = RouteInterface(Content("/proc/net/route"), group);
@@ -55,7 +57,7 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
     findings.push_back(
         {"multicast_route", Level::kProblem,
          fmt::format("{} goes through lo: with ttl={} no other machine hears it", group, ttl),
-         "ip route replace 224.0.0.0/4 dev INTERFACE"});
+         "as root: ip route replace 239.0.0.0/8 dev INTERFACE"});
     return true;
   }
   findings.push_back({"multicast_route", Level::kOk,
@@ -136,43 +138,15 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
                    wanted)});
 }
 
-/// Whether somebody takes connections there. @return the error, "" if so
-std::string ConnectError(const std::string& host, int port) {
-  constexpr int kLimitMs = 1000;
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (inet_pton(AF_INET, host.c_str(), &to.sin_addr) != 1) {
-    return "LCM takes numeric addresses only, and this machine for any name";
-  }
-  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
-  pollfd waited{.fd = probe, .events = POLLOUT, .revents = 0};
-  int error = ETIMEDOUT;
-  socklen_t size = sizeof(error);
-  if (poll(&waited, 1, kLimitMs) == 1) getsockopt(probe, SOL_SOCKET, SO_ERROR, &error, &size);
-  close(probe);
-  return error == 0 ? "" : std::strerror(error);
-}
-
 void ExamineRelay(const std::string& url, Findings& findings) {
-  constexpr int kDefaultPort = 7700;
-  std::string host = url.substr(std::string_view("tcpq://").size());
-  host = host.substr(0, host.find('?'));
-  int port = kDefaultPort;
-  if (const std::size_t colon = host.find(':'); colon != std::string::npos) {
-    std::from_chars(host.data() + colon + 1, host.data() + host.size(), port);
-    host.resize(colon);
-  }
-  if (host.empty()) host = "127.0.0.1";
-  const std::string error = ConnectError(host, port);
-  if (error.empty()) {
+  try {
+    const tcpq::Client client(url);
     findings.push_back(
-        {"relay", Level::kOk, fmt::format("{}:{} takes connections", host, port), ""});
-  } else {
-    findings.push_back({"relay", Level::kProblem,
-                        fmt::format("no relay at {}:{}: {}", host, port, error),
-                        "start the relay there, and name it by its numeric address"});
+        {"relay", Level::kOk, fmt::format("the relay {} answers", client.url()), ""});
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    findings.push_back({"relay", Level::kProblem, error.what(), "fogline-relay --help"});
   }
 }
 
