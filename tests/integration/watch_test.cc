@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "services/runtime/bus.h"
@@ -179,7 +181,7 @@ TEST(TopTest, DrawsOnATerminalAndGivesItBackWhenQIsPressed) {
 }
 
 TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
-  for (const char* verb : {"top", "doctor"}) {
+  for (const char* verb : {"top", "spy", "doctor"}) {
     const Outcome memory = RunCommand({Program("fogline"), verb, "--lcm-url", "memq://"});
     EXPECT_EQ(memory.code, 2);
     EXPECT_THAT(memory.err, HasSubstr("the memory of one process"));
@@ -246,6 +248,22 @@ TEST(DoctorTest, ExaminesARelay) {
   EXPECT_THAT(gone.out, HasSubstr("problem  nobody listens on "));
 }
 
+TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
+  const ScratchFolder folder;
+  std::filesystem::copy_file(Program("fogline"), folder.File("fogline"));
+  const std::string radar = folder.File("fogline-radar");
+  std::ofstream(radar) << "#!/bin/sh\necho 0.0.1, message types 0123456789abcdef\n";
+  std::filesystem::permissions(radar, std::filesystem::perms::owner_all);
+  const Outcome doctor =
+      RunCommand({folder.File("fogline"), "doctor", "--lcm-url", "tcpq://127.0.0.1:1"});
+  EXPECT_EQ(doctor.code, 1);
+  EXPECT_THAT(doctor.out,
+              HasSubstr("problem  " + radar +
+                        " is \"0.0.1, message types 0123456789abcdef\", but fogline is"));
+  EXPECT_THAT(doctor.out, HasSubstr("problem  " + folder.File("fogline-world") +
+                                    " cannot be run  -> ninja -C build fogline_programs\n"));
+}
+
 /// Machines without a network, or with one of their own.
 class DoctorOnMachineTest : public testing::Test {
  protected:
@@ -297,6 +315,9 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const json document = json::parse(doctor.out);
   const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
+  // Processes are those of this computer, whatever network they are on.
+  EXPECT_THAT(doctor.out, HasSubstr("fogline (pid " + std::to_string(run.pid()) +
+                                    ") has a run with 9 processes on " + kEverywhere));
   for (const RoleInfo& info : kRoles) {
     const pid_t pid = PidOf(run.Err(), std::string(info.name));
     EXPECT_THAT(heard, HasSubstr(std::string(info.name) + " " + std::to_string(pid) + "@lab1"));

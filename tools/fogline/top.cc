@@ -35,7 +35,7 @@ Examples:
   fogline top --lcm-url 'udpm://239.255.76.67:7700?ttl=0'
   fogline top --once --json --interval 2 | jq '.runs[].channels[] | {channel, rate_hz}'
   fogline top --for 60 --interval 10 >> traffic.txt
-  fogline top &  lcm-logplayer logs/paper-1.lcm          # a log that is being played)";
+  lcm-logplayer logs/paper-1.lcm & fogline top     a log that is being played)";
 
 struct TopArguments {
   explicit TopArguments(CLI::App& verb) {
@@ -134,15 +134,18 @@ class Top {
 }  // namespace
 
 void AddTop(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("top", "Show live traffic: channels and roles, run by run");
-  const auto arguments = std::make_shared<TopArguments>(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] {
-      CheckNetworkUrl(arguments->url);
-      WatchInterrupts();
-      return Top(*arguments).Run();
-    };
-  });
+  CLI::App* top = app.add_subcommand("top", "Show live traffic: channels and roles, run by run");
+  CLI::App* spy = app.add_subcommand("spy", "The same as top")->group("");  // not in the list
+  for (CLI::App* verb : {top, spy}) {
+    const auto arguments = std::make_shared<TopArguments>(*verb);
+    verb->callback([&action, arguments] {
+      action = [arguments] {
+        CheckNetworkUrl(arguments->url);
+        WatchInterrupts();
+        return Top(*arguments).Run();
+      };
+    });
+  }
 }
 
 }  // namespace fogline
