@@ -29,7 +29,7 @@ int Main(int argc, char** argv) {
       "  fogline table --help");
   Action action;
   for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest,
-                         AddDiff, AddGraph, AddCheck}) {
+                         AddDiff, AddGraph, AddCheck, AddKeygen}) {
     add(app, action);
   }
   try {

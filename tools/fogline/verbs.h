@@ -30,5 +30,6 @@ void AddDigest(CLI::App& app, Action& action);
 void AddDiff(CLI::App& app, Action& action);
 void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
+void AddKeygen(CLI::App& app, Action& action);
 
 }  // namespace fogline
