@@ -16,6 +16,7 @@ enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,
   kLidarBeam = 3,
+  kFaults = 4,
 };
 
 /// The random numbers of one stream under one seed.

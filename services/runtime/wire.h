@@ -1,6 +1,7 @@
 // Messages as bytes: encoding, checked decoding, the parts of every message's header.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -18,9 +19,9 @@ namespace fogline {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The most that a per-step message may take, so that it travels in one Ethernet frame
-/// unfragmented.
-inline constexpr std::size_t kMaxStepMessageBytes = 1400;
+/// The most that a message may take, so that it travels in one Ethernet frame unfragmented, with
+/// the headers of UDP and LCM, the channel's name and a signature.
+inline constexpr std::size_t kMaxMessageBytes = 1400;
 
 /// Every message begins with its type's fingerprint (8 bytes) and header_t: run_id, step, utime.
 inline constexpr std::size_t kRunIdOffset = 8;
@@ -33,6 +34,16 @@ inline std::int64_t ReadInt64(Bytes bytes, std::size_t offset) {
   std::memcpy(&value, bytes.data() + offset, sizeof(value));
   if constexpr (std::endian::native == std::endian::little) value = __builtin_bswap64(value);
   return static_cast<std::int64_t>(value);
+}
+
+/// The fingerprint that the messages of a channel begin with, by place in kChannels.
+inline std::int64_t FingerprintOf(std::size_t channel) {
+  static const auto fingerprints = std::apply(
+      [](const auto&... each) {
+        return std::array{std::decay_t<decltype(each)>::Message::getHash()...};
+      },
+      kGraph);
+  return fingerprints[channel];
 }
 
 // LCM's generated code works byte by byte. Inlined whole (flatten) its offsets are constants, and

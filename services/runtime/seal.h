@@ -1,0 +1,93 @@
+// Signed traffic: a trailer behind the LCM payload proves that the sender has the key. Generated
+// decoders do not look behind a payload, so lcm-spy, lcm-logger and lcm-logplayer go on working.
+//
+//   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
+//
+// The tag is BLAKE2b (RFC 7693) under the key, over the channel's name, a 0, the sender and the
+// payload. The payload's own header has run id and step in it, so a message proves nothing in
+// another run, in another step, on another channel or from another role. One key for all: whoever
+// has it can sign as any role. The key id tells keys apart, it does not protect anything.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/runtime/wire.h"
+
+namespace fogline {
+
+/// 32 secret bytes. A key file has them as 64 hexadecimal digits, and a line end or none.
+class SealKey {
+ public:
+  using Secret = std::array<std::uint8_t, 32>;
+
+  explicit SealKey(const Secret& secret) : secret_(secret) {}
+  ~SealKey();
+  SealKey(const SealKey&) = default;
+  SealKey& operator=(const SealKey&) = default;
+
+  /// @throws InputError when the file cannot be read or holds no key
+  static SealKey Load(const std::filesystem::path& file);
+  /// Draws a key into a new file that its owner alone can read.
+  /// @throws InputError when the file exists or cannot be written
+  static void Create(const std::filesystem::path& file);
+
+  const Secret& secret() const { return secret_; }
+
+ private:
+  Secret secret_;
+};
+
+/// What is wrong with a key file that others may read, "" if nothing.
+std::string KeyFileWarning(const std::filesystem::path& file);
+
+/// Bytes of the trailer.
+inline constexpr std::size_t kSealBytes = 24;
+
+/// Whether the message ends like a signed one; nothing is verified.
+bool LooksSealed(Bytes message);
+/// The message without its last kSealBytes. @pre LooksSealed(message)
+inline Bytes WithoutSeal(Bytes message) { return message.first(message.size() - kSealBytes); }
+
+/// Signs and verifies for one process.
+class Seal {
+ public:
+  /// @param sender this process's role. Without it the process is every role (a run in memory), and
+  ///     each message is signed as from its producer.
+  Seal(const SealKey& key, std::optional<Role> sender)
+      : key_(key), id_(IdOf(key)), sender_(sender) {}
+
+  /// The payload with its trailer; valid until the next call.
+  Bytes Sign(std::string_view channel, Bytes payload);
+
+  enum class Verdict {
+    kGood,
+    kNotSigned,    // without a trailer
+    kBadlySigned,  // another key, something altered, or a sender that may not publish this
+  };
+  struct Opened {
+    Verdict verdict;
+    Bytes payload;  // without the trailer, if the verdict is good
+  };
+  Opened Open(std::string_view channel, Bytes message) const;
+
+ private:
+  using KeyId = std::array<std::uint8_t, 2>;
+  using Sender = std::array<std::uint8_t, 2>;
+  using Tag = std::array<std::uint8_t, 16>;
+  static KeyId IdOf(const SealKey& key);
+  Tag TagOf(std::string_view channel, const Sender& sender, Bytes payload) const;
+
+  SealKey key_;
+  KeyId id_;
+  std::optional<Role> sender_;
+  std::vector<std::uint8_t> message_;  // signed last
+};
+
+}  // namespace fogline

@@ -1,0 +1,189 @@
+#include "services/runtime/seal.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "scenario/loader.h"
+#include "tests/support/command.h"
+
+namespace fogline {
+namespace {
+
+using test::ScratchFolder;
+using testing::HasSubstr;
+using Verdict = Seal::Verdict;
+using Message = std::vector<std::uint8_t>;
+
+SealKey KeyOf(std::uint8_t byte) {
+  SealKey::Secret secret{};
+  secret.fill(byte);
+  return SealKey(secret);
+}
+
+Message Copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+
+template <class M>
+Message PayloadOf(const M& message) {
+  Message bytes;
+  Encode(message, bytes);
+  return bytes;
+}
+
+Message StatusOf(std::string_view role) {
+  status_t status{};
+  status.role = role;
+  return PayloadOf(status);
+}
+
+const Message kRadar = PayloadOf(radar_t{});
+
+/// What a receiver with the same key says of a message that this role has signed.
+Verdict VerdictOn(Role sender, std::string_view channel, Bytes payload) {
+  Seal signer(KeyOf(1), sender);
+  return Seal(KeyOf(1), Role::kWorld).Open(channel, signer.Sign(channel, payload)).verdict;
+}
+
+TEST(SealTest, GivesThePayloadBackAsItWas) {
+  Seal radar(KeyOf(1), Role::kRadar);
+  const Message message = Copy(radar.Sign("RADAR", kRadar));
+  EXPECT_EQ(message.size(), kRadar.size() + kSealBytes);
+  const auto [verdict, payload] = Seal(KeyOf(1), Role::kFusion).Open("RADAR", message);
+  EXPECT_EQ(verdict, Verdict::kGood);
+  EXPECT_EQ(Copy(payload), kRadar);
+  EXPECT_EQ(Copy(WithoutSeal(message)), kRadar);
+}
+
+TEST(SealTest, NoticesEveryBitThatIsWrong) {
+  Seal seal(KeyOf(1), Role::kRadar);
+  Message message = Copy(seal.Sign("RADAR", kRadar));
+  for (std::size_t bit = 0; bit < 8 * message.size(); ++bit) {
+    const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
+    message[bit / 8] ^= mask;
+    EXPECT_NE(seal.Open("RADAR", message).verdict, Verdict::kGood) << "bit " << bit;
+    message[bit / 8] ^= mask;
+  }
+  EXPECT_EQ(seal.Open("RADAR", message).verdict, Verdict::kGood);
+}
+
+TEST(SealTest, NoticesEveryCut) {
+  Seal seal(KeyOf(1), Role::kRadar);
+  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    EXPECT_EQ(seal.Open("RADAR", Bytes(message).first(size)).verdict, Verdict::kNotSigned) << size;
+  }
+}
+
+TEST(SealTest, RefusesOtherKeysAndOtherChannels) {
+  Seal seal(KeyOf(1), Role::kWorld);
+  const Message message = Copy(seal.Sign("TRUTH", kRadar));
+  EXPECT_EQ(Seal(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict, Verdict::kBadlySigned);
+  EXPECT_EQ(seal.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
+}
+
+TEST(SealTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace != Pace::kStep) continue;
+    for (const RoleInfo& info : kRoles) {
+      const bool may = info.role == channel.from || info.role == Role::kRecorder;
+      EXPECT_EQ(VerdictOn(info.role, channel.name, kRadar),
+                may ? Verdict::kGood : Verdict::kBadlySigned)
+          << channel.name << " from " << info.name;
+    }
+  }
+}
+
+TEST(SealTest, TakesRunFromTheRunnerAloneAndResendFromEverybody) {
+  EXPECT_EQ(VerdictOn(Role::kRunner, "RUN", kRadar), Verdict::kGood);
+  EXPECT_EQ(VerdictOn(Role::kRunner, "RESEND", kRadar), Verdict::kGood);
+  for (const RoleInfo& info : kRoles) {
+    EXPECT_EQ(VerdictOn(info.role, "RUN", kRadar), Verdict::kBadlySigned) << info.name;
+    EXPECT_EQ(VerdictOn(info.role, "RESEND", kRadar), Verdict::kGood) << info.name;
+  }
+}
+
+TEST(SealTest, TakesAStatusFromTheRoleThatItNamesAlone) {
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("radar")), Verdict::kGood);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRecorder, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("nobody")), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", Bytes(kRadar).first(34)), Verdict::kBadlySigned);
+}
+
+TEST(SealTest, SignsAsEveryRoleInAProcessThatIsAll) {
+  Seal all(KeyOf(1), std::nullopt);
+  for (const ChannelInfo& channel : kChannels) {
+    const Message payload = channel.name == "STATUS" ? StatusOf("acc") : kRadar;
+    EXPECT_EQ(all.Open(channel.name, all.Sign(channel.name, payload)).verdict, Verdict::kGood)
+        << channel.name;
+  }
+}
+
+TEST(SealTest, LeavesASignedMessageToLcmsOwnDecodersAndNoneToOurs) {
+  Seal seal(KeyOf(1), Role::kRadar);
+  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  radar_t decoded{};
+  // The generated decoder, as LCM's own programs call it.
+  EXPECT_GE(decoded.decode(message.data(), 0, static_cast<int>(message.size())), 0);
+  EXPECT_FALSE(Decode(message, decoded));
+}
+
+TEST(SealKeyTest, IsMadeForItsOwnerAloneAndReadAgain) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  SealKey::Create(file);
+  struct stat info {};
+  ASSERT_EQ(stat(file.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0600U);
+  const SealKey key = SealKey::Load(file);
+  SealKey::Create(folder.File("other"));
+  EXPECT_NE(key.secret(), SealKey::Load(folder.File("other")).secret());
+}
+
+TEST(SealKeyTest, IsNeverReplaced) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  SealKey::Create(file);
+  const SealKey key = SealKey::Load(file);
+  EXPECT_THROW(SealKey::Create(file), InputError);
+  EXPECT_EQ(SealKey::Load(file).secret(), key.secret());
+  EXPECT_THROW(SealKey::Create(folder.File("no/folder/key")), InputError);
+}
+
+TEST(SealKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  const std::string digits(64, 'a');
+  const auto load = [&](const std::string& content) {
+    std::ofstream(file) << content;
+    return SealKey::Load(file).secret();
+  };
+  SealKey::Secret expected{};
+  expected.fill(0xaa);
+  for (const std::string& good : {digits, digits + "\n", digits + "\r\n", std::string(64, 'A')}) {
+    EXPECT_EQ(load(good), expected);
+  }
+  for (const std::string& bad :
+       {std::string(), digits + "a", digits + digits, digits.substr(1), "x" + digits.substr(1),
+        " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32)}) {
+    EXPECT_THROW(load(bad), InputError) << bad;
+  }
+  EXPECT_THROW(SealKey::Load(folder.File("none")), InputError);
+  EXPECT_THROW(SealKey::Load(folder.path()), InputError);
+}
+
+TEST(SealKeyTest, WarnsOfAFileThatOthersCanRead) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  SealKey::Create(file);
+  EXPECT_EQ(KeyFileWarning(file), "");
+  for (const mode_t mode : {0640U, 0604U}) {
+    ASSERT_EQ(chmod(file.c_str(), mode), 0);
+    EXPECT_THAT(KeyFileWarning(file), HasSubstr("warning: others can read this key"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline
