@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "services/runtime/seal.h"
+
 namespace fogline {
 namespace {
 
@@ -16,6 +18,9 @@ namespace {
 constexpr std::uint32_t kMagicOffset = 8;
 constexpr std::uint32_t kChannelOffset = kMagicOffset + 8;
 constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian as all of it
+constexpr std::size_t kMaxChannel = 63;              // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr auto kMaxDatagram =
+    static_cast<std::uint32_t>(kChannelOffset + kMaxChannel + 1 + kMaxMessageBytes + kSealBytes);
 
 constexpr std::uint32_t kWholeDatagram = 0xffffffff;
 constexpr std::uint32_t kNothing = 0;
@@ -87,9 +92,11 @@ std::vector<int> UdpSockets() {
 
 std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels) {
   std::vector<sock_filter> program{
+      BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
+      BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // to Take(kNothing)
       Load(4, kMagicOffset),
       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kSmallMessage, 1, 0),  // goes on with the channels
-      Take(kWholeDatagram),
+      Take(kNothing),
   };
   // A program that looks beyond the end of a datagram drops it. From short names to long ones, none
   // looks further than the name that matches.

@@ -5,6 +5,9 @@
 // of all that a machine does for a step is waking threads for nothing. The kernel can look at the
 // channel's name where the datagram arrives, and wake nobody (a socket filter, see socket(7)).
 // Nothing else changes: what is subscribed arrives as before, in the same order.
+//
+// It also keeps from LCM's parser what no process of ours sends: fragments, whose bounds LCM does
+// not check as it should (LCM issue 628: a remote heap write), and whatever is no message at all.
 #pragma once
 
 #include <linux/filter.h>
@@ -18,8 +21,8 @@ namespace fogline {
 std::vector<int> UdpSockets();
 
 /// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on
-/// these channels, and everything that is none, such as fragments of large messages ("LC03"), of
-/// which only the first says its channel.
+/// these channels, of up to kMaxMessageBytes of data and a signature, and nothing else. Fragments
+/// of large messages ("LC03") are not taken.
 std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels);
 
 /// Filters what the socket receives from now on, instead of by an earlier filter. Where the kernel
