@@ -69,6 +69,8 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
+  // LCM has tested itself by now. What has not been subscribed to need not reach its parser.
+  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter({}));
 }
 
 Bus::~Bus() {
@@ -114,6 +116,11 @@ void Bus::SubscribeAll(Watcher watcher) {
 }
 
 void Bus::Publish(const Topic& topic, Bytes bytes) {
+  if (bytes.size() > kMaxMessageBytes) {
+    throw std::runtime_error(fmt::format("{} takes {} bytes, at most {} fit", topic.channel,
+                                         bytes.size(), kMaxMessageBytes));
+  }
+  if (seal_) bytes = seal_->Sign(topic.channel, bytes);
   if (tcpq_) return tcpq_->Publish(topic.channel, bytes);
   if (lcm_publish(lcm_, topic.channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
       0) {
@@ -124,7 +131,11 @@ void Bus::Publish(const Topic& topic, Bytes bytes) {
 }
 
 bool Bus::Wait(Duration timeout) {
-  if (waiting_ == 0 && !Readable(timeout)) return false;
+  if (faults_) {
+    if (HandleDue()) return true;
+    timeout = std::min(timeout, faults_->NextDue() - Clock::now());
+  }
+  if (waiting_ == 0 && !Readable(timeout)) return faults_ && HandleDue();
   now_ = Clock::now();
   Handle();
   return true;
@@ -138,6 +149,13 @@ void Bus::Handle() {
     throw std::runtime_error(fmt::format("LCM lost {}", url_));
   }
   if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
+}
+
+bool Bus::HandleDue() {
+  now_ = Clock::now();
+  const auto message = faults_->Due(now_);
+  if (message) CallHandlers(TopicOf(message->channel), message->bytes);
+  return message.has_value();
 }
 
 bool Bus::Readable(Duration timeout) {
@@ -167,11 +185,15 @@ void Bus::OnMessage(const _lcm_recv_buf_t* buffer, const char* /*channel*/, void
 }
 
 void Bus::Deliver(Bytes bytes, Topic& topic) {
+  Bus& bus = *topic.bus;
   try {
-    topic.arrival.Renew(bytes, topic.bus->now_);
-    for (const Handler& handler : topic.handlers) handler(topic.arrival);
+    if (bus.faults_) {
+      bus.faults_->Take(topic.channel, bytes, bus.now_);
+    } else {
+      bus.CallHandlers(topic, bytes);
+    }
   } catch (...) {
-    topic.bus->parked_ = std::current_exception();
+    bus.parked_ = std::current_exception();
   }
 }
 
@@ -186,6 +208,45 @@ void Bus::Watch(std::string_view channel, Bytes bytes) {
   } catch (...) {
     parked_ = std::current_exception();
   }
+}
+
+void Bus::CallHandlers(Topic& topic, Bytes bytes) {
+  const auto verified = Verified(topic, bytes);
+  if (!verified) return;
+  topic.arrival.Renew(*verified, now_);
+  for (const Handler& handler : topic.handlers) handler(topic.arrival);
+}
+
+std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
+  const auto count = [this](std::int64_t Unverified::*kind) {
+    ++(unverified_.*kind);
+    ++(not_taken_.*kind);
+  };
+  if (!seal_) {
+    // No decoder takes anything with a trailer, and a payload might end like one by chance.
+    if (LooksSealed(bytes)) count(&Unverified::no_key);
+    return bytes;
+  }
+  const Seal::Opened opened = seal_->Open(topic.channel, bytes);
+  if (opened.verdict == Seal::Verdict::kGood) return opened.payload;
+  count(opened.verdict == Seal::Verdict::kNotSigned ? &Unverified::not_signed
+                                                    : &Unverified::badly_signed);
+  return std::nullopt;
+}
+
+std::string SignatureTrouble(const Bus::Unverified& unverified) {
+  if (unverified.badly_signed > 0) {
+    return fmt::format(
+        "{} messages with a wrong signature were refused: do all processes have the same key?",
+        unverified.badly_signed);
+  }
+  if (unverified.not_signed > 0) {
+    return fmt::format(
+        "{} messages without a signature were refused: do all processes have the key?",
+        unverified.not_signed);
+  }
+  if (unverified.no_key > 0) return "traffic on this network is signed; give --key";
+  return "";
 }
 
 std::string FreshMulticastUrl() {

@@ -1,5 +1,6 @@
 // LCM behind one small class: the URL with safe options, channel names taken literally, receive
-// queues without LCM's limit of 30, and handlers that may throw.
+// queues without LCM's limit of 30, handlers that may throw; on request signatures and a bad
+// network.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +8,16 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "services/runtime/arrival.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/faults.h"
+#include "services/runtime/seal.h"
 
 struct _lcm_t;
 struct _lcm_recv_buf_t;
@@ -37,6 +42,11 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
+  /// From now on signs what it sends, and refuses what is not signed well.
+  void Secure(const Seal& seal) { seal_ = seal; }
+  /// From now on receives as over a bad network.
+  void Impair(const Faults& faults) { faults_ = faults; }
+
   /// Calls `handler` from Wait() for every message on exactly this channel, handlers of one channel
   /// in the order of their subscription; what the message holds is valid during the call. What a
   /// handler throws comes out of Wait().
@@ -48,6 +58,7 @@ class Bus {
   void SubscribeAll(Watcher watcher);
 
   /// Sends bytes; they are copied before it returns.
+  /// @throws std::runtime_error if there are more than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
   /// A channel on this bus, for those that publish often: finding it by name takes its time.
@@ -63,6 +74,17 @@ class Bus {
   void Drain();
   static constexpr int kDrained = 1000;
 
+  /// Messages that were not verified.
+  struct Unverified {
+    std::int64_t not_signed = 0;    // refused: there is a key here
+    std::int64_t badly_signed = 0;  // refused
+    std::int64_t no_key = 0;        // signed, and there is no key here: the decoder refuses them
+  };
+  /// Since the beginning.
+  const Unverified& unverified() const { return unverified_; }
+  /// Since the last call: for those who share a bus and count together.
+  Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
+
   /// Readable when Wait(0) would handle a message; with tcpq, if all before are handled.
   int fd() const { return fd_; }
   const std::string& url() const { return url_; }
@@ -70,6 +92,10 @@ class Bus {
  private:
   bool Readable(Duration timeout);
   void Handle();
+  bool HandleDue();
+  /// What the signature vouches for; nothing if the message is refused.
+  std::optional<Bytes> Verified(const Topic& topic, Bytes bytes);
+  void CallHandlers(Topic& topic, Bytes bytes);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
   static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
@@ -87,7 +113,14 @@ class Bus {
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
   Watcher watcher_;            // of all channels, if there is one
   std::exception_ptr parked_;  // may not pass through LCM's C code
+  std::optional<Seal> seal_;
+  std::optional<Faults> faults_;
+  Unverified unverified_;
+  Unverified not_taken_;
 };
+
+/// What the user of a process should know about keys and signatures, "" if there is nothing.
+std::string SignatureTrouble(const Bus::Unverified& unverified);
 
 /// LCM knows of one subscription however many handlers there are: a message is dispatched once and
 /// decoded once.

@@ -71,6 +71,93 @@ TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
   EXPECT_NE(FreshMulticastUrl(), FreshMulticastUrl());
 }
 
+SealKey KeyOf(std::uint8_t byte) {
+  SealKey::Secret secret{};
+  secret.fill(byte);
+  return SealKey(secret);
+}
+
+TEST(BusTest, SendsNothingThatDoesNotFitOneDatagram) {
+  Bus bus("memq://");
+  EXPECT_NO_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes)));
+  EXPECT_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes + 1)),
+               std::runtime_error);
+}
+
+TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
+  const std::string url = FreshMulticastUrl();
+  Bus receiver(url);
+  receiver.Secure(Seal(KeyOf(1), Role::kFusion));
+  std::vector<int> received;
+  receiver.Subscribe("RADAR", [&received](Bytes bytes) {
+    EXPECT_EQ(bytes.size(), 1U);
+    received.push_back(bytes[0]);
+  });
+  // GIVEN senders with no key, another key, and a key but no business here
+  Bus keyless(url);
+  Bus stranger(url);
+  stranger.Secure(Seal(KeyOf(2), Role::kRadar));
+  Bus lidar(url);
+  lidar.Secure(Seal(KeyOf(1), Role::kLidar));
+  Bus radar(url);
+  radar.Secure(Seal(KeyOf(1), Role::kRadar));
+  for (int i = 0; i < 3; ++i) keyless.Publish("RADAR", Payload(1));
+  for (int i = 0; i < 2; ++i) stranger.Publish("RADAR", Payload(2));
+  lidar.Publish("RADAR", Payload(3));
+  radar.Publish("RADAR", Payload(4));
+  while (received.empty() && receiver.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(received, std::vector<int>{4});
+  EXPECT_EQ(receiver.unverified().not_signed, 3);
+  EXPECT_EQ(receiver.unverified().badly_signed, 3);
+  EXPECT_EQ(receiver.TakeUnverified().badly_signed, 3);
+  EXPECT_EQ(receiver.TakeUnverified().badly_signed, 0);
+  EXPECT_EQ(SignatureTrouble(receiver.unverified()),
+            "3 messages with a wrong signature were refused: do all processes have the same key?");
+}
+
+TEST(BusTest, KnowsThatAKeyIsWanting) {
+  const std::string url = FreshMulticastUrl();
+  Bus keyless(url);
+  bool heard = false;
+  keyless.Subscribe("RADAR", [&heard](Bytes bytes) { heard = bytes.size() == 1 + kSealBytes; });
+  Bus radar(url);
+  radar.Secure(Seal(KeyOf(1), Role::kRadar));
+  EXPECT_EQ(SignatureTrouble(keyless.unverified()), "");
+  radar.Publish("RADAR", Payload(4));
+  EXPECT_TRUE(keyless.Wait(std::chrono::seconds(5)));
+  EXPECT_TRUE(heard) << "it is for the decoder to refuse";
+  EXPECT_EQ(SignatureTrouble(keyless.unverified()),
+            "traffic on this network is signed; give --key");
+}
+
+TEST(BusTest, HandsLateMessagesOnWhenTheirTimeHasCome) {
+  for (const std::string& url : {std::string("memq://"), FreshMulticastUrl()}) {
+    Bus bus(url);
+    bus.Impair(Faults({.delay_ms = 20}, Role::kAcc));
+    int received = 0;
+    bus.Subscribe("C", [&received](Bytes) { ++received; });
+    const TimePoint began = Clock::now();
+    bus.Publish("C", Payload(0));
+    while (received == 0 && bus.Wait(std::chrono::seconds(5))) {
+    }
+    EXPECT_EQ(received, 1) << url;
+    EXPECT_GE(Clock::now() - began, milliseconds(20)) << url;
+    EXPECT_FALSE(bus.Wait(Duration::zero()));
+  }
+}
+
+TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
+  Bus bus("memq://");
+  bus.Impair(Faults({.loss = 0.5, .seed = 3}, Role::kAcc));
+  int received = 0;
+  bus.Subscribe("C", [&received](Bytes) { ++received; });
+  for (int i = 0; i < 200; ++i) bus.Publish("C", Payload(0));
+  bus.Drain();
+  // Five standard deviations.
+  EXPECT_NEAR(received, 100, 36);
+}
+
 TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
   EXPECT_THROW(Bus("nonsense"), InputError);
   EXPECT_THROW(Bus("nosuchprovider://"), InputError);
