@@ -51,7 +51,7 @@ class Follower {
     if (parts_.Complete()) return TakeStepEvent(event, end);
     run_t run{};
     if (event.channel != ChannelOf<run_t>().name || !Decode(event.data, run)) return false;
-    parts_.Add(run);
+    if (!parts_.Add(run)) return false;
     if (parts_.Complete()) {
       remains_.begin = static_cast<std::int64_t>(end);
       remains_.head = {.bytes = remains_.begin, .events = events_};

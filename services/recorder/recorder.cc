@@ -61,17 +61,20 @@ void Recorder::WriteScenario() {
   history_.emplace(file_, log_->size());
 }
 
-bool Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
-  bool sound = false;
+RefusalCounter Recorder::Wrong(std::size_t input, Arrival& arrival) {
+  RefusalCounter wrong = nullptr;
   ForEachStepChannel([&]<class M>(std::size_t channel) {
-    if (channel != inputs()[input].channel) return;
-    const M* message = arrival.As<M>();
-    sound = message != nullptr;
-    if constexpr (std::is_same_v<M, truth_t>) {
-      if (sound && message->last) final_ = step;
-    }
+    if (channel == inputs()[input].channel) wrong = arrival.Wrong<M>();
   });
-  return sound;
+  return wrong;
+}
+
+RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
+  const RefusalCounter wrong = Wrong(input, arrival);
+  if (wrong == nullptr && inputs()[input].channel == IndexOf<truth_t>()) {
+    if (arrival.As<truth_t>()->last != 0) final_ = step;
+  }
+  return wrong;
 }
 
 void Recorder::Write(std::int64_t step) {

@@ -25,7 +25,8 @@ class Recorder final : public Node {
 
  private:
   void Configure(const Scenario& scenario) override;
-  bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
+  RefusalCounter Wrong(std::size_t input, Arrival& arrival) override;
+  RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
   void OnAsked(std::string_view channel, StepRange steps, TimePoint now) override;

@@ -4,7 +4,7 @@
 #include <any>
 
 #include "services/runtime/clock.h"
-#include "services/runtime/wire.h"
+#include "services/runtime/refusals.h"
 
 namespace fogline {
 
@@ -28,25 +28,35 @@ class Arrival {
   /// The message; nullptr if the bytes are not exactly one M, or a value is not finite.
   template <class M>
   const M* As() {
-    auto* reading = std::any_cast<Reading<M>>(&reading_);
-    if (reading == nullptr) {
-      reading = &reading_.emplace<Reading<M>>();
-      examined_ = false;
-    }
-    if (!examined_) {
-      reading->sound =
-          Decode(bytes_, reading->message) && FirstNonFiniteField(reading->message).empty();
-      examined_ = true;
-    }
-    return reading->sound ? &reading->message : nullptr;
+    const Reading<M>& reading = Read<M>();
+    return reading.wrong == nullptr ? &reading.message : nullptr;
+  }
+  /// Why it is none; nullptr if it is one.
+  template <class M>
+  RefusalCounter Wrong() {
+    return Read<M>().wrong;
   }
 
  private:
   template <class M>
   struct Reading {
     M message{};
-    bool sound = false;
+    RefusalCounter wrong = nullptr;
   };
+
+  template <class M>
+  const Reading<M>& Read() {
+    auto* reading = std::any_cast<Reading<M>>(&reading_);
+    if (reading == nullptr) {
+      reading = &reading_.emplace<Reading<M>>();
+      examined_ = false;
+    }
+    if (!examined_) {
+      reading->wrong = Examine(bytes_, reading->message);
+      examined_ = true;
+    }
+    return *reading;
+  }
 
   Bytes bytes_;
   TimePoint time_{};

@@ -45,12 +45,16 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       host_(HostName()),
       began_(Clock::now()) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
-    if (const auto* status = arrival.As<status_t>()) OnStatus(*status);
+    if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
+    OnStatus(*arrival.As<status_t>());
   });
   bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); });
 }
 
 TimePoint Conductor::Poll(TimePoint now) {
+  const Bus::Unverified unverified = bus_.TakeUnverified();
+  own_.not_signed += unverified.not_signed;
+  own_.badly_signed += unverified.badly_signed;
   const bool ready = AllReady(now);
   if (ready != ready_) announce_at_ = now;
   ready_ = ready;
@@ -112,9 +116,16 @@ std::int64_t Conductor::Total(std::int64_t status_t::*counter) const {
 
 Refusals Conductor::Refused() const {
   Refusals refused{};
-  std::ranges::transform(kRefusals, refused.begin(),
-                         [this](const RefusalKind& kind) { return Total(kind.counter); });
+  std::ranges::transform(kRefusals, refused.begin(), [this](const RefusalKind& kind) {
+    return Total(kind.counter) + own_.*kind.counter;
+  });
   return refused;
+}
+
+std::string Conductor::KeyTrouble() const {
+  return SignatureTrouble({.not_signed = Total(&status_t::not_signed) + own_.not_signed,
+                           .badly_signed = Total(&status_t::badly_signed) + own_.badly_signed,
+                           .no_key = bus_.unverified().no_key});
 }
 
 void Conductor::Stop() { Announce(run_t::STOP, 0); }
@@ -123,12 +134,17 @@ void Conductor::Fail(std::string error) {
   if (phase_ == Phase::kFailed || phase_ == Phase::kDone) return;
   phase_ = Phase::kFailed;
   error_ = std::move(error);
+  if (const std::string trouble = KeyTrouble(); !trouble.empty()) error_ += "\n  " + trouble;
 }
 
 void Conductor::OnStatus(const status_t& status) {
-  if (status.header.run_id != options_.run_id) return strangers_.Hear(status);
+  if (status.header.run_id != options_.run_id) {
+    strangers_.Hear(status);
+    return Refuse(&status_t::foreign);
+  }
   const auto role = RoleNamed(status.role);
-  if (!role || (phase_ != Phase::kJoining && phase_ != Phase::kRunning)) return;
+  if (!role) return Refuse(&status_t::malformed);
+  if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;
   const TimePoint now = Clock::now();
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
@@ -205,7 +221,8 @@ void Conductor::Launched(Role role, std::int32_t pid, TimePoint now) {
 
 void Conductor::OnResend(Bytes bytes) {
   resend_t resend{};
-  if (!Decode(bytes, resend) || resend.header.run_id != options_.run_id) return;
+  if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
+  if (resend.header.run_id != options_.run_id) return Refuse(&status_t::foreign);
   if (resend.channel != ChannelOf<run_t>().name) return;
   // Who misses one part usually misses most of them: everything from there on is sent.
   const TimePoint now = Clock::now();

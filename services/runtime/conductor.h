@@ -47,8 +47,10 @@ class Conductor {
   std::string NotReady() const;
   /// Sum over the roles of a counter of status_t.
   std::int64_t Total(std::int64_t status_t::*counter) const;
-  /// Messages that the roles have refused.
+  /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
+  /// What is wrong with keys and signatures, "" if nothing is known to be.
+  std::string KeyTrouble() const;
   /// Who is of another run and speaks on this network.
   const Strangers& strangers() const { return strangers_; }
   /// Tells every role to leave; may be repeated.
@@ -76,6 +78,7 @@ class Conductor {
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
  private:
+  void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
@@ -93,6 +96,7 @@ class Conductor {
   std::string hash_;
   std::array<Member, kRoles.size()> members_;
   Strangers strangers_;
+  status_t own_{};  // what the runner itself has refused
   std::string host_;
   Phase phase_ = Phase::kJoining;
   bool ready_ = false;  // every role, when last looked at

@@ -10,10 +10,14 @@ constexpr Duration kMaxPatience = milliseconds(500);
 
 }  // namespace
 
-LeadGate::LeadGate(Bus& bus) {
-  bus.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+LeadGate::LeadGate(Bus& bus, status_t& own) {
+  bus.Subscribe(ChannelOf<status_t>().name, [this, &own](Arrival& arrival) {
+    if (run_id_ == 0) return;  // in no run yet
     const auto* status = arrival.As<status_t>();
-    if (status == nullptr || status->header.run_id != run_id_) return;
+    if (status == nullptr || status->header.run_id != run_id_) {
+      ++(own.*(status == nullptr ? arrival.Wrong<status_t>() : &status_t::foreign));
+      return;
+    }
     // One that has failed may not have on disk what it had computed.
     if (status->role == NameOf(Role::kRecorder) && status->state != status_t::FAILED) {
       recorded_ = std::max(recorded_, status->header.step);

@@ -15,8 +15,8 @@ namespace fogline {
 
 class LeadGate {
  public:
-  /// Listens to the recorder's STATUS on `bus`.
-  explicit LeadGate(Bus& bus);
+  /// Listens to the recorder's STATUS on `bus`; what it refuses counts in `own`.
+  LeadGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
   void OnGo(const run_t& run, TimePoint now);

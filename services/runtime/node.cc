@@ -21,6 +21,8 @@ constexpr Duration kMinBetweenAsks = milliseconds(1);
 constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
+// What went wrong must fit into a STATUS with everything else.
+constexpr std::size_t kMaxErrorBytes = 700;
 // The runner repeats itself five times a second; a role that hears nothing for so long is an
 // orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
@@ -32,7 +34,9 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   for (std::size_t i = 0; i < kChannels.size(); ++i) {
     const ChannelInfo& channel = kChannels[i];
     if (channel.pace != Pace::kStep) continue;
-    if (channel.to.Has(role) || role == Role::kRecorder) inputs_.push_back({.channel = i});
+    if (channel.to.Has(role) || role == Role::kRecorder) {
+      inputs_.push_back({.channel = i, .fingerprint = FingerprintOf(i), .ring = {}});
+    }
     if (channel.from == role) {
       outputs_.push_back({.channel = i, .topic = bus_.TopicOf(channel.name), .ring = {}});
     }
@@ -81,9 +85,9 @@ void Node::Leave() {
   PublishStatus();
 }
 
-void Node::Fail(std::string error) {
+void Node::Fail(const std::string& error) {
   if (status_.state == status_t::FAILED) return;
-  status_.error = std::move(error);
+  status_.error = error.substr(0, kMaxErrorBytes);
   SetState(status_t::FAILED);
   left_ = true;
   OnLeave();
@@ -111,6 +115,9 @@ void Node::PublishStatus() {
     status_.waiting_for.clear();
   }
   ++status_.sequence;
+  const Bus::Unverified unverified = bus_.TakeUnverified();
+  status_.not_signed += unverified.not_signed;
+  status_.badly_signed += unverified.badly_signed;
   if (now >= use_at_) {  // asking the kernel costs more than some steps
     use_at_ = now + kHeartbeat;
     const ProcessUse use = MeasureThisProcess();
@@ -133,9 +140,9 @@ void Node::Ask(std::string_view channel, StepRange steps) {
 
 void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
   const std::string_view name = kChannels[channel].name;
-  if (bytes.size() > kMaxStepMessageBytes) {
+  if (bytes.size() > kMaxMessageBytes) {
     throw std::runtime_error(fmt::format("step {}: {} takes {} bytes, at most {} fit", step, name,
-                                         bytes.size(), kMaxStepMessageBytes));
+                                         bytes.size(), kMaxMessageBytes));
   }
   for (Output& output : outputs_) {
     if (output.channel != channel) continue;
@@ -153,14 +160,11 @@ void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
 
 void Node::OnRun(Bytes bytes) {
   run_t run{};
-  if (!Decode(bytes, run) || run.progress > kMaxStep) {
-    ++status_.malformed;
-    return;
-  }
+  if (const RefusalCounter wrong = Examine(bytes, run)) return Refuse(wrong);
   if (bound_ ? run.header.run_id != *run_id_ : run.phase == run_t::STOP) {
-    ++status_.foreign;
-    return;
+    return Refuse(&status_t::foreign);
   }
+  if (run.progress > kMaxStep) return Refuse(&status_t::out_of_window);
   run_id_ = run.header.run_id;
   bound_ = true;
   runner_heard_ = Clock::now();
@@ -168,7 +172,7 @@ void Node::OnRun(Bytes bytes) {
   if (run.phase == run_t::STOP) {
     Leave();
   } else if (status_.state == status_t::WAITING) {
-    parts_.Add(run);
+    if (!parts_.Add(run)) return Refuse(&status_t::malformed);
     if (parts_.Complete()) Join();
   } else if (run.phase == run_t::PREPARE && run.header.step == 0) {
     PublishStatus();  // the announcement repeats: somebody has not heard us yet
@@ -203,40 +207,30 @@ void Node::OnProgress(std::int64_t progress) {
 void Node::OnInput(std::size_t index, Arrival& arrival) {
   if (!Running()) return;
   const Bytes bytes = arrival.bytes();
-  if (bytes.size() < kHeaderEnd) {
-    ++status_.malformed;
-    return;
-  }
-  if (ReadInt64(bytes, kRunIdOffset) != *run_id_) {
-    ++status_.foreign;
-    return;
-  }
   Input& input = inputs_[index];
+  if (bytes.size() < kHeaderEnd) return Refuse(&status_t::malformed);
+  if (ReadInt64(bytes, 0) != input.fingerprint) return Refuse(&status_t::wrong_type);
+  if (ReadInt64(bytes, kRunIdOffset) != *run_id_) return Refuse(&status_t::foreign);
   const std::int64_t step = ReadInt64(bytes, kStepOffset);
   const std::int64_t needed = std::max<std::int64_t>(0, next_ - lead_);
-  if (step < 0) {
-    ++status_.out_of_window;
-    return;
-  }
+  if (step < 0) return Refuse(&status_t::out_of_window);
   switch (input.ring.Classify(step, bytes, needed)) {
     case StepRing::Verdict::kDuplicate:
       ++status_.duplicates;
       return;
     case StepRing::Verdict::kOutOfWindow:
       // Who catches up hears of steps that are under way elsewhere.
-      if (!CatchingUp() || step > late_ + kRingSteps) ++status_.out_of_window;
+      if (!CatchingUp() || step > late_ + kRingSteps) Refuse(&status_t::out_of_window);
       return;
     case StepRing::Verdict::kConflict:
+      if (const RefusalCounter wrong = Wrong(index, arrival)) return Refuse(wrong);
       Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?",
                        step, kChannels[input.channel].name, NameOf(kChannels[input.channel].from)));
       return;
     case StepRing::Verdict::kNew:
       break;
   }
-  if (!Accept(index, step, arrival)) {
-    ++status_.malformed;
-    return;
-  }
+  if (const RefusalCounter wrong = Accept(index, step, arrival)) return Refuse(wrong);
   input.ring.Store(step, bytes);
   input.heard = arrival.time();
   Expect(step + lead_);
@@ -246,18 +240,12 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
 
 void Node::OnResend(Bytes bytes) {
   resend_t resend{};
-  if (!Decode(bytes, resend)) {
-    ++status_.malformed;
-    return;
-  }
-  if (bound_ && resend.header.run_id != *run_id_) {
-    ++status_.foreign;
-    return;
-  }
+  if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
+  if (bound_ && resend.header.run_id != *run_id_) return Refuse(&status_t::foreign);
+  const std::int64_t step = resend.header.step;
+  if (step < 0 || step > kMaxStep) return Refuse(&status_t::out_of_window);
   if (!Running()) return;
   const TimePoint now = Clock::now();
-  const std::int64_t step = resend.header.step;
-  if (step < 0 || step > kMaxStep) return;
   if (resend.channel == ChannelOf<status_t>().name) {
     if (budget_.Take(now)) OnStatusAsked(step, now);
     return;

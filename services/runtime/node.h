@@ -45,6 +45,8 @@ class Node {
 
   /// True once the runner has said STOP, or the role has failed and said so.
   bool left() const { return left_; }
+  /// It has not heard all of a scenario yet.
+  bool Waits() const { return status_.state == status_t::WAITING; }
   /// Why the role failed, "" if it did not.
   const std::string& error() const { return status_.error; }
   Role role() const { return role_; }
@@ -55,7 +57,8 @@ class Node {
  protected:
   /// One channel that the node reads.
   struct Input {
-    std::size_t channel;  // in kChannels
+    std::size_t channel;       // in kChannels
+    std::int64_t fingerprint;  // of its type
     StepRing ring;
     TimePoint heard{};
   };
@@ -68,8 +71,10 @@ class Node {
 
   /// The scenario is here: make the algorithm. @throws std::exception with what is wrong
   virtual void Configure(const Scenario& scenario) = 0;
-  /// Takes an input that is new into the place for its step; false if it is malformed.
-  virtual bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
+  /// Why an input is to be refused whatever its step; nullptr if it is sound.
+  virtual RefusalCounter Wrong(std::size_t input, Arrival& arrival) = 0;
+  /// Takes an input that is new into the place for its step, unless it is Wrong().
+  virtual RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Computes a step; all inputs are there. Calls Emit() for every output.
   virtual void Compute(std::int64_t step) = 0;
   /// Whether the step may be computed now although its inputs are there.
@@ -92,7 +97,7 @@ class Node {
   /// @throws std::runtime_error if it is too large
   void Emit(std::size_t channel, std::int64_t step, Bytes bytes);
   /// Ends the node's part in the run with an error.
-  void Fail(std::string error);
+  void Fail(const std::string& error);
   void SetState(std::int8_t state);
   void PublishStatus();
   void Ask(std::string_view channel, StepRange steps);
@@ -131,6 +136,8 @@ class Node {
  private:
   void OnRun(Bytes bytes);
   void OnInput(std::size_t index, Arrival& arrival);
+  /// Counts a message that is not taken.
+  void Refuse(RefusalCounter kind) { ++(status_.*kind); }
   void OnResend(Bytes bytes);
   void Join();
   bool InputsReady(std::int64_t step) const;

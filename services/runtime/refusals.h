@@ -1,11 +1,12 @@
-// The kinds of messages that are refused. Each is counted in STATUS by whoever refused it.
+// The kinds of messages that are refused, and how to tell. Each is counted in STATUS by whoever
+// refused it.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string_view>
 
-#include "fogline/status_t.hpp"
+#include "services/runtime/wire.h"
 
 namespace fogline {
 
@@ -24,6 +25,18 @@ inline constexpr std::array kRefusals{
     RefusalKind{"not_signed", &status_t::not_signed, "without a signature"},
     RefusalKind{"badly_signed", &status_t::badly_signed, "with a wrong signature"},
 };
+
+/// Where a refusal is counted; nullptr stands for none.
+using RefusalCounter = std::int64_t status_t::*;
+
+/// Decodes a message; says why it is to be refused, whatever run and step it is of.
+template <class M>
+[[nodiscard]] RefusalCounter Examine(Bytes bytes, M& message) {
+  if (bytes.size() < kHeaderEnd) return &status_t::malformed;
+  if (ReadInt64(bytes, 0) != M::getHash()) return &status_t::wrong_type;
+  if (!Decode(bytes, message)) return &status_t::malformed;
+  return FirstNonFiniteField(message).empty() ? nullptr : &status_t::not_finite;
+}
 
 /// How many messages of each kind were refused, in the order of kRefusals.
 using Refusals = std::array<std::int64_t, kRefusals.size()>;

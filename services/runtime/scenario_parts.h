@@ -11,7 +11,7 @@
 
 namespace fogline {
 
-/// Bytes of scenario text in one RUN message; the rest of kMaxStepMessageBytes is for its other
+/// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for its other
 /// fields.
 inline constexpr std::size_t kPartBytes = 1200;
 
@@ -48,21 +48,23 @@ class ScenarioParts {
   /// The most parts that a sender may announce: 240 MB of text.
   static constexpr std::int32_t kMaxParts = 200'000;
 
-  /// Takes a part of a run_t; what contradicts an earlier part is ignored.
-  void Add(const run_t& run) {
-    if (run.num_parts < 1 || run.num_parts > kMaxParts) return;
+  /// Takes a part of a run_t. @return false if it cannot be, or contradicts an earlier one
+  [[nodiscard]] bool Add(const run_t& run) {
+    if (run.num_parts < 1 || run.num_parts > kMaxParts) return false;
+    if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return false;
     if (parts_.empty()) {
       parts_.resize(static_cast<std::size_t>(run.num_parts));
       missing_ = parts_.size();
       hash_ = run.scenario_hash;
     }
-    if (static_cast<std::size_t>(run.num_parts) != parts_.size() || run.scenario_hash != hash_)
-      return;
-    if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return;
+    if (static_cast<std::size_t>(run.num_parts) != parts_.size() || run.scenario_hash != hash_) {
+      return false;
+    }
     std::string& part = parts_[static_cast<std::size_t>(run.header.step)];
-    if (!part.empty()) return;
+    if (!part.empty()) return part == run.text;
     part = run.text;
     --missing_;
+    return true;
   }
 
   bool empty() const { return parts_.empty(); }

@@ -25,7 +25,7 @@ class StepNode final : public Node {
   StepNode(Bus& bus, std::optional<std::int64_t> run_id) : Node(bus, Traits::kRole, run_id) {
     if constexpr (Traits::kStarts) {
       lead_ = 1;
-      gate_.emplace(bus);
+      gate_.emplace(bus, status());
     }
   }
 
@@ -43,16 +43,24 @@ class StepNode final : public Node {
     if constexpr (Traits::kStarts) gate_->Configure(scenario, run_id());
   }
 
-  bool Accept(std::size_t input, std::int64_t step, Arrival& arrival) override {
-    bool accepted = false;
+  RefusalCounter Wrong(std::size_t input, Arrival& arrival) override {
+    RefusalCounter wrong = nullptr;
+    WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
+      using M = std::tuple_element_t<I, typename Traits::Inputs>;
+      if (inputs()[input].channel == IndexOf<M>()) wrong = arrival.Wrong<M>();
+    });
+    return wrong;
+  }
+
+  RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override {
+    RefusalCounter wrong = nullptr;
     WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
       using M = std::tuple_element_t<I, typename Traits::Inputs>;
       if (inputs()[input].channel != IndexOf<M>()) return;
-      const M* message = arrival.As<M>();
-      accepted = message != nullptr;
-      if (accepted) std::get<I>(rings_)[RingSlot(step)] = *message;
+      wrong = arrival.Wrong<M>();
+      if (wrong == nullptr) std::get<I>(rings_)[RingSlot(step)] = *arrival.As<M>();
     });
-    return accepted;
+    return wrong;
   }
 
   void Compute(std::int64_t step) override {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "services/runtime/digest.h"
 #include "services/runtime/this_process.h"
 #include "tests/unit/runtime/script.h"
@@ -153,6 +155,39 @@ TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
   EXPECT_EQ(conductor_.step(), 40) << "of the run, not of who catches up";
   Poll(Clock::now() + milliseconds(4100));
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+}
+
+TEST_F(ConductorTest, CountsWhatItRefusesItself) {
+  auto foreign = role(Role::kRadar);
+  foreign.header.run_id = Script::kRunId + 1;
+  script_.Say(foreign);
+  auto nobody = role(Role::kRadar);
+  nobody.role = "nobody";
+  script_.Say(nobody);
+  script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
+  script_.bus().Publish("RESEND", std::vector<std::uint8_t>(100));
+  script_.bus().Publish("RESEND", std::vector<std::uint8_t>(3));
+  auto resend = Script::Of<resend_t>(0);
+  resend.header.run_id = Script::kRunId + 1;
+  script_.Say(resend);
+  const auto count = [refused = conductor_.Refused()](std::int64_t status_t::*counter) {
+    const auto* kind = std::ranges::find(kRefusals, counter, &RefusalKind::counter);
+    return refused[static_cast<std::size_t>(kind - kRefusals.begin())];
+  };
+  EXPECT_EQ(count(&status_t::foreign), 2);
+  EXPECT_EQ(count(&status_t::malformed), 2);
+  EXPECT_EQ(count(&status_t::wrong_type), 2);
+}
+
+TEST_F(ConductorTest, SaysWithItsErrorWhatIsWrongWithTheKeys) {
+  BeAtStep(-1);
+  EXPECT_EQ(conductor_.KeyTrouble(), "");
+  role(Role::kFusion).badly_signed = 4211;
+  SayStatus(Role::kFusion);
+  conductor_.Fail("the error");
+  EXPECT_EQ(conductor_.error(),
+            "the error\n  4211 messages with a wrong signature were refused: do all processes have "
+            "the same key?");
 }
 
 }  // namespace

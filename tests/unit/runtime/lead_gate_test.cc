@@ -28,7 +28,8 @@ class LeadGateTest : public testing::Test {
 
   const TimePoint now_ = Clock::now();
   Script script_;
-  LeadGate gate_{script_.bus()};
+  status_t own_{};
+  LeadGate gate_{script_.bus(), own_};
 };
 
 TEST_F(LeadGateTest, IsClosedUntilTheRunnerSaysGo) {
@@ -50,6 +51,18 @@ TEST_F(LeadGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {
   Go(0, -1);
   Recorded(10, status_t::FAILED);
   EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+}
+
+TEST_F(LeadGateTest, CountsWhatIsNoStatusOfItsRun) {
+  auto status = Script::Of<status_t>(1000);
+  status.role = "recorder";
+  status.header.run_id = Script::kRunId + 1;
+  script_.Say(status);
+  script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
+  script_.bus().Drain();
+  EXPECT_EQ(own_.foreign, 1);
+  EXPECT_EQ(own_.wrong_type, 1);
+  EXPECT_EQ(gate_.recorded(), -1);
 }
 
 TEST_F(LeadGateTest, HoldsTheWorldToThePace) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "services/driver/driver.h"
 #include "services/runtime/step_node.h"
 #include "tests/unit/runtime/script.h"
@@ -20,6 +22,35 @@ class NodeTest : public testing::Test {
     truth.host_speed_mps = 20 + 0.01 * static_cast<double>(step);
     return truth;
   }
+  /// The encoded TRUTH of a step, to be changed.
+  std::vector<std::uint8_t> Encoded(const truth_t& truth) {
+    std::vector<std::uint8_t> bytes;
+    Encode(truth, bytes);
+    return bytes;
+  }
+  void SayBytes(std::string_view channel, Bytes bytes) {
+    script_.bus().Publish(channel, bytes);
+    script_.bus().Drain();
+  }
+  /// The node's STATUS as it would be now.
+  const status_t& Status() {
+    later_ += milliseconds(500);
+    script_.Poll(node_, Clock::now() + later_);
+    return status_.back();
+  }
+  /// Publishes three unsound messages of a step.
+  void SayUnsound(std::int64_t step) {
+    std::vector<std::uint8_t> other_type = Encoded(Truth(step));
+    other_type[0] ^= 1;
+    SayBytes("TRUTH", other_type);
+    std::vector<std::uint8_t> longer = Encoded(Truth(step));
+    longer.push_back(0);
+    SayBytes("TRUTH", longer);
+    truth_t nan = Truth(step);
+    nan.host_gap_m = std::numeric_limits<double>::quiet_NaN();
+    SayBytes("TRUTH", Encoded(nan));
+  }
+
   /// What an honest network gives to who has asked: every step of every request.
   void AnswerRequests() {
     while (served_ < requests_.size()) {
@@ -38,6 +69,7 @@ class NodeTest : public testing::Test {
   std::vector<status_t>& status_ = script_.Listen<status_t>();
   StepNode<Driver> node_{script_.bus(), Script::kRunId};
   std::size_t served_ = 0;
+  Duration later_{};
 };
 
 TEST_F(NodeTest, AsksForTheScenarioOfItsRunUnasked) {
@@ -135,6 +167,76 @@ TEST_F(NodeTest, AnswersARangeFromItsRing) {
   commands_.clear();
   script_.AskFor("DRIVER_COMMAND", 3, 0);  // from somebody who knows no ranges
   EXPECT_EQ(commands_.size(), 1U);
+}
+
+TEST_F(NodeTest, CountsUnsoundMessagesByKindAndGivesThemNoPlace) {
+  script_.SayRun(run_t::GO, -1);
+  // WHEN they come before the sound message of their step
+  SayUnsound(0);
+  SayBytes("TRUTH", std::vector<std::uint8_t>(kHeaderEnd - 1));
+  truth_t infinite = Truth(0);
+  infinite.preceding_speed_mps = -std::numeric_limits<double>::infinity();
+  script_.Say(infinite);
+  EXPECT_TRUE(commands_.empty());
+  // THEN that has its effect all the same
+  script_.Say(Truth(0));
+  EXPECT_EQ(commands_.size(), 1U);
+  EXPECT_EQ(Status().wrong_type, 1);
+  EXPECT_EQ(Status().malformed, 2);
+  EXPECT_EQ(Status().not_finite, 2);
+}
+
+TEST_F(NodeTest, TakesNoUnsoundMessageForASecondProducer) {
+  script_.SayRun(run_t::GO, -1);
+  script_.Say(Truth(0));
+  SayUnsound(0);
+  EXPECT_FALSE(node_.left());
+  EXPECT_EQ(Status().wrong_type, 1);
+  EXPECT_EQ(Status().malformed, 1);
+  EXPECT_EQ(Status().not_finite, 1);
+  // A sound one is another matter.
+  truth_t other = Truth(0);
+  other.host_gap_m += 1;
+  script_.Say(other);
+  EXPECT_TRUE(node_.left());
+  EXPECT_EQ(node_.error(),
+            "step 0: TRUTH came twice with different contents: is there a second world?");
+}
+
+TEST_F(NodeTest, CountsWhatItRefusesOfRunAndResend) {
+  script_.SayRun(run_t::GO, -1);
+  run_t run = MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
+  run.pace = std::numeric_limits<double>::quiet_NaN();
+  script_.Say(run);
+  EXPECT_EQ(Status().not_finite, 1);
+  run.pace = 0;
+  run.progress = std::numeric_limits<std::int64_t>::max();
+  script_.Say(run);
+  EXPECT_EQ(Status().out_of_window, 1);
+  run.header.run_id = Script::kRunId + 1;
+  script_.Say(run);
+  EXPECT_EQ(Status().foreign, 1);
+  SayBytes("RUN", std::vector<std::uint8_t>(100));
+  EXPECT_EQ(Status().wrong_type, 1);
+  script_.AskFor("DRIVER_COMMAND", -1, 1);
+  script_.AskFor("DRIVER_COMMAND", std::numeric_limits<std::int64_t>::max(), 1);
+  EXPECT_EQ(Status().out_of_window, 3);
+  SayBytes("RESEND", std::vector<std::uint8_t>(3));
+  EXPECT_EQ(Status().malformed, 1);
+  EXPECT_FALSE(node_.left());
+}
+
+TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
+  script_.SayRun(run_t::GO, -1);
+  const std::string huge(10'000, 'x');
+  const std::vector<std::string> parts = SplitScenario(huge);
+  Script other;
+  StepNode<Driver> node(other.bus(), Script::kRunId);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    other.Say(MakeRunPart(Script::kRunId, run_t::PREPARE, 0, HashOf(huge), parts, i));
+  }
+  EXPECT_TRUE(node.left());
+  EXPECT_LE(node.error().size(), 700U);
 }
 
 TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {

@@ -17,8 +17,8 @@ TEST(ScenarioPartsTest, PutsATextTogetherFromPartsInAnyOrderWithRepetitions) {
   ScenarioParts inbox;
   for (std::size_t i = parts.size(); i-- > 0;) {
     EXPECT_FALSE(inbox.Complete());
-    inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i));
-    inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i));
+    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
+    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
     if (i > 0) {
       EXPECT_EQ(inbox.FirstMissing(), 0);
     }
@@ -34,26 +34,29 @@ TEST(ScenarioPartsTest, NoticesATextThatWasChangedOnItsWay) {
   parts[2][5] = 'x';
   ScenarioParts inbox;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i));
+    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
   }
   ASSERT_TRUE(inbox.Complete());
   EXPECT_FALSE(inbox.HashHolds());
 }
 
-TEST(ScenarioPartsTest, IgnoresPartsThatContradictTheFirst) {
+TEST(ScenarioPartsTest, RefusesPartsThatContradictTheFirst) {
   const std::vector<std::string> parts = SplitScenario(LongText());
   ScenarioParts inbox;
-  inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0));
+  EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0)));
   run_t other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
   other.num_parts = 999;
-  inbox.Add(other);
+  EXPECT_FALSE(inbox.Add(other));
   other = MakeRunPart(1, run_t::PREPARE, 0, "another hash", parts, 1);
-  inbox.Add(other);
+  EXPECT_FALSE(inbox.Add(other));
   other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
   other.header.step = other.num_parts;
-  inbox.Add(other);
+  EXPECT_FALSE(inbox.Add(other));
   other.header.step = -1;
-  inbox.Add(other);
+  EXPECT_FALSE(inbox.Add(other));
+  other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0);
+  other.text[0] = '#';
+  EXPECT_FALSE(inbox.Add(other));
   EXPECT_EQ(inbox.FirstMissing(), 1);
 }
 
@@ -63,7 +66,7 @@ TEST(ScenarioPartsTest, EveryPartFitsIntoOneDatagram) {
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Encode(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i), buffer);
-    EXPECT_LE(buffer.size(), kMaxStepMessageBytes);
+    EXPECT_LE(buffer.size(), kMaxMessageBytes);
   }
 }
 
