@@ -7,6 +7,7 @@
 
 #include "scenario/loader.h"
 #include "services/runtime/scenario_parts.h"
+#include "services/runtime/seal.h"
 
 namespace fogline {
 namespace {
@@ -59,20 +60,21 @@ class RunLogReader::Assembler {
     if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
-    if (parts_.empty() || ReadInt64(event.data, kRunIdOffset) != run_.run_id) {
+    const Bytes data = Payload(event.data);
+    if (parts_.empty() || data.empty() || ReadInt64(data, kRunIdOffset) != run_.run_id) {
       ++foreign_;
       return;
     }
-    const std::int64_t step = ReadInt64(event.data, kStepOffset);
+    const std::int64_t step = ReadInt64(data, kStepOffset);
     if (step < run_.steps) return;  // a repetition
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
-      if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], event.data)) {
+      if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], data)) {
         conflict_ = fmt::format("step {} has two different {}", step, event.channel);
       }
       return;
     }
-    pending.messages[channel] = event.data;
+    pending.messages[channel] = data;
     ++pending.count;
   }
 
@@ -115,9 +117,21 @@ class RunLogReader::Assembler {
 
   void TakeRun(Bytes data) {
     run_t run{};
-    if (!Decode(data, run)) return;
-    if (parts_.empty()) run_.run_id = run.header.run_id;
-    if (run.header.run_id == run_.run_id) parts_.Add(run);
+    const bool is_sealed = LooksSealed(data) && Decode(WithoutSeal(data), run);
+    if (!is_sealed && !Decode(data, run)) return;
+    if (parts_.empty()) {
+      run_.run_id = run.header.run_id;
+      sealed_ = is_sealed;
+    }
+    if (run.header.run_id == run_.run_id && !parts_.Add(run)) ++foreign_;
+  }
+
+  /// lcm-logger writes signed messages as they come, with their signatures. Nobody can verify them
+  /// here, but what has none does not belong to a signed run: it is empty then.
+  Bytes Payload(Bytes data) const {
+    if (!sealed_) return data;
+    return LooksSealed(data) && data.size() >= kHeaderEnd + kSealBytes ? WithoutSeal(data)
+                                                                       : Bytes();
   }
 
   static std::string Lacking(const StepMessages& messages) {
@@ -137,6 +151,7 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
+  bool sealed_ = false;   // the run's messages are signed
   std::string conflict_;  // the first step that has two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
