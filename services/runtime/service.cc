@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/traffic_options.h"
 #include "services/runtime/version.h"
 
 namespace fogline {
@@ -24,7 +25,12 @@ void WatchSignals() {
 }
 
 int TakePart(Bus& bus, Node& node) {
+  std::string trouble;
   while (!node.left()) {
+    if (trouble.empty() && node.Waits()) {
+      trouble = SignatureTrouble(bus.unverified());
+      if (!trouble.empty()) fmt::print(stderr, "fogline-{}: {}\n", NameOf(node.role()), trouble);
+    }
     if (interrupted != 0) {
       node.Leave();
       return kInterrupted;
@@ -59,6 +65,8 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
       ->capture_default_str();
   std::optional<std::int64_t> run_id;
   app.add_option("--run-id", run_id, "Join only the run with this id");
+  TrafficOptions traffic;
+  AddTrafficOptions(app, traffic);
   app.footer(
       fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
                   "\n\nExample: two shells of one machine\n"
@@ -78,6 +86,7 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   WatchSignals();
   try {
     Bus bus(url);
+    Apply(traffic, role, bus);
     const std::unique_ptr<Node> node = make(bus, run_id);
     return TakePart(bus, *node);
   } catch (const InputError& error) {

@@ -100,6 +100,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                         {.url = bus.url(),
                          .run_id = run_id,
                          .log = log,
+                         .arguments = ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,
                          // Whoever hangs is found before the run counts as stalled.
@@ -108,6 +109,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                            if (options.announce) progress.Say(line);
                          }});
   if (options.announce) AnnounceProcesses(bus, run_id, supervisor.group(), options.external);
+  std::string trouble;
   try {
     while (conductor.phase() == Conductor::Phase::kJoining ||
            conductor.phase() == Conductor::Phase::kRunning) {
@@ -116,6 +118,10 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
       progress.Show(conductor.step());
+      if (options.announce && trouble.empty()) {
+        trouble = conductor.KeyTrouble();
+        if (!trouble.empty()) progress.Say(fmt::format("warning: {}", trouble));
+      }
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
@@ -150,11 +156,13 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   std::optional<RelayProcess> relay;
   if (options.transport == "tcpq") relay.emplace();
   Bus bus(relay ? relay->url() : UrlOf(options.transport));
+  const bool in_memory = bus.url().starts_with("memq");
+  Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
   const ConductorOptions conducting = MakeConductorOptions(scenario, options);
   Conductor conductor(bus, conducting);
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
-  if (bus.url().starts_with("memq")) {
+  if (in_memory) {
     RunInMemory(bus, conductor, conducting.run_id, scenario, log);
   } else {
     restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);

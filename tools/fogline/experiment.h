@@ -13,6 +13,7 @@
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/strangers.h"
+#include "services/runtime/traffic_options.h"
 
 namespace fogline {
 
@@ -26,7 +27,8 @@ struct ExperimentOptions {
   double pace = 0;             // simulated seconds per second; 0: as fast as it goes
   std::vector<Role> external;  // roles that somebody else starts
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;      // of each role that is killed or hangs; 0: that ends the run
+  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  TrafficOptions traffic;
   bool announce = false;  // say on stderr where the run is and which processes take part
 };
 

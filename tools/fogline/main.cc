@@ -30,7 +30,7 @@ int Main(int argc, char** argv) {
       "  fogline table --help");
   Action action;
   for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddReport, AddDigest,
-                         AddDiff, AddGraph, AddCheck, AddTop, AddDoctor}) {
+                         AddDiff, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
     add(app, action);
   }
   try {

@@ -42,6 +42,7 @@ Supervisor::Supervisor(Bus& bus, Conductor& conductor, Options options)
 void Supervisor::Start(Child& child, TimePoint now) {
   std::vector<std::string> arguments{"--lcm-url", options_.url, "--run-id",
                                      std::to_string(options_.run_id)};
+  arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string()});
     // Only if it is the log of this run: before that it may be an old one that is to be replaced.

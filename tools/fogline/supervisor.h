@@ -20,9 +20,10 @@ class Supervisor {
     std::string url;
     std::int64_t run_id = 0;
     std::filesystem::path log;
-    std::vector<Role> external;  // roles that are not its business
-    int restarts = 0;            // of each role; 0: the first death ends the run
-    Duration silence{};          // without a STATUS after which a process hangs and is killed
+    std::vector<std::string> arguments;  // of every process besides
+    std::vector<Role> external;          // roles that are not its business
+    int restarts = 0;                    // of each role; 0: the first death ends the run
+    Duration silence{};  // without a STATUS after which a process hangs and is killed
     std::function<void(const std::string&)> say;  // for a person
   };
 

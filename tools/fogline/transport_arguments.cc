@@ -31,10 +31,15 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(RoleNames()));
+  AddTrafficOptions(verb, traffic_);
 }
 
 void TransportArguments::Apply(ExperimentOptions& options) const {
   options.transport = url_.empty() ? transport_ : url_;
+  options.traffic = traffic_;
+  if (options.transport == "direct" && !traffic_.faults.empty()) {
+    throw InputError("error: --faults: a run with --transport direct has no messages");
+  }
   options.external.clear();
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(external_, info.name) != external_.end()) {

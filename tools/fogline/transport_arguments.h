@@ -10,13 +10,13 @@
 
 namespace fogline {
 
-/// --transport, --lcm-url and --external.
+/// --transport, --lcm-url, --external, --key and --faults.
 class TransportArguments {
  public:
   /// @param transport where runs go unless something else is said
   TransportArguments(CLI::App& verb, std::string transport);
 
-  /// Sets the transport and the roles that are started elsewhere.
+  /// Sets the transport, what is asked of its traffic, and the roles that are started elsewhere.
   /// @throws InputError if these cannot go together
   void Apply(ExperimentOptions& options) const;
 
@@ -24,6 +24,7 @@ class TransportArguments {
   std::string transport_;
   std::string url_;
   std::vector<std::string> external_;
+  TrafficOptions traffic_;
 };
 
 }  // namespace fogline

@@ -32,5 +32,6 @@ void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 void AddTop(CLI::App& app, Action& action);
 void AddDoctor(CLI::App& app, Action& action);
+void AddKeygen(CLI::App& app, Action& action);
 
 }  // namespace fogline
