@@ -176,9 +176,41 @@ std::vector<std::string> TypeNames() {
       kGraph);
 }
 
-TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSpeed) {
+/// Removes the signatures of all that processes of a run have sent; each message has one.
+void RemoveSignatures(Traffic& traffic) {
+  for (const ChannelInfo& channel : kChannels) {
+    const auto found = traffic.find(channel.name);
+    if (found == traffic.end()) continue;
+    for (Payload& payload : found->second) {
+      ASSERT_TRUE(LooksSealed(payload)) << channel.name;
+      payload.resize(payload.size() - kSealBytes);
+    }
+  }
+}
+
+/// Plays a log of signed traffic to somebody who has the key. @return how many TRUTH he takes
+std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
+  Bus bus(FreshMulticastUrl());
+  bus.Secure(Seal(SealKey::Load(key), Role::kFusion));
+  std::size_t truths = 0;
+  bus.Subscribe(
+      "TRUTH", [&truths](Arrival& arrival) { truths += arrival.As<truth_t>() != nullptr ? 1 : 0; });
+  Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
+  EXPECT_EQ(player.Wait(), 0) << player.Err();
+  while (bus.Wait(milliseconds(200))) {
+  }
+  EXPECT_EQ(bus.unverified().badly_signed, 0);
+  return truths;
+}
+
+enum class Signing { kNone, kKey };
+class LoggerAndSpyTest : public testing::TestWithParam<Signing> {};
+
+TEST_P(LoggerAndSpyTest, GetAndDecodeEveryMessageOfARunInRealSpeed) {
   // GIVEN lcm-logger and lcm-spy, which listen
   const ScratchFolder folder;
+  const std::string key = folder.File("key");
+  const int steps = GetParam() == Signing::kKey ? 40 : 150;
   const std::string own = folder.File("own.lcm");
   const std::string debian = folder.File("debian.lcm");
   Bus bus(FreshMulticastUrl());
@@ -187,9 +219,23 @@ TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSp
   ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
   ASSERT_TRUE(spy.CatchUp("BEFORE")) << spy.Err();
   // WHEN a run goes on
-  const Outcome run =
-      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=150", "--pace",
-                  "1", "--json", "--lcm-url", bus.url(), "--log", own});
+  std::vector<std::string> command{Program("fogline"),
+                                   "run",
+                                   "scenario/paper.json",
+                                   "--set",
+                                   "/steps=" + std::to_string(steps),
+                                   "--pace",
+                                   "1",
+                                   "--json",
+                                   "--lcm-url",
+                                   bus.url(),
+                                   "--log",
+                                   own};
+  if (GetParam() == Signing::kKey) {
+    SealKey::Create(key);
+    command.insert(command.end(), {"--key", key});
+  }
+  const Outcome run = RunCommand(command);
   ASSERT_EQ(run.code, 0) << run.err;
   ASSERT_TRUE(logger.CatchUp("AFTER_LOG"));
   ASSERT_TRUE(spy.CatchUp("AFTER")) << spy.Err();
@@ -197,6 +243,7 @@ TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSp
   // THEN lcm-logger has every message that our recorder has
   const Traffic recorded = ReadTraffic(own);
   Traffic logged = ReadTraffic(debian);
+  if (GetParam() == Signing::kKey) RemoveSignatures(logged);
   for (const ChannelInfo& channel : kChannels) {
     SCOPED_TRACE(channel.name);
     const auto expected = recorded.find(channel.name);
@@ -204,7 +251,7 @@ TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSp
     if (!channel.Logged()) continue;
     std::vector<Payload>& got = logged[std::string(channel.name)];
     if (channel.pace == Pace::kStep) {
-      EXPECT_EQ(expected->second.size(), 150U);
+      EXPECT_EQ(std::ssize(expected->second), steps);
       EXPECT_TRUE(BySteps(got) == BySteps(expected->second));
     } else {
       EXPECT_EQ(ScenarioTexts(got), ScenarioTexts(expected->second));
@@ -229,9 +276,18 @@ TEST(LcmToolsTest, LoggerGetsEveryMessageAndSpyDecodesEveryChannelOfARunInRealSp
     ASSERT_NE(row, rows.end());
     EXPECT_EQ(row->second.type, types[i]);
     EXPECT_EQ(row->second.undecodable, 0);
-    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? 150 : 1);
+    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? steps : 1);
+  }
+  // AND what lcm-logger has logged of signed traffic is signed when lcm-logplayer plays it
+  if (GetParam() == Signing::kKey) {
+    EXPECT_EQ(PlayedAndVerified(debian, key), logged["TRUTH"].size());
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(LcmToolsTest, LoggerAndSpyTest,
+                         testing::Values(Signing::kNone, Signing::kKey), [](const auto& signing) {
+                           return signing.param == Signing::kKey ? "Signed" : "Unsigned";
+                         });
 
 TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   // GIVEN a log, and a subscriber to every channel in it

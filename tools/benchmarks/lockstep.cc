@@ -14,6 +14,8 @@
 //
 // memq has no processes and nothing in parallel: all nine messages are handled one after another,
 // so nine bare hops are what a step costs LCM.
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
@@ -33,19 +35,29 @@ constexpr int StepMessages() {
   return count;
 }
 
+/// How a run is to be made: options of `fogline run`.
+using Options = std::vector<std::string>;
+
 /// Wall-clock seconds that `fogline run` reports for so many steps.
-double RunSeconds(const std::string& transport, int steps) {
-  const ProgramResult result =
-      RunProgram({ProgramPath("fogline"), "run", "scenario/paper.json", "--quiet", "--json",
-                  "--force", "--transport", transport, "--log", ScratchFolder() / "run.lcm",
-                  "--set", "/steps=" + std::to_string(steps)});
-  return nlohmann::json::parse(result.out)["wall_s"];
+double RunSeconds(const Options& options, int steps) {
+  Options command{ProgramPath("fogline"),
+                  "run",
+                  "scenario/paper.json",
+                  "--quiet",
+                  "--json",
+                  "--force",
+                  "--log",
+                  ScratchFolder() / "run.lcm",
+                  "--set",
+                  "/steps=" + std::to_string(steps)};
+  command.insert(command.end(), options.begin(), options.end());
+  return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
 /// A run of so many steps beside one of so many more: what starting and ending costs cancels out.
-double LockstepStepMicros(const std::string& transport, int steps) {
+double LockstepStepMicros(const Options& options, int steps) {
   constexpr int kShort = 500;
-  const double more_s = RunSeconds(transport, kShort + steps) - RunSeconds(transport, kShort);
+  const double more_s = RunSeconds(options, kShort + steps) - RunSeconds(options, kShort);
   return kMicrosPerSecond * more_s / steps;
 }
 
@@ -55,7 +67,7 @@ Comparison OverUdpm(int steps) {
           .ours = "lockstep over udpm, nine processes",
           .goal = 1.3,
           .bar = 2.0,
-          .measure_ours = [steps] { return LockstepStepMicros("udpm", steps); }};
+          .measure_ours = [steps] { return LockstepStepMicros({}, steps); }};
 }
 
 Comparison OverUdpm(int steps, const std::string& name, const std::string& reference,
@@ -65,6 +77,22 @@ Comparison OverUdpm(int steps, const std::string& name, const std::string& refer
   comparison.reference = reference;
   comparison.measure_reference = [roles, steps] {
     return kMicrosPerSecond * BareNetworkStepSeconds(roles, steps);
+  };
+  return comparison;
+}
+
+/// Every message signed by its sender and verified by each of its readers.
+Comparison SignedOverUdpm(int steps) {
+  Comparison comparison = OverUdpm(steps);
+  comparison.name = "key";
+  comparison.ours = "lockstep over udpm, signed (`--key`)";
+  comparison.reference = "the same, not signed";
+  comparison.bar.reset();
+  comparison.measure_reference = comparison.measure_ours;
+  comparison.measure_ours = [steps] {
+    const std::string key = ScratchFolder() / "key";
+    if (!std::filesystem::exists(key)) RunProgram({ProgramPath("fogline"), "keygen", key});
+    return LockstepStepMicros({"--key", key}, steps);
   };
   return comparison;
 }
@@ -81,13 +109,17 @@ std::vector<Comparison> LockstepComparisons(Effort effort) {
       OverUdpm(steps, "udpm-messages", "ring of 9 bare LCM processes (messages of a step)",
                BareRing(messages)),
       OverUdpm(steps, "udpm-graph", "9 bare LCM processes wired like the graph", BareGraph()),
+      SignedOverUdpm(steps),
       {.name = "memq",
        .quantity = "time per step",
        .unit = "us",
        .ours = "lockstep over memq",
        .reference = "9 bare memq hops",
        .goal = 1.5,
-       .measure_ours = [steps] { return LockstepStepMicros("memq", kMemqFactor * steps); },
+       .measure_ours =
+           [steps] {
+             return LockstepStepMicros({"--transport", "memq"}, kMemqFactor * steps);
+           },
        .measure_reference =
            [steps, messages] {
              return kMicrosPerSecond * BareMemqStepSeconds(messages, kMemqFactor * steps);

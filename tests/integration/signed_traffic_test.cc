@@ -1,0 +1,263 @@
+// Who has no key, or another one, or only what others have said, has no effect on a signed run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+using Message = std::vector<std::uint8_t>;
+
+/// Listens to everything on a network, as it comes, and says what it likes. It has no key.
+class Intruder {
+ public:
+  explicit Intruder(const std::string& url) : bus_(url) {
+    for (const ChannelInfo& channel : kChannels) {
+      bus_.Subscribe(channel.name, [this, name = std::string(channel.name)](Bytes bytes) {
+        if (bytes.size() >= kHeaderEnd) Hear(name, bytes);
+      });
+    }
+  }
+
+  /// Listens until the program has ended; calls `answer` for every message that is new, in a run of
+  /// its own. What it has said itself it does not answer.
+  using Answer = std::function<void(const std::string& channel, const Message& message)>;
+  void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
+                            const Answer& answer) {
+    std::size_t done = 0;
+    while (IsAlive(run.pid())) {
+      bus_.Wait(milliseconds(20));
+      for (; done < heard_.size(); ++done) {
+        const auto [channel, message] = heard_[done];
+        if (!said_.contains(message) && !other_runs.contains(RunIdOf(message))) {
+          answer(channel, message);
+        }
+      }
+    }
+  }
+
+  void Say(const std::string& channel, const Message& message) {
+    if (message.size() > kMaxMessageBytes) return;
+    said_.insert(message);
+    bus_.Publish(channel, message);
+    ++count_;
+  }
+
+  const std::vector<std::pair<std::string, Message>>& heard() const { return heard_; }
+  int count() const { return count_; }
+
+  static std::int64_t RunIdOf(Bytes message) { return ReadInt64(message, kRunIdOffset); }
+
+ private:
+  void Hear(const std::string& channel, Bytes bytes) {
+    Message message(bytes.begin(), bytes.end());
+    if (known_.insert(message).second) heard_.emplace_back(channel, std::move(message));
+  }
+
+  Bus bus_;
+  std::set<Message> known_;
+  std::set<Message> said_;
+  std::vector<std::pair<std::string, Message>> heard_;
+  int count_ = 0;
+};
+
+/// The message of a later step, which its receivers have not got yet, with other contents.
+Message Forged(Message payload) {
+  constexpr std::uint8_t kStepsAhead = 3;
+  payload[kStepOffset + 7] = static_cast<std::uint8_t>(payload[kStepOffset + 7] + kStepsAhead);
+  payload.back() ^= 1;
+  return payload;
+}
+
+Message Copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+
+class SignedTrafficTest : public testing::Test {
+ protected:
+  SignedTrafficTest() {
+    for (const std::string& file : {key_, other_key_}) SealKey::Create(file);
+  }
+
+  std::vector<std::string> Run(const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline"),
+                                     "run",
+                                     "scenario/paper.json",
+                                     "--json",
+                                     "--lcm-url",
+                                     url_,
+                                     "--log",
+                                     folder_.File(std::to_string(++logs_) + ".lcm")};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  static nlohmann::json ResultOf(Background& run) {
+    EXPECT_EQ(run.Wait(), 0) << run.Err();
+    return nlohmann::json::parse(run.Out(), nullptr, false);
+  }
+  std::string Undisturbed(const std::string& steps) {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
+                                    "--transport", "direct", "--set", steps});
+    return nlohmann::json::parse(run.out)["digest"];
+  }
+
+  ScratchFolder folder_;
+  const std::string key_ = folder_.File("key");
+  const std::string other_key_ = folder_.File("other_key");
+  const std::string url_ = Bus(FreshMulticastUrl()).url();
+
+ private:
+  int logs_ = 0;
+};
+
+TEST_F(SignedTrafficTest,
+       UnsignedWronglySignedAlteredAndReplayedMessagesHaveNoEffectAndAreCounted) {
+  Intruder intruder(url_);
+  // GIVEN all that was said in an earlier run with the same key
+  Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
+  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
+  ResultOf(earlier);
+  const auto recorded = intruder.heard();
+  ASSERT_GT(recorded.size(), 300U);
+  const std::int64_t earlier_id = Intruder::RunIdOf(recorded.front().second);
+  // WHEN somebody answers every message of a run with forgeries, a STOP among them
+  Seal wrong_key(SealKey::Load(other_key_), std::nullopt);
+  Seal wrong_sender(SealKey::Load(key_), Role::kLidar);
+  std::size_t next = 0;
+  Background run(Run({"--key", key_, "--set", "/steps=60", "--pace", "3"}));
+  intruder.AccompanyUntilTheEnd(run, {earlier_id},
+                                [&](const std::string& channel, const Message& message) {
+                                  const Message payload = Copy(WithoutSeal(message));
+                                  Message forged = Forged(payload);
+                                  if (channel == "RUN") forged[kHeaderEnd] = run_t::STOP;
+                                  Message altered = message;
+                                  altered[payload.size() - 1] ^= 1;
+                                  for (const Message& attack : {forged, altered, message})
+                                    intruder.Say(channel, attack);
+                                  intruder.Say(channel, Copy(wrong_key.Sign(channel, forged)));
+                                  if (channel != "LIDAR" && channel != "RESEND") {
+                                    intruder.Say(channel, Copy(wrong_sender.Sign(channel, forged)));
+                                  }
+                                  intruder.Say(recorded[next].first, recorded[next].second);
+                                  next = (next + 1) % recorded.size();
+                                });
+  // THEN it goes on to its end as if nothing had happened
+  const auto result = ResultOf(run);
+  EXPECT_GT(intruder.count(), 2000);
+  EXPECT_EQ(result["steps"], 60);
+  EXPECT_EQ(result["digest"], Undisturbed("/steps=60"));
+  // AND has counted each kind
+  EXPECT_GT(result["refused"]["not_signed"], 500);
+  EXPECT_GT(result["refused"]["badly_signed"], 1000);
+  EXPECT_GT(result["refused"]["foreign"], 100);
+  EXPECT_EQ(result["refused"]["malformed"], 0);
+}
+
+TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
+  Intruder intruder(url_);
+  lcm_t* lcm = lcm_create(url_.c_str());
+  ASSERT_NE(lcm, nullptr);
+  Background run(Run({"--set", "/steps=60", "--pace", "3"}));
+  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
+    const auto* info = std::ranges::find(kChannels, channel, &ChannelInfo::name);
+    if (info->pace != Pace::kStep) return;
+    Message other_type = Forged(message);
+    other_type[0] ^= 1;
+    Message too_long = Forged(message);
+    too_long.push_back(0);
+    intruder.Say(channel, other_type);
+    intruder.Say(channel, too_long);
+    if (channel == "ACC_COMMAND") {
+      accel_command_t command{};
+      ASSERT_TRUE(Decode(message, command));
+      command.header.step += 3;
+      command.acceleration_mps2 = std::numeric_limits<double>::quiet_NaN();
+      Message nan;
+      Encode(command, nan);
+      intruder.Say(channel, nan);
+      // In fragments, which the kernel keeps from LCM's parser.
+      const Message huge(300'000, 1);
+      lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
+    }
+  });
+  lcm_destroy(lcm);
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed("/steps=60"));
+  EXPECT_GT(result["refused"]["wrong_type"], 500);
+  EXPECT_GT(result["refused"]["malformed"], 500);
+  EXPECT_GT(result["refused"]["not_finite"], 50);
+}
+
+TEST_F(SignedTrafficTest, TellsWhoHasAnotherKeyOrNone) {
+  // GIVEN a run that waits for a driver
+  Background run(Run({"--key", key_, "--external", "driver"}));
+  const auto driver = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", url_};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  // WHEN there are two that cannot take part, THEN they say why
+  Background keyless(driver({}));
+  EXPECT_TRUE(keyless.WaitForErr("fogline-driver: traffic on this network is signed; give --key"));
+  Background stranger(driver({"--key", other_key_, "--run-id", "7"}));
+  EXPECT_TRUE(
+      stranger.WaitForErr("with a wrong signature were refused: do all processes have the "
+                          "same key?"));
+  // AND so does the runner, while it waits and when it is ended
+  EXPECT_TRUE(run.WaitForErr("warning: "));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130);
+  EXPECT_THAT(run.Err(), HasSubstr("while waiting for driver (never heard)"));
+  EXPECT_THAT(run.Err(), HasSubstr("with a wrong signature were refused"));
+}
+
+TEST_F(SignedTrafficTest, TellsARunnerWithoutAKeyThatTheTrafficIsSigned) {
+  Background run(Run({"--external", "driver"}));
+  ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
+  Background driver({"env", "FOGLINE_KEY=" + key_, Program("fogline-driver"), "--lcm-url", url_,
+                     "--run-id", "7"});
+  EXPECT_TRUE(run.WaitForErr("warning: traffic on this network is signed; give --key"));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130);
+}
+
+TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
+  Background run([&] {
+    std::vector<std::string> command = Run({"--set", "/steps=20"});
+    command.insert(command.begin(), {"env", "FOGLINE_KEY=" + key_});
+    return command;
+  }());
+  Intruder intruder(url_);
+  bool signed_steps = false;
+  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
+    signed_steps = signed_steps || (channel == "TRUTH" && LooksSealed(message));
+  });
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=20"));
+  EXPECT_TRUE(signed_steps);
+}
+
+TEST_F(SignedTrafficTest, RefusesAFileThatIsNoKeyAndWarnsOfOneThatOthersCanRead) {
+  const Outcome none = RunCommand(Run({"--key", "scenario/paper.json"}));
+  EXPECT_EQ(none.code, 2);
+  EXPECT_EQ(none.err,
+            "scenario/paper.json: error: not a key, which is 64 hexadecimal digits and nothing "
+            "else; `fogline keygen FILE` makes one\n");
+  EXPECT_EQ(RunCommand({Program("fogline-acc"), "--key", "no/such/file"}).code, 2);
+  EXPECT_EQ(RunCommand({Program("fogline"), "keygen", key_}).code, 2) << "it exists";
+  std::filesystem::permissions(key_, std::filesystem::perms::others_read,
+                               std::filesystem::perm_options::add);
+  const Outcome open = RunCommand(Run({"--key", key_, "--set", "/steps=5"}));
+  EXPECT_EQ(open.code, 0);
+  EXPECT_THAT(open.err, HasSubstr(key_ + ": warning: others can read this key"));
+}
+
+}  // namespace
+}  // namespace fogline::test
