@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <set>
 
 #include "services/graph.h"
 #include "tests/support/command.h"
@@ -76,6 +78,26 @@ TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAnd
 
 INSTANTIATE_TEST_SUITE_P(EveryRole, KilledRoleTest, testing::ValuesIn(kRoles),
                          [](const auto& role) { return std::string(role.param.name); });
+
+/// The sockets that a process has, such as "socket:[4711]".
+std::set<std::string> SocketsOf(pid_t pid) {
+  std::set<std::string> sockets;
+  for (const auto& file :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
+    const std::string what = std::filesystem::read_symlink(file).string();
+    if (what.starts_with("socket:")) sockets.insert(what);
+  }
+  return sockets;
+}
+
+TEST(FaultTest, NoRoleHasASocketOfTheRunner) {
+  PacedRun paced;
+  const std::set<std::string> ours = SocketsOf(paced.run().pid());
+  ASSERT_FALSE(ours.empty());
+  for (const pid_t pid : paced.Pids()) {
+    for (const std::string& socket : SocketsOf(pid)) EXPECT_FALSE(ours.contains(socket)) << pid;
+  }
+}
 
 TEST(FaultTest, NamesAProcessThatHangs) {
   PacedRun paced;

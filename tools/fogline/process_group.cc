@@ -1,7 +1,6 @@
 #include "tools/fogline/process_group.h"
 
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,22 +13,16 @@
 
 #include <fmt/core.h>
 
+#include "tools/fogline/child.h"
+
 namespace fogline {
 namespace {
 
 // Lines kept of what each process prints.
 constexpr std::size_t kKeptLines = 10;
 
-/// In the child, between fork and exec: only async-signal-safe calls.
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, pid_t parent) {
-  // Killed when the runner dies, however it dies; out of reach of the terminal's Ctrl-C, which the
-  // runner turns into an orderly end.
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);
-  setpgid(0, 0);
-  const int null = open("/dev/null", O_RDONLY);
-  dup2(null, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
+  BecomeChild(parent, output);
   dup2(output, STDERR_FILENO);
   execv(program, arguments);
   constexpr char kText[] = "cannot be started\n";

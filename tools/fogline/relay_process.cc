@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,20 +15,16 @@
 #include <fmt/core.h>
 
 #include "services/runtime/clock.h"
+#include "tools/fogline/child.h"
 
 namespace fogline {
 namespace {
 
 constexpr Duration kStartLimit = milliseconds(5000);
 
-/// In the child, between fork and exec: only async-signal-safe calls. It dies with the runner, does
-/// not see the terminal's Ctrl-C, and names on our stderr whom it disconnects.
+/// It names on our stderr whom it disconnects.
 [[noreturn]] void Become(const char* program, int output, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);
-  setpgid(0, 0);
-  dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
+  BecomeChild(parent, output);
   execl(program, program, "--listen", "127.0.0.1:0", "--quiet", nullptr);
   _exit(127);
 }

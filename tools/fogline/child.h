@@ -1,0 +1,15 @@
+// What a process that the runner starts does before it becomes another program.
+#pragma once
+
+#include <sys/types.h>
+
+namespace fogline {
+
+/// To be called in the child, between fork and exec: only async-signal-safe calls. The child dies
+/// with the runner, however that dies; it is out of reach of the terminal's Ctrl-C, which the
+/// runner turns into an orderly end; it reads nothing, prints to `output`, and has no other file of
+/// the runner but stderr.
+/// @param parent process id of the runner before the fork
+void BecomeChild(pid_t parent, int output);
+
+}  // namespace fogline
