@@ -28,8 +28,8 @@ enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscrib
 
 /// What a frame may hold at most, in bytes. What is longer is refused before it is read.
 struct Limits {
-  std::size_t channel = 63;    // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
-  std::size_t pattern = 1024;  // of a subscription
+  std::size_t channel = 63;   // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
+  std::size_t pattern = 256;  // of a subscription: what it may cost to match grows with its square
   std::size_t payload = 4 << 20;
 };
 

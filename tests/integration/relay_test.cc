@@ -273,7 +273,7 @@ TEST(RelayTest, DisconnectsWhoSendsGarbageByNameAndReason) {
       {Payload(http.begin(), http.end()), "begins with 0x47455420"},
       {unknown, "frame of unknown type 9"},
       {oversized, "message of 1048577 bytes on \"BIG\"; at most 1048576"},
-      {SubscriptionTo(std::string(2000, 'a')), "pattern of 2000 bytes; at most 1024"},
+      {SubscriptionTo(std::string(2000, 'a')), "pattern of 2000 bytes; at most 256"},
       {SubscriptionTo("("), "a subscription that is no regular expression"},
       {subscriptions, "more than 2 subscriptions"},
   };

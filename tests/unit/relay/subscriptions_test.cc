@@ -59,6 +59,19 @@ TEST(SubscriptionsTest, AreLimitedInNumber) {
   EXPECT_FALSE(wanted.Match("C"));
 }
 
+TEST(SubscriptionsTest, AreLimitedInLengthTogether) {
+  // Compiled, an expression takes up to a few hundred times its length in memory.
+  Subscriptions wanted(1000);
+  const std::string longest(250, 'A');
+  int added = 0;
+  while (added < 1000 && wanted.Add(longest).empty()) ++added;
+  EXPECT_EQ(added, 129);
+  EXPECT_EQ(wanted.Add(longest), "more than 32256 bytes of subscriptions");
+  EXPECT_EQ(wanted.Add("B"), "") << "there is room for a short one";
+  wanted.Remove(longest);
+  EXPECT_EQ(wanted.Add(longest), "") << "what is taken away makes room";
+}
+
 TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
   Subscriptions wanted(kLimit);
   for (const char* pattern : {"(", "[a", "*"}) {
@@ -106,6 +119,14 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
   }
   // THEN that ends, here within what a busy machine needs for a million tries
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
+}
+
+TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
+  // GIVEN expressions that are slow, each not slow enough to be given up (long ones may visit more)
+  Subscriptions wanted(1000);
+  for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
+  // WHEN a name is looked for in all of them, THEN that ends before the last
+  EXPECT_THROW(wanted.Match(std::string(24, 'a')), std::runtime_error);
 }
 
 }  // namespace
