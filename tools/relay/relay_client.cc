@@ -136,6 +136,8 @@ void RelayClient::Write() {
   asio::async_write(socket_, asio::buffer(sending_),
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->sending_.clear();
+                      // The memory of a queue that was long goes back.
+                      if (self->sending_.capacity() > kReadBytes) self->sending_.shrink_to_fit();
                       if (error) {
                         self->deaf_ = true;
                         self->waiting_.clear();
