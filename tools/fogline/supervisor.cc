@@ -117,8 +117,8 @@ void Supervisor::End() {
     conductor_.Stop();
     ++said;
     const TimePoint pause = Clock::now() + kLookEvery;
-    while (bus_.Wait(pause - Clock::now())) {
-    }
+    // Until then, however many messages there are: a flood of them must not hold up the end.
+    while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }
 }
