@@ -128,7 +128,8 @@ std::vector<Restarts> Supervisor::restarts() const {
   for (const RoleInfo& info : kRoles) {
     const auto child = std::ranges::find(children_, info.role, &Child::role);
     const Conductor::Member& member = conductor_.member(info.role);
-    if (child != children_.end() && child->policy.restarts() > 0) {
+    if (child != children_.end()) {
+      if (child->policy.restarts() == 0) continue;
       restarts.push_back(
           {.role = info.role, .count = child->policy.restarts(), .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
