@@ -1,5 +1,5 @@
 // When a node that lacks an input asks for it: not while it may still be on its way, and again and
-// again, ever more rarely, while it does not come.
+// again, at longer and longer intervals up to a limit, while it does not come.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class Patience {
   TimePoint Wait(TimePoint now) {
     if (!since_) {
       since_ = now;
-      wait_ = std::clamp(kSteps * step_time_, kShortest, kLongestFirst);
+      wait_ = std::clamp(kSteps * step_time_, kShortest, kLongest);
       ask_at_ = now + wait_;
     }
     return ask_at_;
@@ -53,7 +53,6 @@ class Patience {
   // vain.
   static constexpr int kSteps = 4;
   static constexpr Duration kShortest = milliseconds(2);
-  static constexpr Duration kLongestFirst = milliseconds(50);
   static constexpr Duration kLongest = milliseconds(50);
   // Weight of the newest step in the smoothed duration of a step.
   static constexpr int kSmoothing = 8;
