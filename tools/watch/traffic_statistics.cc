@@ -67,27 +67,21 @@ bool IsLcmsOwn(std::string_view channel) {
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
   if (LooksSealed(bytes)) bytes = WithoutSeal(bytes);  // shown, not verified
   const std::size_t index = IndexOfChannel(channel);
-  const std::size_t size = bytes.size();
-  // Signed traffic is shown as it is; nobody verifies it here.
-  if (index < kNumChannels && LooksSealed(bytes) &&
-      KnownTypes()[index].decodes(WithoutSeal(bytes))) {
-    bytes = WithoutSeal(bytes);
-  }
   if (index < kNumChannels && bytes.size() >= kHeaderEnd) {
     const std::int64_t run_id = ReadInt64(bytes, kRunIdOffset);
     if (KnownTypes()[index].decodes(bytes)) {
-      return AddToRun(RunOf(run_id), index, bytes, size, now);
+      return AddToRun(RunOf(run_id), index, bytes, now);
     }
     // Undecodable, but it may say of which run it wants to be.
     if (RunRecord* run = FindRun(run_id); run != nullptr) {
       ChannelRecord& record = run->channels[index];
       record.any = true;
-      record.arrivals.Add(size, now);
+      record.arrivals.Add(bytes.size(), now);
       return CountUndecodable(bytes, record.undecodable);
     }
   }
   ChannelRecord& record = OtherOf(channel);
-  record.arrivals.Add(size, now);
+  record.arrivals.Add(bytes.size(), now);
   if (index < kNumChannels) {
     record.type = KnownTypes()[index].name;
     CountUndecodable(bytes, record.undecodable);
@@ -96,12 +90,11 @@ void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now
   }
 }
 
-void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, std::size_t size,
-                                 TimePoint now) {
+void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, TimePoint now) {
   ChannelRecord& record = run.channels[channel];
   record.any = true;
   record.type = KnownTypes()[channel].name;
-  record.arrivals.Add(size, now);
+  record.arrivals.Add(bytes.size(), now);
   run.heard = now;
   if (kChannels[channel].pace == Pace::kStep) {
     if (!record.steps) record.steps.emplace();

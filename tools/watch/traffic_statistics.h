@@ -107,8 +107,7 @@ class TrafficStatistics {
     std::vector<RoleRecord> roles;
   };
 
-  /// @param size on the network, with a signature if there is one
-  void AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, std::size_t size, TimePoint now);
+  void AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, TimePoint now);
   void AddRun(RunRecord& run, Bytes bytes);
   void AddStatus(RunRecord& run, Bytes bytes, TimePoint now);
   RunRecord* FindRun(std::int64_t run_id);

@@ -74,8 +74,6 @@ TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
   ASSERT_EQ(view.runs.size(), 1U);
   EXPECT_EQ(view.runs[0].step, 3);
   EXPECT_EQ(view.runs[0].channels[0].NumUndecodable(), 0);
-  EXPECT_DOUBLE_EQ(view.runs[0].channels[0].arrivals.bandwidth_bytes_per_s,
-                   static_cast<double>(Radar(kRun, 3).size() + kSealBytes));
 }
 
 TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
