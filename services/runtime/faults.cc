@@ -29,7 +29,7 @@ constexpr std::array kChances{
 
 InputError FaultsError(const std::string& what) {
   return InputError(
-      fmt::format("error: --faults: {}; for example "
+      fmt::format("error: --faults: {}; any of "
                   "loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5,truncate=0.01,flip=0.01,seed=7",
                   what));
 }

@@ -11,11 +11,10 @@ namespace fogline {
 
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
   app.add_option("--key", options.key_file,
-                 "Sign every message with the key in this file (fogline keygen), refuse unsigned")
+                 "Sign with the key in this file; refuse what is not signed")
       ->envname("FOGLINE_KEY");
   app.add_option("--faults", options.faults,
-                 "Receive as over a bad network: any of loss=0.3,duplicate=0.1,reorder=0.1,"
-                 "delay_ms=5,truncate=0.01,flip=0.01,seed=7");
+                 "Receive as over a bad network, such as loss=0.3,delay_ms=5");
 }
 
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {

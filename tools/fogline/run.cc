@@ -25,7 +25,7 @@ Examples:
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
   fogline run scenario/paper.json --pace 1       in real speed, to watch with tools/spy
   fogline run scenario/paper.json --transport memq --json
-  fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1     on a bad network
+  fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
 // A step of 0.1 s then takes 100 s.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/runtime/seal.h"
+
 namespace fogline {
 namespace {
 
@@ -62,6 +64,16 @@ TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
   EXPECT_DOUBLE_EQ(view.runs[1].channels[0].arrivals.rate_hz, 5);
   EXPECT_EQ(view.runs[1].channels[0].steps->missing, 4);
   EXPECT_TRUE(view.others.empty());
+}
+
+TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
+  Seal seal(SealKey(SealKey::Secret{}), std::nullopt);
+  const Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
+  Add("RADAR", {radar.begin(), radar.end()});
+  const TrafficView view = Observe(1000);
+  ASSERT_EQ(view.runs.size(), 1U);
+  EXPECT_EQ(view.runs[0].step, 3);
+  EXPECT_EQ(view.runs[0].channels[0].NumUndecodable(), 0);
 }
 
 TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
