@@ -70,10 +70,15 @@ RefusalCounter Recorder::Wrong(std::size_t input, Arrival& arrival) {
 }
 
 RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
-  const RefusalCounter wrong = Wrong(input, arrival);
-  if (wrong == nullptr && inputs()[input].channel == IndexOf<truth_t>()) {
-    if (arrival.As<truth_t>()->last != 0) final_ = step;
-  }
+  RefusalCounter wrong = nullptr;
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    if (channel != inputs()[input].channel) return;
+    const M* message = arrival.As<M>();
+    if (message == nullptr) wrong = arrival.Wrong<M>();
+    if constexpr (std::is_same_v<M, truth_t>) {
+      if (message != nullptr && message->last) final_ = step;
+    }
+  });
   return wrong;
 }
 

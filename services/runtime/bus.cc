@@ -211,9 +211,12 @@ void Bus::Watch(std::string_view channel, Bytes bytes) {
 }
 
 void Bus::CallHandlers(Topic& topic, Bytes bytes) {
-  const auto verified = Verified(topic, bytes);
-  if (!verified) return;
-  topic.arrival.Renew(*verified, now_);
+  if (seal_ || LooksSealed(bytes)) {
+    const auto verified = Verified(topic, bytes);
+    if (!verified) return;
+    bytes = *verified;
+  }
+  topic.arrival.Renew(bytes, now_);
   for (const Handler& handler : topic.handlers) handler(topic.arrival);
 }
 
@@ -224,7 +227,7 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
   };
   if (!seal_) {
     // No decoder takes anything with a trailer, and a payload might end like one by chance.
-    if (LooksSealed(bytes)) count(&Unverified::no_key);
+    count(&Unverified::no_key);
     return bytes;
   }
   const Seal::Opened opened = seal_->Open(topic.channel, bytes);

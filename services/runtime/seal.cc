@@ -17,8 +17,7 @@
 namespace fogline {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMagic{'F', 'L', 'S', '1'};
-constexpr std::size_t kKeyIdOffset = kMagic.size();
+constexpr std::size_t kKeyIdOffset = kSealMagic.size();
 constexpr std::size_t kSenderOffset = kKeyIdOffset + 2;
 constexpr std::size_t kTagOffset = kSenderOffset + 2;
 
@@ -120,11 +119,6 @@ std::string KeyFileWarning(const std::filesystem::path& file) {
                      file.string());
 }
 
-bool LooksSealed(Bytes message) {
-  return message.size() >= kSealBytes &&
-         std::ranges::equal(message.last(kSealBytes).first(kMagic.size()), kMagic);
-}
-
 Seal::KeyId Seal::IdOf(const SealKey& key) {
   std::array<std::uint8_t, crypto_generichash_BYTES> hash{};
   crypto_generichash(hash.data(), hash.size(), key.secret().data(), key.secret().size(), nullptr,
@@ -152,7 +146,7 @@ Bytes Seal::Sign(std::string_view channel, Bytes payload) {
   const Sender sender{0, static_cast<std::uint8_t>(role)};
   const Tag tag = TagOf(channel, sender, payload);
   message_.assign(payload.begin(), payload.end());
-  for (const Bytes part : {Bytes(kMagic), Bytes(id_), Bytes(sender), Bytes(tag)}) {
+  for (const Bytes part : {Bytes(kSealMagic), Bytes(id_), Bytes(sender), Bytes(tag)}) {
     message_.insert(message_.end(), part.begin(), part.end());
   }
   return message_;

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -50,8 +51,13 @@ std::string KeyFileWarning(const std::filesystem::path& file);
 /// Bytes of the trailer.
 inline constexpr std::size_t kSealBytes = 24;
 
+inline constexpr std::array<std::uint8_t, 4> kSealMagic{'F', 'L', 'S', '1'};
+
 /// Whether the message ends like a signed one; nothing is verified.
-bool LooksSealed(Bytes message);
+inline bool LooksSealed(Bytes message) {
+  return message.size() >= kSealBytes && std::memcmp(message.data() + message.size() - kSealBytes,
+                                                     kSealMagic.data(), kSealMagic.size()) == 0;
+}
 /// The message without its last kSealBytes. @pre LooksSealed(message)
 inline Bytes WithoutSeal(Bytes message) { return message.first(message.size() - kSealBytes); }
 

@@ -57,8 +57,11 @@ class StepNode final : public Node {
     WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
       using M = std::tuple_element_t<I, typename Traits::Inputs>;
       if (inputs()[input].channel != IndexOf<M>()) return;
-      wrong = arrival.Wrong<M>();
-      if (wrong == nullptr) std::get<I>(rings_)[RingSlot(step)] = *arrival.As<M>();
+      if (const M* message = arrival.As<M>()) {
+        std::get<I>(rings_)[RingSlot(step)] = *message;
+      } else {
+        wrong = arrival.Wrong<M>();
+      }
     });
     return wrong;
   }
