@@ -13,7 +13,6 @@
 
 #include "services/graph.h"
 #include "services/runtime/clock.h"
-#include "services/runtime/random.h"
 #include "services/runtime/wire.h"
 
 namespace fogline {
@@ -37,8 +36,7 @@ FaultRates ParseFaults(std::string_view text);
 
 class Faults {
  public:
-  Faults(const FaultRates& rates, Role role)
-      : rates_(rates), random_(rates.seed, Stream::kFaults), role_(role) {}
+  Faults(const FaultRates& rates, Role role) : rates_(rates), role_(role) {}
 
   /// A message has come.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
@@ -58,7 +56,6 @@ class Faults {
   std::array<double, 2> Uniform2(Draw draw) const;
 
   FaultRates rates_;
-  Random random_;
   Role role_;
   std::int64_t count_ = 0;                     // messages taken
   std::multimap<TimePoint, Message> waiting_;  // by the time when they are due

@@ -231,8 +231,8 @@ TEST(RelayTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTheOthers) {
   int heard = 0;
   bus.Subscribe("DATA", [&heard](Bytes) { ++heard; });
   // WHEN more is published than a socket and its queue hold
-  const Payload payload(60'000, 1);
-  constexpr int kMessages = 400;
+  const Payload payload(kMaxMessageBytes, 1);
+  constexpr int kMessages = 17'000;
   for (int i = 0; i < kMessages; ++i) {
     bus.Publish("DATA", payload);
     bus.Drain();
