@@ -19,10 +19,13 @@ function(lcm_add_types target dir)
     COMMAND sed -i -E
             "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
             ${headers}
-    # Nor does it expect a string without its terminator: length 0 or less.
-    COMMAND sed -i -E "s/if[(](__[a-z_]+_len__) > maxlen - pos[)]/if(\\1 < 1 || \\1 > maxlen - pos)/"
+    # Nor does it expect a string without its terminator, length 0 or less, or a zero elsewhere than
+    # at its end: what it would encode again is another message.
+    COMMAND sed -i -E
+            "s/if[(](__[a-z_]+_len__) > maxlen - pos[)] return -1$<SEMICOLON>/if(\\1 < 1 || \\1 > maxlen - pos) return -1$<SEMICOLON>\\n    if(memchr((const char*)buf + offset + pos, 0, \\1) != (const char*)buf + offset + pos + \\1 - 1) return -1$<SEMICOLON>/"
             ${headers}
     COMMAND grep -q "_len__ < 1" "${out}/cpp/fogline/resend_t.hpp"
+    COMMAND grep -q "memchr" "${out}/cpp/fogline/resend_t.hpp"
     COMMAND grep -q "num_followers < 0" "${out}/cpp/fogline/truth_t.hpp"
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"

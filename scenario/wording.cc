@@ -31,6 +31,20 @@ std::size_t ControlCharacterSize(std::string_view text) {
   return 0;
 }
 
+std::string Shorten(std::string_view text) {
+  if (text.size() <= kMaxExcerpt) return std::string(text);
+  std::size_t end = kMaxExcerpt;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) >> 6U) == 2) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
+}  // namespace
+
+std::string NumberText(double value) {
+  if (value == 0.0 && std::signbit(value)) return "-0.0";
+  return fmt::format("{}", value);
+}
+
 std::string EscapeControls(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -46,20 +60,6 @@ std::string EscapeControls(std::string_view text) {
     }
   }
   return out;
-}
-
-std::string Shorten(std::string_view text) {
-  if (text.size() <= kMaxExcerpt) return std::string(text);
-  std::size_t end = kMaxExcerpt;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) >> 6U) == 2) --end;
-  return std::string(text.substr(0, end)) + "...";
-}
-
-}  // namespace
-
-std::string NumberText(double value) {
-  if (value == 0.0 && std::signbit(value)) return "-0.0";
-  return fmt::format("{}", value);
 }
 
 std::string Quote(std::string_view text) {

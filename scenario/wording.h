@@ -14,6 +14,9 @@ namespace fogline {
 /// The shortest text that reads back as the same number, sign of zero included.
 std::string NumberText(double value);
 
+/// Control characters (C0, DEL, C1) escaped: as any terminal may be shown the text.
+std::string EscapeControls(std::string_view text);
+
 /// As a JSON string: in double quotes, control characters escaped.
 std::string Quote(std::string_view text);
 

@@ -133,6 +133,10 @@ std::optional<Remains> ReadRemains(const std::filesystem::path& file, std::int64
     throw InputError(fmt::format("{}: the log is that of another scenario", file.string()));
   }
   if (!parts.Complete()) return std::nullopt;
+  if (!parts.HashHolds()) {
+    throw InputError(
+        fmt::format("{}: the scenario in the log does not match its hash", file.string()));
+  }
   return follower.remains();
 }
 

@@ -80,7 +80,7 @@ Bus::~Bus() {
 Bus::Topic& Bus::TopicOf(std::string_view channel) {
   const auto found = std::ranges::find(topics_, channel, &Topic::channel);
   if (found != topics_.end()) return *found;
-  return topics_.emplace_back(this, std::string(channel));
+  return topics_.emplace_back(Topic{.bus = this, .channel = std::string(channel)});
 }
 
 void Bus::Subscribe(std::string_view channel, Handler handler) {

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
+#include "services/runtime/step_ring.h"
 #include "services/runtime/this_process.h"
 
 namespace fogline {
@@ -28,6 +30,16 @@ std::optional<Role> RoleNamed(std::string_view name) {
     if (info.name == name) return info.role;
   }
   return std::nullopt;
+}
+
+/// Whether a process can have counted so far. Sums of such numbers, and times, do not overflow.
+bool IsPossible(const status_t& status) {
+  const auto counted = [](std::int64_t number) { return number >= 0 && number <= kMaxStep; };
+  return status.header.step >= -1 && status.header.step <= kMaxStep &&
+         counted(status.last_heard_ms) && counted(status.repairs_asked) &&
+         counted(status.repairs_served) && counted(status.duplicates) &&
+         std::ranges::all_of(
+             kRefusals, [&](const RefusalKind& kind) { return counted(status.*kind.counter); });
 }
 
 const ChannelInfo* ChannelNamed(std::string_view name) {
@@ -137,11 +149,15 @@ void Conductor::Fail(std::string error) {
   if (const std::string trouble = KeyTrouble(); !trouble.empty()) error_ += "\n  " + trouble;
 }
 
-void Conductor::OnStatus(const status_t& status) {
-  if (status.header.run_id != options_.run_id) {
-    strangers_.Hear(status);
+void Conductor::OnStatus(const status_t& heard) {
+  if (heard.header.run_id != options_.run_id) {
+    strangers_.Hear(heard);
     return Refuse(&status_t::foreign);
   }
+  if (!IsPossible(heard)) return Refuse(&status_t::out_of_window);
+  status_t status = heard;  // with texts as they may be printed
+  status.host = EscapeControls(heard.host);
+  status.error = EscapeControls(heard.error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
   if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;

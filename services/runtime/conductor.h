@@ -79,7 +79,7 @@ class Conductor {
 
  private:
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
-  void OnStatus(const status_t& status);
+  void OnStatus(const status_t& heard);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
   bool IsExternal(Role role) const;

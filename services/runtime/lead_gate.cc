@@ -7,6 +7,8 @@ namespace {
 
 constexpr Duration kFirstPatience = milliseconds(20);
 constexpr Duration kMaxPatience = milliseconds(500);
+// Three years: no step is later, however slow the pace.
+constexpr double kLongest_s = 1e8;
 
 }  // namespace
 
@@ -41,7 +43,8 @@ void LeadGate::OnGo(const run_t& run, TimePoint now) {
 
 TimePoint LeadGate::Due(std::int64_t step) const {
   if (pace_ == 0) return start_;
-  const std::chrono::duration<double> since(static_cast<double>(step) * step_s_ / pace_);
+  const std::chrono::duration<double> since(
+      std::min(static_cast<double>(step) * step_s_ / pace_, kLongest_s));
   return start_ + duration_cast<Duration>(since);
 }
 

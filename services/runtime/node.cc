@@ -17,8 +17,6 @@ namespace {
 
 // Being asked makes a node ask at once, but no more often than this.
 constexpr Duration kMinBetweenAsks = milliseconds(1);
-// Far beyond any run, and no arithmetic on it overflows.
-constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
 // What went wrong must fit into a STATUS with everything else.
@@ -159,6 +157,7 @@ void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
 }
 
 void Node::OnRun(Bytes bytes) {
+  if (left_) return;  // and everything is closed
   run_t run{};
   if (const RefusalCounter wrong = Examine(bytes, run)) return Refuse(wrong);
   if (bound_ ? run.header.run_id != *run_id_ : run.phase == run_t::STOP) {

@@ -121,7 +121,7 @@ class Node {
   const ScenarioParts& parts() const { return parts_; }
   std::int8_t state() const { return status_.state; }
   bool Running() const {
-    return status_.state == status_t::READY || status_.state == status_t::RUNNING;
+    return !left_ && (status_.state == status_t::READY || status_.state == status_t::RUNNING);
   }
   status_t& status() { return status_; }
 

@@ -17,6 +17,9 @@ inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "there would be steps that nobody answers for");
 
+/// Far beyond any run; no arithmetic on steps up to here overflows.
+inline constexpr std::int64_t kMaxStep = 1'000'000'000'000;
+
 /// Steps `first` to `first + count - 1`.
 struct StepRange {
   std::int64_t first;

@@ -1,0 +1,80 @@
+// The reader of event logs. Input: the file.
+#include <algorithm>
+
+#include "scenario/loader.h"
+#include "tests/fuzz/samples.h"
+
+namespace fogline::fuzz {
+namespace {
+
+/// Reads to the end; the events are views into `reader`.
+std::vector<Event> ReadAll(EventLogReader& reader, std::size_t file_size) {
+  std::vector<Event> events;
+  std::size_t bytes = 0;
+  while (const auto event = reader.Next()) {
+    events.push_back(*event);
+    bytes += SizeInFile(*event);
+    Demand(reader.good_bytes() == bytes, "events follow one another without a gap");
+  }
+  Demand(bytes <= file_size, "no event is larger than the file");
+  Demand(reader.torn().empty() == (bytes == file_size), "what is not read is named");
+  Demand(!reader.Next(), "after the end nothing follows");
+  return events;
+}
+
+bool SameBut(std::int64_t number, const Event& a, const Event& b) {
+  return b.number == number && a.utime == b.utime && a.channel == b.channel &&
+         std::ranges::equal(a.data, b.data);
+}
+
+/// The reader maps the file, beyond whose end there is nothing to stumble over; the input is a
+/// block of memory that ends where it ends.
+void DemandSameInMemory(Bytes bytes, const std::vector<Event>& events) {
+  std::string_view why;
+  for (const Event& event : events) {
+    const auto again = ParseEvent(bytes, why);
+    Demand(again && SameBut(event.number, event, *again), "an event in memory is the same");
+    bytes = bytes.subspan(SizeInFile(event));
+  }
+  Demand(!ParseEvent(bytes, why) && !why.empty(), "after the last event there is none in memory");
+}
+
+void DemandLogOrRefusal(Bytes bytes) {
+  const MemoryFile file(bytes);
+  try {
+    EventLogReader reader(file.path());
+    const std::vector<Event> events = ReadAll(reader, bytes.size());
+    DemandSameInMemory(bytes, events);
+    const MemoryFile copy;
+    {
+      EventLogWriter writer(copy.path());
+      for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
+    }
+    EventLogReader again(copy.path());
+    const std::vector<Event> rewritten = ReadAll(again, reader.good_bytes());
+    Demand(rewritten.size() == events.size() && again.torn().empty(), "a copy has all events");
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      Demand(SameBut(static_cast<std::int64_t>(i), events[i], rewritten[i]),
+             "a copy has the same events, numbered from 0");
+    }
+    if (!events.empty()) Took();
+  } catch (const InputError&) {
+    Demand(bytes.size() > 0, "an empty log is one");
+  }
+}
+
+}  // namespace
+
+std::vector<Input> Seeds() {
+  const Input log = SampleLog();
+  const Input torn(log.begin(), log.end() - 9);
+  const Input one(log.begin(), log.begin() + 4 + 8 + 8 + 4 + 4 + 3);
+  return {log, torn, one};
+}
+
+}  // namespace fogline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fogline::fuzz::DemandLogOrRefusal({data, size});
+  return 0;
+}

@@ -1,0 +1,154 @@
+// Roles of a run among whatever others say: world, driver and recorder on a bus in memory, and
+// nobody else. Input: actions, a byte each: what a run says comes next, or a datagram on some
+// channel follows.
+#include <algorithm>
+#include <map>
+
+#include "services/driver/driver.h"
+#include "services/recorder/recorder.h"
+#include "services/runtime/step_node.h"
+#include "services/world/world.h"
+#include "tests/fuzz/samples.h"
+
+namespace fogline::fuzz {
+namespace {
+
+constexpr std::size_t kMaxActions = 64;
+
+enum Action : std::uint8_t { kAnnounce, kGo, kCommands, kPoll, kStop, kDatagram, kNumActions };
+
+/// What the roles say, as others hear it.
+class Listener {
+ public:
+  explicit Listener(Bus& bus) {
+    Listen<truth_t>(bus);
+    Listen<ego_t>(bus);
+    Listen<driver_command_t>(bus);
+    bus.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) { OnStatus(bytes); });
+  }
+
+  /// Of this one nothing is known.
+  void Ignore(Bytes bytes) { foreign_.assign(bytes.begin(), bytes.end()); }
+  std::size_t steps() const { return said_.size(); }
+
+ private:
+  template <class M>
+  void Listen(Bus& bus) {
+    bus.Subscribe(ChannelOf<M>().name, [this](Bytes bytes) {
+      if (std::ranges::equal(bytes, foreign_)) return;
+      M message{};
+      Demand(Examine(bytes, message) == nullptr, "a role says what is sound");
+      const auto [said, fresh] =
+          said_.try_emplace({IndexOf<M>(), message.header.step}, bytes.begin(), bytes.end());
+      Demand(fresh || std::ranges::equal(said->second, bytes),
+             "a role says one thing in a step, however often");
+    });
+  }
+
+  void OnStatus(Bytes bytes) {
+    if (std::ranges::equal(bytes, foreign_)) return;
+    status_t status{};
+    Demand(Examine(bytes, status) == nullptr, "a STATUS is sound");
+    for (const RefusalKind& kind : kRefusals) {
+      Demand(status.*kind.counter >= 0, "fewer than none are not refused");
+    }
+    Demand(status.header.step >= -1, "no step is before the first");
+  }
+
+  std::map<std::pair<std::size_t, std::int64_t>, Input> said_;
+  Input foreign_;
+};
+
+class Run {
+ public:
+  void Do(Action action, Cutter& cutter) {
+    switch (action) {
+      case kAnnounce:
+        return Say(Sample<run_t>(0));
+      case kGo:
+      case kStop: {
+        auto run = Sample<run_t>(0);
+        run.phase = action == kGo ? run_t::GO : run_t::STOP;
+        return Say(run);
+      }
+      case kCommands: {
+        Say(Sample<arbitration_t>(step_));
+        auto follower = Sample<follower_command_t>(step_++);
+        follower.num_followers = 1;
+        follower.acceleration_mps2.resize(1);
+        follower.safe_distance_m.resize(1);
+        return Say(follower);
+      }
+      case kPoll:
+        for (Node* node : nodes_) node->Poll(Clock::now());
+        return bus_.Drain();
+      default: {
+        const std::size_t channel = cutter.Byte() % kNumChannels;
+        const Bytes datagram = cutter.Datagram();
+        listener_.Ignore(datagram);
+        return Publish(kChannels[channel].name, datagram);
+      }
+    }
+  }
+
+  void DemandSound() const {
+    for (const Node* node : nodes_) {
+      Demand(node->left() || node->error().empty(), "who fails leaves");
+    }
+    if (listener_.steps() > 0) Took();
+  }
+
+ private:
+  template <class M>
+  void Say(const M& message) {
+    Publish(ChannelOf<M>().name, Encoded(message));
+  }
+  void Publish(std::string_view channel, Bytes bytes) {
+    bus_.Publish(channel, bytes);
+    bus_.Drain();
+  }
+
+  Bus bus_{"memq://"};
+  Listener listener_{bus_};
+  MemoryFile log_;
+  StepNode<World> world_{bus_, {}};
+  StepNode<Driver> driver_{bus_, {}};
+  Recorder recorder_{bus_, {}, log_.path()};
+  std::array<Node*, 3> nodes_{&world_, &driver_, &recorder_};
+  std::int64_t step_ = 0;
+};
+
+}  // namespace
+
+std::vector<Input> Seeds() {
+  const Input undisturbed{kAnnounce, kGo, kCommands, kPoll, kCommands, kPoll, kCommands, kStop};
+  Input asked{kAnnounce, kGo, kCommands, kDatagram, IndexOf<resend_t>()};
+  AddDatagram(Encoded(Sample<resend_t>(0)), asked);
+  asked.insert(asked.end(), {kCommands, kDatagram, IndexOf<truth_t>()});
+  AddDatagram(Encoded(Sample<truth_t>(1)), asked);
+  asked.push_back(kPoll);
+  Input recorded{kAnnounce, kGo};
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    recorded.push_back(kCommands);
+    ForEachStepChannel([&]<class M>(std::size_t channel) {
+      if (kChannels[channel].from == Role::kWorld) return;
+      recorded.insert(recorded.end(), {kDatagram, static_cast<std::uint8_t>(channel)});
+      AddDatagram(Encoded(Sample<M>(step)), recorded);
+    });
+  }
+  recorded.push_back(kPoll);
+  return {undisturbed, asked, recorded};
+}
+
+}  // namespace fogline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace fogline::fuzz;
+  Run run;
+  Cutter cutter({data, size});
+  for (std::size_t i = 0; i < kMaxActions && !cutter.empty(); ++i) {
+    run.Do(static_cast<Action>(cutter.Byte() % kNumActions), cutter);
+  }
+  run.DemandSound();
+  return 0;
+}

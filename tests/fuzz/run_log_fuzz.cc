@@ -1,0 +1,115 @@
+// The reader of runs in event logs. Input: the file.
+#include <algorithm>
+#include <array>
+
+#include "scenario/loader.h"
+#include "services/recorder/run_log.h"
+#include "tests/fuzz/samples.h"
+
+namespace fogline::fuzz {
+namespace {
+
+/// What a log says.
+struct Reading {
+  std::vector<std::array<Input, kNumChannels>> steps;
+  bool refused = false;
+  RunLog run;
+};
+
+Reading Read(const std::filesystem::path& file) {
+  Reading reading;
+  RunLogReader reader(file);
+  try {
+    while (const StepMessages* messages = reader.Next()) {
+      auto& step = reading.steps.emplace_back();
+      for (std::size_t i = 0; i < kNumChannels; ++i) {
+        step[i].assign((*messages)[i].begin(), (*messages)[i].end());
+      }
+    }
+  } catch (const InputError&) {
+    reading.refused = true;
+  }
+  Demand(reader.Next() == nullptr, "after the end nothing follows");
+  reading.run = reader.run();
+  return reading;
+}
+
+void DemandWholeSteps(const Reading& reading) {
+  for (std::size_t step = 0; step < reading.steps.size(); ++step) {
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      const Input& message = reading.steps[step][i];
+      const bool expected = kChannels[i].pace == Pace::kStep;
+      Demand(message.empty() != expected, "a step has a message of each of its channels");
+      if (!expected) continue;
+      Demand(ReadInt64(message, kRunIdOffset) == reading.run.run_id, "all is of one run");
+      Demand(ReadInt64(message, kStepOffset) == static_cast<std::int64_t>(step),
+             "steps come once each, in order");
+    }
+  }
+  Demand(reading.run.steps == static_cast<std::int64_t>(reading.steps.size()),
+         "all steps are counted");
+}
+
+/// The run as the recorder would have written it.
+void Rewrite(const Reading& reading, const std::filesystem::path& file) {
+  EventLogWriter log(file);
+  const std::vector<std::string> parts = SplitScenario(reading.run.scenario_text);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const run_t run =
+        MakeRunPart(reading.run.run_id, run_t::PREPARE, 0, reading.run.scenario_hash, parts, i);
+    log.Write(ChannelOf<run_t>().name, 0, Encoded(run));
+  }
+  for (const auto& step : reading.steps) {
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      if (!step[i].empty()) log.Write(kChannels[i].name, 0, step[i]);
+    }
+  }
+}
+
+void DemandRunOrRefusal(Bytes bytes) {
+  const MemoryFile file(bytes);
+  try {
+    const Reading reading = Read(file.path());
+    DemandWholeSteps(reading);
+    if (reading.refused) return;
+    const MemoryFile copy;
+    Rewrite(reading, copy.path());
+    const Reading again = Read(copy.path());
+    Demand(again.steps == reading.steps, "a copy has the same steps");
+    Demand(again.run.scenario_text == reading.run.scenario_text, "a copy has the same scenario");
+    Demand(again.run.complete || !reading.run.complete, "a copy of a complete run is complete");
+    Demand(Printable(reading.run.note), "what is said of a log can be printed");
+    if (!reading.steps.empty()) Took();
+  } catch (const InputError&) {
+    return;  // no event log
+  }
+}
+
+}  // namespace
+
+std::vector<Input> Seeds() {
+  const Input log = SampleLog();
+  const Input torn(log.begin(), log.end() - 9);
+  // The same events from back to front, but for the scenario's parts.
+  const MemoryFile file(log);
+  EventLogReader reader(file.path());
+  std::vector<Event> events;
+  while (const auto event = reader.Next()) events.push_back(*event);
+  const auto steps = std::ranges::find_if(
+      events, [](const Event& event) { return event.channel != ChannelOf<run_t>().name; });
+  std::reverse(steps, events.end());
+  std::reverse(events.begin(), steps);
+  const MemoryFile reversed;
+  {
+    EventLogWriter writer(reversed.path());
+    for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
+  }
+  return {log, torn, reversed.Content()};
+}
+
+}  // namespace fogline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fogline::fuzz::DemandRunOrRefusal({data, size});
+  return 0;
+}

@@ -1,0 +1,93 @@
+// Sound messages and logs, to make seeds from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/recorder/event_log.h"
+#include "services/runtime/scenario_parts.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace fogline::fuzz {
+
+inline constexpr std::int64_t kRunId = 7;
+/// The shortest scenario of three steps.
+inline constexpr std::string_view kScenarioText = R"({"version":1,"steps":3})";
+inline constexpr std::int64_t kSteps = 3;
+
+/// A message of a step with something in every field that has a length.
+template <class M>
+M Sample(std::int64_t step) {
+  M message{};
+  message.header = {.run_id = kRunId, .step = step, .utime = step * 100'000};
+  if constexpr (requires { message.num_followers; }) {
+    message.num_followers = 2;
+    if constexpr (std::is_same_v<M, truth_t>) {
+      message.last = step == kSteps - 1;
+      for (auto* values : {&message.follower_position_m, &message.follower_speed_mps,
+                           &message.follower_acceleration_mps2, &message.follower_gap_m}) {
+        *values = {-40.5, -81};
+      }
+    } else {
+      message.acceleration_mps2 = {0.25, -0.5};
+      message.safe_distance_m = {38, 39};
+    }
+  } else if constexpr (std::is_same_v<M, status_t>) {
+    message.role = "fusion";
+    message.host = "lab2";
+    message.state = status_t::RUNNING;
+    message.sequence = 1 + step;
+    message.scenario_hash = HashOf(kScenarioText);
+    message.type_fingerprint = TypeFingerprint();
+    message.waiting_for = "RADAR";
+  } else if constexpr (std::is_same_v<M, resend_t>) {
+    message.channel = "TRUTH";
+    message.count = 1;
+    message.requester = "radar";
+  } else if constexpr (std::is_same_v<M, run_t>) {
+    message = MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenarioText),
+                          {std::string(kScenarioText)}, 0);
+  }
+  return message;
+}
+
+template <class M>
+Input Encoded(const M& message) {
+  Input bytes;
+  Encode(message, bytes);
+  return bytes;
+}
+
+/// The RUN messages of a text in parts of so many characters.
+inline std::vector<run_t> RunParts(std::string_view text, std::size_t part_size) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < text.size(); at += part_size) {
+    parts.emplace_back(text.substr(at, part_size));
+  }
+  std::vector<run_t> messages;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    messages.push_back(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(text), parts, i));
+  }
+  return messages;
+}
+
+/// A log as the recorder writes it: the scenario, then its steps.
+inline Input SampleLog() {
+  const MemoryFile file;
+  {
+    EventLogWriter log(file.path());
+    for (const run_t& run : RunParts(kScenarioText, 10)) {
+      log.Write(ChannelOf<run_t>().name, 0, Encoded(run));
+    }
+    for (std::int64_t step = 0; step < kSteps; ++step) {
+      ForEachStepChannel([&]<class M>(std::size_t channel) {
+        const M message = Sample<M>(step);
+        log.Write(kChannels[channel].name, message.header.utime, Encoded(message));
+      });
+    }
+  }
+  return file.Content();
+}
+
+}  // namespace fogline::fuzz

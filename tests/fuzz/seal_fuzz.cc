@@ -1,0 +1,103 @@
+// Signatures. Input: a channel's place in kChannels, a role, where to alter what is signed (two
+// bytes) and how, then a message, signed or not.
+#include <algorithm>
+#include <array>
+
+#include "services/runtime/seal.h"
+#include "tests/fuzz/samples.h"
+
+namespace fogline::fuzz {
+namespace {
+
+SealKey Key(std::uint8_t byte) {
+  SealKey::Secret secret{};
+  secret.fill(byte);
+  return SealKey(secret);
+}
+
+bool IsGood(const Seal& seal, std::string_view channel, Bytes message) {
+  return seal.Open(channel, message).verdict == Seal::Verdict::kGood;
+}
+
+/// What is good was signed by somebody who has the key and may say it.
+void DemandUnforgeable(const Seal& seal, const ChannelInfo& channel, Bytes message) {
+  const Seal::Opened opened = seal.Open(channel.name, message);
+  Demand((opened.verdict == Seal::Verdict::kNotSigned) == !LooksSealed(message),
+         "what looks signed is good or badly signed");
+  if (opened.verdict != Seal::Verdict::kGood) {
+    Demand(opened.payload.empty(), "what is not good is not given to anybody");
+    return;
+  }
+  bool signed_by_somebody = false;
+  for (int role = 0; role <= static_cast<int>(Role::kRunner); ++role) {
+    Seal somebody(Key(1), static_cast<Role>(role));
+    signed_by_somebody |= std::ranges::equal(somebody.Sign(channel.name, opened.payload), message);
+  }
+  Demand(signed_by_somebody, "what is good was signed");
+  Took();
+}
+
+/// What is signed is good for its channel, its key and its bytes alone.
+void DemandBinding(Seal& seal, std::size_t place, Cutter& cutter, Bytes payload) {
+  const ChannelInfo& channel = kChannels[place];
+  const Bytes sent = seal.Sign(channel.name, payload);
+  Input message(sent.begin(), sent.end());
+  const Seal::Opened opened = seal.Open(channel.name, message);
+  Demand(opened.verdict == Seal::Verdict::kGood && std::ranges::equal(opened.payload, payload),
+         "what is signed is good, and is what it was");
+  Demand(!IsGood(seal, kChannels[(place + 1) % kNumChannels].name, message),
+         "it is not good for another channel");
+  Demand(!IsGood(Seal(Key(2), {}), channel.name, message), "it is not good for another key");
+  std::size_t at = cutter.Byte();
+  at = at << 8 | cutter.Byte();
+  const auto change = static_cast<std::uint8_t>(std::max<int>(1, cutter.Byte()));
+  message[at % message.size()] ^= change;
+  Demand(!IsGood(seal, channel.name, message), "altered it is not good");
+}
+
+void DemandNoOthersMessages(std::size_t place, std::uint8_t role, Bytes payload) {
+  const ChannelInfo& channel = kChannels[place];
+  const auto sender = static_cast<Role>(role % (static_cast<int>(Role::kRunner) + 1));
+  Seal seal(Key(1), sender);
+  const Bytes sent = seal.Sign(channel.name, payload);
+  if (channel.pace != Pace::kStep) return;
+  Demand(IsGood(seal, channel.name, sent) == (sender == channel.from || sender == Role::kRecorder),
+         "a step's message is good from its producer and the recorder");
+}
+
+}  // namespace
+
+std::vector<Input> Seeds() {
+  std::vector<Input> seeds;
+  Seal seal(Key(1), {});
+  const auto add = [&](std::size_t channel, const Input& message) {
+    Input seed{static_cast<std::uint8_t>(channel), 1, 0, 40, 1};
+    seed.insert(seed.end(), message.begin(), message.end());
+    seeds.push_back(seed);
+    seed.resize(5);
+    const Bytes sent = seal.Sign(kChannels[channel].name, message);
+    seed.insert(seed.end(), sent.begin(), sent.end());
+    seeds.push_back(seed);
+  };
+  add(IndexOf<ego_t>(), Encoded(Sample<ego_t>(1)));
+  add(IndexOf<status_t>(), Encoded(Sample<status_t>(1)));
+  add(IndexOf<resend_t>(), Encoded(Sample<resend_t>(1)));
+  return seeds;
+}
+
+}  // namespace fogline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace fogline;
+  constexpr std::size_t kHead = 5;
+  if (size < kHead) return 0;
+  fuzz::Cutter head({data, kHead});
+  const std::size_t channel = head.Byte() % kNumChannels;
+  const std::uint8_t role = head.Byte();
+  const Bytes message{data + kHead, size - kHead};
+  Seal seal(fuzz::Key(1), {});
+  fuzz::DemandUnforgeable(seal, kChannels[channel], message);
+  fuzz::DemandBinding(seal, channel, head, message);
+  fuzz::DemandNoOthersMessages(channel, role, message);
+  return 0;
+}

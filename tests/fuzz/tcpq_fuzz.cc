@@ -1,0 +1,98 @@
+// The parser of tcpq streams, on both sides. Input: a byte, odd for what a relay says, and the
+// stream.
+#include <algorithm>
+#include <functional>
+
+#include "services/runtime/tcpq_frame.h"
+#include "tests/fuzz/samples.h"
+
+namespace fogline::fuzz {
+namespace {
+
+constexpr tcpq::Limits kLimits{.channel = 63, .pattern = 100, .payload = 200};
+// Type, length, channel, length, payload.
+constexpr std::size_t kLargestFrame = 4 + 4 + kLimits.channel + 4 + kLimits.payload;
+constexpr std::size_t kHello = 8;
+
+struct Reading {
+  bool greeted = false;
+  std::vector<Input> frames;
+  std::string error;
+
+  friend bool operator==(const Reading&, const Reading&) = default;
+};
+
+void DemandFaithful(const tcpq::Frame& frame) {
+  Input again;
+  tcpq::AppendFrame(frame.type, frame.name, frame.payload, again);
+  Demand(std::ranges::equal(again, frame.wire), "a frame says what came");
+  Demand(frame.wire.size() <= kLargestFrame, "no frame is larger than the limits");
+}
+
+/// @param piece how many bytes come next
+Reading Read(std::uint32_t magic, Bytes stream, const std::function<std::size_t()>& piece) {
+  Reading reading;
+  tcpq::FrameParser parser(magic, kLimits);
+  std::size_t held = 0;
+  while (!stream.empty()) {
+    const std::size_t size = std::min(piece(), stream.size());
+    parser.Append(stream.first(size));
+    stream = stream.subspan(size);
+    held += size;
+    if (parser.Greeted() && !reading.greeted) {
+      reading.greeted = true;
+      held -= kHello;
+    }
+    while (const auto frame = parser.Next()) {
+      DemandFaithful(*frame);
+      reading.frames.emplace_back(frame->wire.begin(), frame->wire.end());
+      held -= frame->wire.size();
+    }
+    Demand(!parser.error().empty() || held < kLargestFrame, "no more than a frame is waited for");
+  }
+  reading.error = parser.error();
+  Demand(Printable(reading.error), "an error can be printed");
+  if (!reading.error.empty()) {
+    Input sound;
+    tcpq::AppendHello(magic, sound);
+    tcpq::AppendFrame(tcpq::FrameType::kSubscribe, ".*", {}, sound);
+    parser.Append(sound);
+    Demand(!parser.Next() && parser.error() == reading.error, "there is no way back");
+  }
+  return reading;
+}
+
+void DemandSameInAnyPieces(std::uint32_t magic, Bytes stream) {
+  const Reading whole = Read(magic, stream, [&stream] { return stream.size(); });
+  Demand(Read(magic, stream, [] { return std::size_t{1}; }) == whole, "bytes may come one by one");
+  std::size_t at = 0;
+  const auto uneven = [&] { return std::size_t{1} + stream[at++ % stream.size()] % 32; };
+  Demand(Read(magic, stream, uneven) == whole, "bytes may come in pieces");
+  if (!whole.frames.empty()) Took();
+}
+
+}  // namespace
+
+std::vector<Input> Seeds() {
+  const Input truth = Encoded(Sample<ego_t>(1));
+  Input client{0};
+  tcpq::AppendHello(tcpq::kClientMagic, client);
+  tcpq::AppendFrame(tcpq::FrameType::kSubscribe, "HOST_.*", {}, client);
+  tcpq::AppendFrame(tcpq::FrameType::kPublish, "HOST_EGO", truth, client);
+  tcpq::AppendFrame(tcpq::FrameType::kUnsubscribe, "HOST_.*", {}, client);
+  Input relay{1};
+  tcpq::AppendHello(tcpq::kRelayMagic, relay);
+  tcpq::AppendFrame(tcpq::FrameType::kPublish, "HOST_EGO", truth, relay);
+  tcpq::AppendFrame(tcpq::FrameType::kPublish, "", {}, relay);
+  return {client, relay};
+}
+
+}  // namespace fogline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace fogline;
+  if (size == 0) return 0;
+  fuzz::DemandSameInAnyPieces(data[0] % 2 == 1 ? tcpq::kRelayMagic : tcpq::kClientMagic,
+                              {data + 1, size - 1});
+  return 0;
+}
