@@ -19,10 +19,13 @@ function(lcm_add_types target dir)
     COMMAND sed -i -E
             "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
             ${headers}
-    # Nor does it expect a string without its terminator: length 0 or less.
-    COMMAND sed -i -E "s/if[(](__[a-z_]+_len__) > maxlen - pos[)]/if(\\1 < 1 || \\1 > maxlen - pos)/"
+    # Nor does it expect a string without its terminator: length 0 or less. (In an array the length is
+    # named without the last two underscores.)
+    COMMAND sed -i -E
+            "s/if[(](__[a-z_]+_len(__)?) > maxlen - pos[)]/if(\\1 < 1 || \\1 > maxlen - pos)/"
             ${headers}
     COMMAND grep -q "_len__ < 1" "${out}/cpp/fogline/resend_t.hpp"
+    COMMAND grep -q "__elem_len < 1" "${out}/cpp/fogline/status_t.hpp"
     COMMAND grep -q "num_followers < 0" "${out}/cpp/fogline/truth_t.hpp"
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"

@@ -58,6 +58,28 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   }
 }
 
+TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
+  status_t status{};
+  status.num_inputs = 2;
+  status.input = {"RADAR", "LIDAR"};
+  status.input_state = {0, 0};
+  status.input_age_us = {0, 0};
+  status.input_rate_hz = {0, 0};
+  status.input_late = {0, 0};
+  std::vector<std::uint8_t> bytes;
+  Encode(status, bytes);
+  ASSERT_TRUE(Decode(bytes, status));
+  EXPECT_EQ(status.input.at(1), "LIDAR");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t length = text.find("LIDAR") - 4;
+  for (const std::uint32_t claim : {0U, 0x7fffffffU, 0xffffffffU, 0x80000000U, 1000U}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[length + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
+    }
+    EXPECT_FALSE(Decode(bytes, status)) << claim;
+  }
+}
+
 TEST(WireTest, FindsValuesThatAreNotFinite) {
   ego_t ego = SomeEgo();
   EXPECT_EQ(FirstNonFiniteField(ego), "");
