@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/fire_rule.h"
 
 namespace fogline {
 namespace {
@@ -97,7 +98,7 @@ void Recorder::Compute(std::int64_t step) {
 }
 
 void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
-  ExpectAsked(step);
+  rule().Expect(std::min(step, next() + kRingSteps - 1));
   if (next() > step) PublishStatus();
 }
 

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "services/runtime/algorithm.h"
-#include "services/runtime/lead_gate.h"
+#include "services/runtime/lead_rule.h"
 #include "services/runtime/node.h"
 
 namespace fogline {
@@ -73,35 +73,9 @@ class StepNode final : public Node {
                              rings_));
   }
 
-  bool MayCompute(std::int64_t step, TimePoint now) override {
-    if constexpr (Traits::kStarts) return gate_->Open(step, now);
-    return true;
-  }
-  void OnGo(const run_t& run, TimePoint now) override {
-    if constexpr (Traits::kStarts) {
-      gate_->OnGo(run, now);
-      Expect(next());
-      Advance(now);
-    }
-  }
-  TimePoint PollMore(TimePoint now) override {
-    if constexpr (Traits::kStarts) {
-      if (Running() && gate_->started()) Expect(next());
-      if (Running() && gate_->Finished(next()) && AllInputsOf(next() - 1)) {
-        SetState(status_t::DONE);
-      }
-      if (const auto step = gate_->WantsRecorded(next(), now)) {
-        Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
-      }
-      return gate_->NextPoll(next(), now);
-    }
-    return now + kHeartbeat;
-  }
-  bool AllInputsOf(std::int64_t step) {
-    for (const Input& input : inputs()) {
-      if (!input.ring.Has(step)) return false;
-    }
-    return true;
+  std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override {
+    if constexpr (Traits::kStarts) return std::make_unique<LeadRule>(*this, *gate_);
+    return Node::MakeRule(scenario);
   }
 
   void Publish(std::int64_t step, const typename Traits::Output& output) {
@@ -112,7 +86,7 @@ class StepNode final : public Node {
           [&]<std::size_t I> { PublishOne(step, std::get<I>(output)); });
     }
     if constexpr (Traits::kStarts) {
-      if (std::get<truth_t>(output).last) gate_->SetFinal(step);
+      if (std::get<truth_t>(output).last) rule().SetFinal(step);
     }
   }
 
