@@ -37,6 +37,12 @@ class FailsafeArbitrator {
   /// the instance of this role before this one was.
   void DemandMinimalRisk() { demanded_ = true; }
 
+  /// What it does instead of its regular work, "" if it does that.
+  std::string_view fallback() const { return FallbackText(decision_); }
+  /// Cars that are in a minimal risk manoeuvre, bits of status_t.
+  std::int8_t minimal_risk() const {
+    return minimal_risk_.begun() ? status_t::HOST : std::int8_t{0};
+  }
   /// Which row of the table the last step took.
   Decision decision() const { return decision_; }
   /// The host stands in the minimal risk manoeuvre.

@@ -166,6 +166,7 @@ void Node::OnRun(Bytes bytes) {
   bound_ = true;
   runner_heard_ = Clock::now();
   progress_ = std::max(progress_, run.progress);
+  minimal_risk_ = run.minimal_risk;
   if (rule_) rule_->OnProgress();
   if (run.phase == run_t::STOP) {
     Leave();

@@ -100,6 +100,8 @@ class Node {
   /// Whether the run is one in real time, and its speed. Known when Configure() is called.
   bool realtime() const { return realtime_; }
   double pace() const { return pace_; }
+  /// In real time: cars in a minimal risk manoeuvre, as the runner knows; bits of status_t.
+  std::int8_t minimal_risk() const { return minimal_risk_; }
   std::vector<Input>& inputs() { return inputs_; }
   std::int64_t next() const { return next_; }
   /// Last step that the world has begun, as far as the runner knows; -1 before the first.
@@ -142,6 +144,7 @@ class Node {
   std::unique_ptr<FireRule> rule_;  // since the node has joined
   bool realtime_ = false;
   double pace_ = 0;
+  std::int8_t minimal_risk_ = 0;
   std::int64_t next_ = 0;  // step to compute next
   std::int64_t progress_ = -1;
   bool left_ = false;

@@ -55,6 +55,15 @@ class VehicleFallback {
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
+  /// A process before this one was in the manoeuvre: so is this one, from now on.
+  void ResumeHost(const truth_t& now) {
+    host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
+  }
+  void ResumeFollower(const truth_t& now) {
+    if (now.num_followers < 1) return;
+    follower_.BeginMinimalRisk(now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+  }
+
   /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
   /// yet, with the authorities and the mode that this means.
   const arbitration_t& host() const { return host_out_; }
