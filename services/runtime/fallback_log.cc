@@ -77,8 +77,8 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   return &change;
 }
 
-// The role knows which of its own inputs comes first; the others say what silences them. The world is
-// silenced by nothing, the arbitrator by nothing but the world.
+// The role knows which of its own inputs comes first; the others say what silences them. The world
+// is silenced by nothing, the arbitrator by nothing but the world.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

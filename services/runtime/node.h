@@ -42,6 +42,8 @@ class Node {
   /// Why the role failed, "" if it did not.
   const std::string& error() const { return status_.error; }
   Role role() const { return role_; }
+  /// Whether the run is one in real time. Known when Configure() is called.
+  bool realtime() const { return realtime_; }
 
   /// Ends the part in the run for a reason from outside (a signal): what is there is kept.
   void Leave();
@@ -97,8 +99,7 @@ class Node {
   Bus& bus() { return bus_; }
   /// @pre the node has joined
   FireRule& rule() { return *rule_; }
-  /// Whether the run is one in real time, and its speed. Known when Configure() is called.
-  bool realtime() const { return realtime_; }
+  /// Simulated seconds per second, 0 if there is no limit.
   double pace() const { return pace_; }
   /// In real time: cars in a minimal risk manoeuvre, as the runner knows; bits of status_t.
   std::int8_t minimal_risk() const { return minimal_risk_; }
