@@ -24,8 +24,14 @@ function(lcm_add_types target dir)
     COMMAND sed -i -E
             "s/if[(](__[a-z_]+_len(__)?) > maxlen - pos[)]/if(\\1 < 1 || \\1 > maxlen - pos)/"
             ${headers}
+    # And it leaves an array as it was when the message has none: the next reader of the same object
+    # would find the elements of an earlier message.
+    COMMAND sed -i -z -E
+            "s/if[(](this->[a-z0-9_]+)[)] [{]\\n( *if [(][^\\n]*\\n *)(this->[a-z0-9_]+)[.]resize/\\3.clear()$<SEMICOLON>\\n    if(\\1) {\\n\\2\\3.resize/g"
+            ${headers}
     COMMAND grep -q "_len__ < 1" "${out}/cpp/fogline/resend_t.hpp"
     COMMAND grep -q "__elem_len < 1" "${out}/cpp/fogline/status_t.hpp"
+    COMMAND grep -q "follower_gap_m.clear()" "${out}/cpp/fogline/truth_t.hpp"
     COMMAND grep -q "num_followers < 0" "${out}/cpp/fogline/truth_t.hpp"
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"

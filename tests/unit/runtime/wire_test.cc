@@ -58,6 +58,21 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   }
 }
 
+// One object takes all messages of a channel.
+TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
+  follower_command_t command{};
+  command.num_followers = 1;
+  command.acceleration_mps2 = {std::numeric_limits<double>::quiet_NaN()};
+  command.safe_distance_m = {33};
+  const follower_command_t nobody{};
+  std::vector<std::uint8_t> bytes;
+  Encode(nobody, bytes);
+  ASSERT_TRUE(Decode(bytes, command));
+  EXPECT_TRUE(command.acceleration_mps2.empty());
+  EXPECT_TRUE(command.safe_distance_m.empty());
+  EXPECT_EQ(FirstNonFiniteField(command), "");
+}
+
 TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
   status_t status{};
   status.num_inputs = 2;
