@@ -20,12 +20,20 @@ function(lcm_add_types target dir)
             "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
             ${headers}
     # Nor does it expect a string without its terminator, length 0 or less, or a zero elsewhere than
-    # at its end: what it would encode again is another message.
+    # at its end: what it would encode again is another message. (In an array the length is named
+    # without the last two underscores.)
     COMMAND sed -i -E
-            "s/if[(](__[a-z_]+_len__) > maxlen - pos[)] return -1$<SEMICOLON>/if(\\1 < 1 || \\1 > maxlen - pos) return -1$<SEMICOLON>\\n    if(memchr((const char*)buf + offset + pos, 0, \\1) != (const char*)buf + offset + pos + \\1 - 1) return -1$<SEMICOLON>/"
+            "s/if[(](__[a-z_]+_len(__)?) > maxlen - pos[)] return -1$<SEMICOLON>/if(\\1 < 1 || \\1 > maxlen - pos) return -1$<SEMICOLON>\\n    if(memchr((const char*)buf + offset + pos, 0, \\1) != (const char*)buf + offset + pos + \\1 - 1) return -1$<SEMICOLON>/"
+            ${headers}
+    # And it leaves an array as it was when the message has none: the next reader of the same object
+    # would find the elements of an earlier message.
+    COMMAND sed -i -z -E
+            "s/if[(](this->[a-z0-9_]+)[)] [{]\\n( *if [(][^\\n]*\\n *)(this->[a-z0-9_]+)[.]resize/\\3.clear()$<SEMICOLON>\\n    if(\\1) {\\n\\2\\3.resize/g"
             ${headers}
     COMMAND grep -q "_len__ < 1" "${out}/cpp/fogline/resend_t.hpp"
     COMMAND grep -q "memchr" "${out}/cpp/fogline/resend_t.hpp"
+    COMMAND grep -q "__elem_len < 1" "${out}/cpp/fogline/status_t.hpp"
+    COMMAND grep -q "follower_gap_m.clear()" "${out}/cpp/fogline/truth_t.hpp"
     COMMAND grep -q "num_followers < 0" "${out}/cpp/fogline/truth_t.hpp"
     DEPENDS ${lcm_files}
     COMMENT "Generating C++ message types"

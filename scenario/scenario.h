@@ -8,6 +8,7 @@
 
 #include "scenario/control.h"
 #include "scenario/field.h"
+#include "scenario/realtime.h"
 #include "scenario/road.h"
 #include "scenario/sensing.h"
 
@@ -62,6 +63,8 @@ struct Scenario {
   DriverSection driver;
   ArbitratorSection arbitrator;
   AccSection follower;
+  HealthSection health;
+  MinimalRiskSection minimal_risk;
   MeasuresSection measures;
   std::vector<PublishedRow> published;
 
@@ -98,6 +101,9 @@ struct Scenario {
     visit.Section("driver", self.driver, "The human driver of the host.");
     visit.Section("arbitrator", self.arbitrator, "Who drives the host.");
     visit.Section("follower", self.follower, "ACC of the following car.");
+    visit.Section("health", self.health, "Real time: when an input counts as stale or lost.");
+    visit.Section("minimal_risk", self.minimal_risk,
+                  "Real time: how a car stops that nobody drives any more.");
     visit.Section("measures", self.measures, "How runs are judged.");
     visit.List("published", self.published,
                {.min_items = 0,

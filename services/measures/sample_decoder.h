@@ -1,4 +1,5 @@
-// From the encoded messages of a step to its Sample.
+// From the encoded messages of a step to its Sample. In a log of a run in real time messages may be
+// missing: the values that they would have are not there (NaN).
 #pragma once
 
 #include "services/measures/sample.h"
@@ -12,9 +13,39 @@ class SampleDecoder {
   /// @return the sample, valid until the next call; nullptr if a message does not decode
   template <class Messages>
   const Sample* Decode(const Messages& messages) {
-    const auto take = [&messages]<class M>(M& message) {
+    return Decode(messages, [&messages]<class M>(M& message) {
       return fogline::Decode(messages[IndexOf<M>()], message);
-    };
+    });
+  }
+
+  /// The same for a step in which messages may be missing; nullptr without TRUTH, too.
+  template <class Messages>
+  const Sample* DecodeWithHoles(const Messages& messages) {
+    if (messages[IndexOf<truth_t>()].empty()) return nullptr;
+    const bool decoded = Decode(messages, [&messages]<class M>(M& message) {
+      const auto& bytes = messages[IndexOf<M>()];
+      if (bytes.empty()) message = Missing<M>();
+      return bytes.empty() || fogline::Decode(bytes, message);
+    });
+    return decoded ? &sample_ : nullptr;
+  }
+
+ private:
+  /// A message all of whose numbers are NaN, and that claims nothing.
+  template <class M>
+  static M Missing() {
+    M message{};
+    VisitFields(message, [](std::string_view, const auto& value) {
+      using V = std::decay_t<decltype(value)>;
+      if constexpr (std::is_same_v<V, double>) {
+        const_cast<double&>(value) = std::numeric_limits<double>::quiet_NaN();
+      }
+    });
+    return message;
+  }
+
+  template <class Messages, class Take>
+  const Sample* Decode(const Messages& /*messages*/, const Take& take) {
     if (!(take(truth_) && take(radar_) && take(lidar_) && take(track_) && take(acc_) &&
           take(driver_) && take(host_) && take(follower_))) {
       return nullptr;
@@ -23,7 +54,6 @@ class SampleDecoder {
     return &sample_;
   }
 
- private:
   truth_t truth_{};
   radar_t radar_{};
   lidar_t lidar_{};

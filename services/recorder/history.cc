@@ -48,10 +48,13 @@ class Follower {
       throw InputError(
           fmt::format("{}: the log is that of run {}, not of {}", file_.string(), id, run_id_));
     }
-    if (parts_.Complete()) return TakeStepEvent(event, end);
+    if (parts_.Complete()) {
+      return realtime_ ? TakeRealtimeEvent(event, end) : TakeStepEvent(event, end);
+    }
     run_t run{};
     if (event.channel != ChannelOf<run_t>().name || !Decode(event.data, run)) return false;
     if (!parts_.Add(run)) return false;
+    realtime_ = run.realtime != 0;
     if (parts_.Complete()) {
       remains_.begin = static_cast<std::int64_t>(end);
       remains_.head = {.bytes = remains_.begin, .events = events_};
@@ -79,8 +82,36 @@ class Follower {
     return true;
   }
 
+  /// In real time steps may lack messages, and STATUS stands between them: a step is known to end
+  /// where a later one begins, or when it has all its messages.
+  bool TakeRealtimeEvent(const Event& event, std::size_t end) {
+    const auto begin = static_cast<std::int64_t>(end - SizeInFile(event));
+    const std::int64_t step = ReadInt64(event.data, kStepOffset);
+    const auto open = static_cast<std::int64_t>(remains_.ends.size());
+    if (event.channel == ChannelOf<status_t>().name) return true;
+    if (std::ranges::find(kStepNames, event.channel) == kStepNames.end()) return false;
+    if (step < open || step > open + kLongestGap) return false;
+    if (step > open) {
+      next_ = 0;
+      remains_.ends.insert(remains_.ends.end(), static_cast<std::size_t>(step - open), begin);
+      remains_.head = {.bytes = begin, .events = events_ - 1};
+    }
+    if (event.channel == ChannelOf<truth_t>().name && Decode(event.data, truth_)) {
+      remains_.final = truth_.last;
+    }
+    if (++next_ < kStepChannels) return true;
+    next_ = 0;
+    remains_.ends.push_back(static_cast<std::int64_t>(end));
+    remains_.head = {.bytes = static_cast<std::int64_t>(end), .events = events_};
+    return true;
+  }
+
+  // More steps than a run can lose in a row before it has ended for another reason.
+  static constexpr std::int64_t kLongestGap = 1'000'000;
+
   std::filesystem::path file_;
   std::int64_t run_id_;
+  bool realtime_ = false;
   ScenarioParts parts_;
   Remains remains_;
   std::int64_t events_ = 0;

@@ -1,10 +1,12 @@
 #include "services/recorder/recorder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/recorder/record_rule.h"
 
 namespace fogline {
 namespace {
@@ -28,13 +30,22 @@ Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::file
 void Recorder::Configure(const Scenario& scenario) {
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
   history_->Reserve(scenario.steps);
+  step_us_ = std::llround(scenario.step_s * 1e6);
+}
+
+std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
+  if (!realtime()) return Node::MakeRule(scenario);
+  auto rule = std::make_unique<RecordRule>(*this, scenario, pace(), run_id());
+  recording_ = rule.get();
+  return rule;
 }
 
 bool Recorder::Resume() {
   const std::optional<Remains> remains = ReadRemains(file_, run_id(), parts().hash());
   const auto steps = remains ? static_cast<std::int64_t>(remains->ends.size()) : 0;
   // The world has begun a step only after the one kMaxAhead before it was on disk.
-  if (steps <= progress() - kMaxAhead) {
+  // In real time it waits for nobody, and what is missing is a hole.
+  if (!realtime() && steps <= progress() - kMaxAhead) {
     throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
                                  steps, progress() - kMaxAhead + 1));
   }
@@ -53,7 +64,11 @@ bool Recorder::Resume() {
 void Recorder::WriteScenario() {
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
-    const run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
+    run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
+    if (realtime()) {
+      run.realtime = 1;
+      run.pace = pace();
+    }
     Encode(run, buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
@@ -91,8 +106,14 @@ void Recorder::Write(std::int64_t step) {
   }
 }
 
+void Recorder::WriteStatus(std::int64_t step) {
+  recording_->TakeStatus(
+      step, [&](Bytes bytes) { log_->Write(ChannelOf<status_t>().name, step * step_us_, bytes); });
+}
+
 void Recorder::Compute(std::int64_t step) {
   Write(step);
+  if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -102,11 +123,12 @@ void Recorder::Compute(std::int64_t step) {
 }
 
 void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
-  ExpectAsked(step);
+  rule().Expect(std::min(step, next() + kRingSteps - 1));
   if (next() > step) PublishStatus();
 }
 
 void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now) {
+  if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
   // Newer ones are in the ring of their producer. All that is kMaxAhead old is acknowledged, so it
   // can be read.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
@@ -116,6 +138,24 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
   // Reading is work, too: none of it for nothing.
   if (steps.count <= 0 || !recorded || !budget_.Has(now)) return;
   history_->ForEach(channel, steps, [&](Bytes bytes) { Answer(channel, bytes, now); });
+}
+
+// In real time nobody computes old steps again. A world that has been started again wants to know
+// where the cars are: it is the only one that asks for TRUTH, and its producer is dead.
+void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint now) {
+  if (channel != ChannelOf<truth_t>().name) return;
+  const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
+  bool answered = false;
+  for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {
+    if (!truth->ring.Has(step)) continue;
+    Answer(channel, truth->ring.Get(step), now);
+    answered = true;
+  }
+  // It may have been started again itself.
+  if (answered || history_->steps() == 0) return;
+  log_->Flush();
+  history_->ForEach(channel, {.first = history_->steps() - 1, .count = 1},
+                    [&](Bytes bytes) { Answer(channel, bytes, now); });
 }
 
 void Recorder::BeforeStatus() {
@@ -135,6 +175,7 @@ void Recorder::OnLeave() {
   for (const Input& input : inputs()) newest = std::max(newest, input.ring.newest());
   try {
     for (std::int64_t step = next(); step <= newest; ++step) Write(step);
+    if (recording_ != nullptr) WriteStatus(std::max(newest, next() - 1));
   } catch (const std::runtime_error&) {
     // The disk is full. If that matters to the run it has been said; these steps do not.
   }

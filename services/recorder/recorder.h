@@ -14,6 +14,8 @@
 
 namespace fogline {
 
+class RecordRule;
+
 class Recorder final : public Node {
  public:
   /// What becomes of a file that exists.
@@ -25,6 +27,7 @@ class Recorder final : public Node {
 
  private:
   void Configure(const Scenario& scenario) override;
+  std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override;
   RefusalCounter Wrong(std::size_t input, Arrival& arrival) override;
   RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
   void Compute(std::int64_t step) override;
@@ -37,12 +40,16 @@ class Recorder final : public Node {
   bool Resume();
   void WriteScenario();
   void Write(std::int64_t step);
+  void WriteStatus(std::int64_t step);
+  void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
 
   const std::filesystem::path file_;
   const Existing existing_;
   std::optional<EventLogWriter> log_;
   std::optional<History> history_;
   std::int64_t final_ = -1;  // step after which the run ends, once known
+  std::int64_t step_us_ = 0;
+  RecordRule* recording_ = nullptr;  // the rule, in real time
 };
 
 }  // namespace fogline

@@ -1,6 +1,7 @@
 #include "services/recorder/run_log.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/core.h>
@@ -29,13 +30,14 @@ class RunLogReader::Assembler {
     while (!Ready()) {
       const auto event = reader_.Next();
       if (!event) {
+        ended_ = true;
+        if (Ready()) break;
         if (!finished_) Finish();
         return nullptr;
       }
       Take(*event);
     }
-    current_ = pending_.begin()->second.messages;
-    pending_.erase(pending_.begin());
+    current_ = TakeStep();
     if (Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
     ++run_.steps;
     return &current_;
@@ -44,21 +46,39 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
+  // In real time, steps by which a message may stand behind where it belongs.
+  static constexpr std::int64_t kLongestOverdue = 64;
+
   struct Pending {
     StepMessages messages{};
     std::size_t count = 0;
   };
 
-  /// The next step is complete.
+  /// The next step is complete, or in real time as complete as it will be.
   bool Ready() const {
-    return !pending_.empty() && pending_.begin()->first == run_.steps &&
-           pending_.begin()->second.count == ChannelsPerStep();
+    if (pending_.empty()) return false;
+    const auto& [step, next] = *pending_.begin();
+    if (step == run_.steps && next.count == ChannelsPerStep()) return true;
+    return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
+  }
+
+  /// Messages of the next step. In real time there may be none at all.
+  StepMessages TakeStep() {
+    const auto next = pending_.begin();
+    const bool there = next->first == run_.steps;
+    const std::size_t count = there ? next->second.count : 0;
+    if (realtime_) realtime_->AddMissed(static_cast<std::int64_t>(ChannelsPerStep() - count));
+    if (!there) return {};
+    const StepMessages messages = next->second.messages;
+    pending_.erase(next);
+    return messages;
   }
 
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
     if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
+    if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
     const Bytes data = Payload(event.data);
     if (parts_.empty() || data.empty() || ReadInt64(data, kRunIdOffset) != run_.run_id) {
@@ -67,6 +87,7 @@ class RunLogReader::Assembler {
     }
     const std::int64_t step = ReadInt64(data, kStepOffset);
     if (step < run_.steps) return;  // a repetition
+    if (realtime_ && step >= steps_) return;
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
       if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], data)) {
@@ -92,11 +113,15 @@ class RunLogReader::Assembler {
     run_.scenario_hash = parts_.hash();
     run_.scenario = ParseScenario(run_.scenario_text, file_.string());
     run_.complete = last_ && pending_.empty() && conflict_.empty();
+    if (realtime_) run_.realtime = realtime_->Result();
     run_.note = reader_.torn();
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
     };
     if (!last_) note(fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps));
+    if (run_.realtime && run_.realtime->missed_messages > 0) {
+      note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
+    }
     if (!pending_.empty()) {
       note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
     }
@@ -123,7 +148,23 @@ class RunLogReader::Assembler {
       run_.run_id = run.header.run_id;
       sealed_ = is_sealed;
     }
-    if (run.header.run_id == run_.run_id && !parts_.Add(run)) ++foreign_;
+    if (run.header.run_id != run_.run_id) return;
+    const bool known = parts_.Complete();
+    if (!parts_.Add(run)) ++foreign_;
+    if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
+  }
+
+  void ExpectRealtime(const run_t& run) {
+    const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
+    steps_ = scenario.steps;
+    realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6));
+  }
+
+  void TakeStatus(Bytes event) {
+    const Bytes data = Payload(event);
+    status_t status{};
+    if (!realtime_ || !Decode(data, status) || status.header.run_id != run_.run_id) return;
+    realtime_->Add(status);
   }
 
   /// lcm-logger writes signed messages as they come, with their signatures. Nobody can verify them
@@ -156,6 +197,9 @@ class RunLogReader::Assembler {
   truth_t truth_{};
   bool last_ = false;
   bool finished_ = false;
+  bool ended_ = false;  // no further event
+  std::optional<RealtimeAccumulator> realtime_;
+  std::int64_t steps_ = 0;  // at most, in real time
 };
 
 RunLogReader::RunLogReader(const std::filesystem::path& file)

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "scenario/scenario.h"
 #include "services/recorder/event_log.h"
+#include "services/recorder/realtime_figures.h"
 
 namespace fogline {
 
@@ -22,8 +24,10 @@ struct RunLog {
   std::string scenario_text;
   std::string scenario_hash;
   std::int64_t steps = 0;  // complete ones
-  bool complete = false;   // the last step says that it is the last, and none is missing
-  std::string note;        // why it is not complete, or what was ignored; "" if nothing
+  // The last step says that it is the last; in lockstep nothing is missing.
+  bool complete = false;
+  std::string note;  // why it is not complete, or what was ignored; "" if nothing
+  std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
 /// Reads the run of a log that the recorder or lcm-logger wrote, step by step, in whatever order
@@ -35,6 +39,7 @@ class RunLogReader {
   ~RunLogReader();
 
   /// The next complete step, from 0 on; the bytes live as long as the reader. nullptr at the end.
+  /// In real time the next step, complete or not.
   /// @throws InputError at the end, when the log has no scenario of a run
   const StepMessages* Next();
 

@@ -89,7 +89,7 @@ void Conductor::AnnounceWhenDue(TimePoint now) {
   // until the world goes.
   const auto& world = member(Role::kWorld).status;
   const bool going = ready_ && world && world->state != status_t::READY;
-  Announce(ready_ ? run_t::GO : run_t::PREPARE, 0);
+  Announce(0);
   announce_at_ = now + (going ? kRepeatEvery : kAnnounceEvery);
 }
 
@@ -179,6 +179,12 @@ void Conductor::OnStatus(const status_t& heard) {
   progress_ = std::max(progress_, status.header.step);
   member.status = status;
   member.heard = now;
+  if (const auto cars = static_cast<std::int8_t>(minimal_risk_ | status.minimal_risk);
+      cars != minimal_risk_) {
+    minimal_risk_ = cars;
+    announce_at_ = now;
+  }
+  if (on_status_) on_status_(status);
   if (member.status->state == status_t::FAILED) {
     return Fail(fmt::format("{}: {}", member.status->role, member.status->error));
   }
@@ -245,13 +251,21 @@ void Conductor::OnResend(Bytes bytes) {
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
   for (auto i = static_cast<std::size_t>(resend.header.step); i < parts_.size(); ++i) {
-    Announce(ready_ ? run_t::GO : run_t::PREPARE, i);
+    Announce(i);
   }
+}
+
+void Conductor::Announce(std::size_t part) {
+  // A run in real time that goes waits for nobody: who joins late joins a run that goes.
+  const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
+  Announce(go ? run_t::GO : run_t::PREPARE, part);
 }
 
 void Conductor::Announce(std::int8_t phase, std::size_t part) {
   run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
   run.progress = progress_;
+  run.realtime = options_.realtime;
+  run.minimal_risk = minimal_risk_;
   Encode(run, buffer_);
   bus_.Publish(ChannelOf<run_t>().name, buffer_);
 }

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/graph.h"
@@ -22,6 +24,7 @@ struct ConductorOptions {
   std::int64_t run_id = 0;
   std::string scenario_text;                  // the effective scenario
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
+  bool realtime = false;                      // at that pace, whoever keeps up
   Duration join_limit{};                      // for the roles to be ready; 0: no limit
   Duration stall_limit = milliseconds(4000);  // without a completed step of any role
   std::vector<Role> external;                 // roles that somebody else starts, and starts again
@@ -62,6 +65,10 @@ class Conductor {
   void Bury(Role role, std::int32_t pid, TimePoint now);
   /// The role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
+  /// Calls `handler` for every STATUS that counts, in the order of its sender.
+  void OnEveryStatus(std::function<void(const status_t&)> handler) {
+    on_status_ = std::move(handler);
+  }
   /// Whether any instance of the role has been heard of.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
@@ -86,6 +93,7 @@ class Conductor {
   /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
   bool Admit(Role role, const status_t& status, TimePoint now);
   void AnnounceWhenDue(TimePoint now);
+  void Announce(std::size_t part);
   void Announce(std::int8_t phase, std::size_t part);
   /// The one line that says who holds up the run.
   std::string Culprit(TimePoint now) const;
@@ -99,7 +107,9 @@ class Conductor {
   status_t own_{};  // what the runner itself has refused
   std::string host_;
   Phase phase_ = Phase::kJoining;
-  bool ready_ = false;  // every role, when last looked at
+  bool ready_ = false;            // every role, when last looked at
+  std::int8_t minimal_risk_ = 0;  // cars, as in status_t
+  std::function<void(const status_t&)> on_status_;
   std::string error_;
   TimePoint began_;
   TimePoint announce_at_{};

@@ -10,13 +10,12 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/lockstep_rule.h"
 #include "services/runtime/this_process.h"
 
 namespace fogline {
 namespace {
 
-// Being asked makes a node ask at once, but no more often than this.
-constexpr Duration kMinBetweenAsks = milliseconds(1);
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
 // What went wrong must fit into a STATUS with everything else.
@@ -55,16 +54,21 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   status_.last_heard_step = -1;
 }
 
+Node::~Node() = default;
+
+std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
+  return std::make_unique<LockstepRule>(*this);
+}
+
 TimePoint Node::Poll(TimePoint now) {
   if (left_) return now + kHeartbeat;
   if (status_.state != status_t::WAITING && now - runner_heard_ > kRunnerSilence) {
     Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
     return now + kHeartbeat;
   }
-  TimePoint next = PollMore(now);
+  TimePoint next = now + kHeartbeat;
   if (Running()) {
-    Advance(now);
-    next = std::min(next, Repair(now));
+    next = std::min(next, rule_->Poll(now));
   } else if (status_.state == status_t::WAITING && bound_) {
     if (now >= part_at_) {
       Ask(ChannelOf<run_t>().name, {.first = parts_.FirstMissing(), .count = 1});
@@ -103,15 +107,8 @@ void Node::PublishStatus() {
   BeforeStatus();
   status_.header.run_id = *run_id_;
   status_.scenario_hash = parts_.hash();
-  const Input* missing = patience_.since() ? FirstMissing() : nullptr;
-  if (missing != nullptr) {
-    status_.waiting_for = kChannels[missing->channel].name;
-    status_.last_heard_step = missing->ring.newest();
-    status_.last_heard_ms = status_.last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
-    status_.waiting_ms = Milliseconds(now - *patience_.since());
-  } else {
-    status_.waiting_for.clear();
-  }
+  status_.waiting_for.clear();
+  if (rule_) rule_->WriteStatus(now);
   ++status_.sequence;
   const Bus::Unverified unverified = bus_.TakeUnverified();
   status_.not_signed += unverified.not_signed;
@@ -167,28 +164,33 @@ void Node::OnRun(Bytes bytes) {
   run_id_ = run.header.run_id;
   bound_ = true;
   runner_heard_ = Clock::now();
-  OnProgress(run.progress);
+  progress_ = std::max(progress_, run.progress);
+  minimal_risk_ = run.minimal_risk;
+  if (rule_) rule_->OnProgress();
   if (run.phase == run_t::STOP) {
     Leave();
   } else if (status_.state == status_t::WAITING) {
     if (!parts_.Add(run)) return Refuse(&status_t::malformed);
-    if (parts_.Complete()) Join();
+    if (parts_.Complete()) Join(run);
   } else if (run.phase == run_t::PREPARE && run.header.step == 0) {
     PublishStatus();  // the announcement repeats: somebody has not heard us yet
   }
-  if (run.phase == run_t::GO && Running()) OnGo(run, Clock::now());
+  if (run.phase == run_t::GO && Running()) rule_->OnGo(run, Clock::now());
 }
 
-void Node::Join() {
+void Node::Join(const run_t& run) {
   if (!parts_.HashHolds()) {
     return Fail("the scenario that arrived does not match its hash");
   }
+  realtime_ = run.realtime;
+  pace_ = run.pace;
   try {
-    Configure(ParseScenario(parts_.Text()));
+    const Scenario scenario = ParseScenario(parts_.Text());
+    Configure(scenario);
+    rule_ = MakeRule(scenario);
   } catch (const std::exception& error) {
     return Fail(fmt::format("cannot take part: {}", error.what()));
   }
-  late_ = progress_;
   SetState(status_t::READY);
 }
 
@@ -197,44 +199,41 @@ void Node::StartAt(std::int64_t step) {
   status_.header.step = step - 1;
 }
 
-void Node::OnProgress(std::int64_t progress) {
-  progress_ = std::max(progress_, progress);
-  Expect(progress_);
-  if (progress_ > next_ + kMaxAhead) late_ = progress_;
-}
-
 void Node::OnInput(std::size_t index, Arrival& arrival) {
   if (!Running()) return;
   const Bytes bytes = arrival.bytes();
-  Input& input = inputs_[index];
   if (bytes.size() < kHeaderEnd) return Refuse(&status_t::malformed);
-  if (ReadInt64(bytes, 0) != input.fingerprint) return Refuse(&status_t::wrong_type);
+  if (ReadInt64(bytes, 0) != inputs_[index].fingerprint) return Refuse(&status_t::wrong_type);
   if (ReadInt64(bytes, kRunIdOffset) != *run_id_) return Refuse(&status_t::foreign);
   const std::int64_t step = ReadInt64(bytes, kStepOffset);
-  const std::int64_t needed = std::max<std::int64_t>(0, next_ - lead_);
   if (step < 0) return Refuse(&status_t::out_of_window);
-  switch (input.ring.Classify(step, bytes, needed)) {
+  switch (rule_->Classify(index, step, bytes)) {
     case StepRing::Verdict::kDuplicate:
       ++status_.duplicates;
       return;
     case StepRing::Verdict::kOutOfWindow:
-      // Who catches up hears of steps that are under way elsewhere.
-      if (!CatchingUp() || step > late_ + kRingSteps) Refuse(&status_t::out_of_window);
+      return Refuse(&status_t::out_of_window);
+    case StepRing::Verdict::kElsewhere:
+    case StepRing::Verdict::kLate:
       return;
-    case StepRing::Verdict::kConflict:
+    case StepRing::Verdict::kConflict: {
       if (const RefusalCounter wrong = Wrong(index, arrival)) return Refuse(wrong);
-      Fail(fmt::format("step {}: {} came twice with different contents: is there a second {}?",
-                       step, kChannels[input.channel].name, NameOf(kChannels[input.channel].from)));
-      return;
+      const ChannelInfo& channel = kChannels[inputs_[index].channel];
+      return Fail(
+          fmt::format("step {}: {} came twice with different contents: is there a second {}?",
+                      step, channel.name, NameOf(channel.from)));
+    }
     case StepRing::Verdict::kNew:
-      break;
+      return TakeInput(index, step, arrival);
   }
+}
+
+void Node::TakeInput(std::size_t index, std::int64_t step, Arrival& arrival) {
   if (const RefusalCounter wrong = Accept(index, step, arrival)) return Refuse(wrong);
-  input.ring.Store(step, bytes);
+  Input& input = inputs_[index];
+  input.ring.Store(step, arrival.bytes());
   input.heard = arrival.time();
-  Expect(step + lead_);
-  if (CatchingUp()) patience_.Arrived(arrival.time());
-  Advance(arrival.time());
+  rule_->OnInput(index, step, arrival.time());
 }
 
 void Node::OnResend(Bytes bytes) {
@@ -256,80 +255,22 @@ void Node::OnResend(Bytes bytes) {
     for (std::int64_t k = step; k < step + steps.count; ++k) {
       if (output.ring.Has(k)) Answer(resend.channel, output.ring.Get(k), now);
     }
-    if (step >= next_) {
-      ExpectAsked(step);
-      // Who catches up has asked already.
-      if (!CatchingUp() && now - patience_.asked() >= kMinBetweenAsks) AskForMissing(now);
-    }
+    if (step >= next_) rule_->OnAskedAhead(step, now);
   }
   OnAsked(resend.channel, steps, now);
 }
 
-bool Node::InputsReady(std::int64_t step) const {
-  return step < 0 ||
-         std::ranges::all_of(inputs_, [step](const Input& input) { return input.ring.Has(step); });
-}
-
-const Node::Input* Node::FirstMissing() const {
-  const std::int64_t needed = next_ - lead_;
-  if (needed < 0) return nullptr;
-  for (const Input& input : inputs_) {
-    if (!input.ring.Has(needed)) return &input;
+bool Node::ComputeNow(std::int64_t step) {
+  try {
+    Compute(step);
+  } catch (const std::exception& error) {
+    Fail(error.what());
+    return false;
   }
-  return nullptr;
-}
-
-void Node::Advance(TimePoint now) {
-  while (Running() && InputsReady(next_ - lead_) && MayCompute(next_, now)) {
-    try {
-      Compute(next_);
-    } catch (const std::exception& error) {
-      return Fail(error.what());
-    }
-    status_.header.step = next_;
-    ++next_;
-    patience_.Computed(now);
-    if (status_.state == status_t::READY) SetState(status_t::RUNNING);
-  }
-}
-
-TimePoint Node::Repair(TimePoint now) {
-  if (expected_ < next_ || FirstMissing() == nullptr) return now + kHeartbeat;
-  const TimePoint ask_at = patience_.Wait(now);
-  if (CatchingUp() && next_ - lead_ > asked_) {  // nothing of it can be on its way
-    AskForMissing(now);
-    patience_.AskedForMany(now);
-  } else if (now >= ask_at) {
-    AskForMissing(now);
-    patience_.AskedInVain(now);
-  }
-  return patience_.Wait(now);
-}
-
-void Node::AskForMissing(TimePoint now) {
-  const std::int64_t needed = next_ - lead_;
-  if (needed < 0) return;
-  patience_.Asked(now);
-  // As far as is known to be under way, and as the rings can hold.
-  asked_ = std::clamp(expected_ - lead_, needed, needed + kRingSteps - 2);
-  for (const Input& input : inputs_) {
-    const StepRange steps = Lacking(input, needed, asked_);
-    if (steps.count == 0) continue;
-    Ask(kChannels[input.channel].name, steps);
-    ++status_.repairs_asked;
-  }
-}
-
-StepRange Node::Lacking(const Input& input, std::int64_t first, std::int64_t last) const {
-  if (CatchingUp()) {  // old steps come only to those who ask
-    while (first <= last && input.ring.Has(first)) ++first;
-    while (first <= last && input.ring.Has(last)) --last;
-    return {.first = first, .count = last - first + 1};
-  }
-  // What comes after a gap may be on its way.
-  std::int64_t count = 0;
-  while (first + count <= last && !input.ring.Has(first + count)) ++count;
-  return {.first = first, .count = count};
+  status_.header.step = step;
+  next_ = step + 1;
+  if (status_.state == status_t::READY) SetState(status_t::RUNNING);
+  return true;
 }
 
 }  // namespace fogline

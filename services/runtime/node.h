@@ -1,21 +1,12 @@
-// One role's part in a run: joining, lockstep, repair and status. What the role computes is added
-// by StepNode (any Algorithm) and by the recorder; this class knows bytes, steps and channels only.
-//
-// Lockstep. A node keeps a ring of messages per input and computes step k exactly once, when all
-// its inputs for step k are there, in whatever order they came. It encodes its outputs once and
-// keeps the bytes. Nothing is ever sent twice on suspicion: who misses an input asks for it
-// (RESEND), and who is asked for what he cannot compute yet asks further up. So any loss below 100
-// % only costs time.
-//
-// Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
-// computes everything from step 0 on again, from inputs for which it asks many steps at a time. Old
-// ones come from the recorder, the last ones from their producers. It publishes only what the
-// recorder does not answer for.
+// One role's part in a run: joining, taking inputs, publishing, status. What the role computes is
+// added by StepNode (any Algorithm) and by the recorder, and when it computes by a FireRule
+// (lockstep or real time); this class knows bytes, steps and channels only.
 //
 // Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,17 +16,18 @@
 #include "services/runtime/answer_budget.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
-#include "services/runtime/patience.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/step_ring.h"
 
 namespace fogline {
 
+class FireRule;
+
 class Node {
  public:
   /// @param run_id take part in this run only; without it, in the first that is announced
   Node(Bus& bus, Role role, std::optional<std::int64_t> run_id);
-  virtual ~Node() = default;
+  virtual ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
@@ -50,6 +42,8 @@ class Node {
   /// Why the role failed, "" if it did not.
   const std::string& error() const { return status_.error; }
   Role role() const { return role_; }
+  /// Whether the run is one in real time. Known when Configure() is called.
+  bool realtime() const { return realtime_; }
 
   /// Ends the part in the run for a reason from outside (a signal): what is there is kept.
   void Leave();
@@ -77,12 +71,8 @@ class Node {
   virtual RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Computes a step; all inputs are there. Calls Emit() for every output.
   virtual void Compute(std::int64_t step) = 0;
-  /// Whether the step may be computed now although its inputs are there.
-  virtual bool MayCompute(std::int64_t /*step*/, TimePoint /*now*/) { return true; }
-  /// Phase of the run other than PREPARE and STOP.
-  virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
-  /// More to do in Poll(); returns when to be called again.
-  virtual TimePoint PollMore(TimePoint now) { return now + kHeartbeat; }
+  /// The rule by which steps are computed from now on; Configure() has succeeded.
+  virtual std::unique_ptr<FireRule> MakeRule(const Scenario& scenario);
   /// Called before every STATUS: what it says must be true by then.
   virtual void BeforeStatus() {}
   /// Called once when the node leaves.
@@ -103,16 +93,16 @@ class Node {
   void Ask(std::string_view channel, StepRange steps);
   /// Publishes again what somebody has asked for, unless too much was asked for lately.
   void Answer(std::string_view channel, Bytes bytes, TimePoint now);
-  /// Computes every step that can be computed.
-  void Advance(TimePoint now);
-  /// Says that the next step is known to be under way.
-  void Expect(std::int64_t step) { expected_ = std::max(expected_, step); }
-  /// The same on the word of one who asks; what he may be wrong about is bounded.
-  void ExpectAsked(std::int64_t step) { Expect(std::min(step, next_ + kRingSteps - 1)); }
   /// The steps before this one are done, by a predecessor. Call it in Configure().
   void StartAt(std::int64_t step);
 
   Bus& bus() { return bus_; }
+  /// @pre the node has joined
+  FireRule& rule() { return *rule_; }
+  /// Simulated seconds per second, 0 if there is no limit.
+  double pace() const { return pace_; }
+  /// In real time: cars in a minimal risk manoeuvre, as the runner knows; bits of status_t.
+  std::int8_t minimal_risk() const { return minimal_risk_; }
   std::vector<Input>& inputs() { return inputs_; }
   std::int64_t next() const { return next_; }
   /// Last step that the world has begun, as far as the runner knows; -1 before the first.
@@ -139,17 +129,11 @@ class Node {
   /// Counts a message that is not taken.
   void Refuse(RefusalCounter kind) { ++(status_.*kind); }
   void OnResend(Bytes bytes);
-  void Join();
-  bool InputsReady(std::int64_t step) const;
-  /// First input that the next step waits for, or nullptr.
-  const Input* FirstMissing() const;
-  TimePoint Repair(TimePoint now);
-  void AskForMissing(TimePoint now);
-  /// Steps from `first` to `last` that an input lacks and that should be asked for together.
-  StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
-  /// The next step is older than what was under way when this node joined.
-  bool CatchingUp() const { return next_ <= late_; }
-  void OnProgress(std::int64_t progress);
+  void Join(const run_t& run);
+  void TakeInput(std::size_t index, std::int64_t step, Arrival& arrival);
+  bool ComputeNow(std::int64_t step);
+
+  friend class FireRule;
 
   Bus& bus_;
   const Role role_;
@@ -158,16 +142,16 @@ class Node {
   ScenarioParts parts_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
-  std::int64_t next_ = 0;       // step to compute next
-  std::int64_t expected_ = -1;  // highest step that is known to be under way
+  std::unique_ptr<FireRule> rule_;  // since the node has joined
+  bool realtime_ = false;
+  double pace_ = 0;
+  std::int8_t minimal_risk_ = 0;
+  std::int64_t next_ = 0;  // step to compute next
   std::int64_t progress_ = -1;
-  std::int64_t late_ = -1;   // last step to catch up with
-  std::int64_t asked_ = -1;  // last step that was asked for
   bool left_ = false;
   status_t status_{};
   std::vector<std::uint8_t> buffer_;
 
-  Patience patience_;
   TimePoint part_at_{};  // when to ask for a part of the scenario
   TimePoint status_at_{};
   TimePoint use_at_{};

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/this_process.h"
 #include "services/runtime/traffic_options.h"
 #include "services/runtime/version.h"
 
@@ -24,8 +25,13 @@ void WatchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+// In real time the clock of the run comes first, then everybody else, then the rest of the machine.
+constexpr int kWorldPriority = 2;
+constexpr int kPriority = 1;
+
 int TakePart(Bus& bus, Node& node) {
   std::string trouble;
+  bool preferred = false;
   while (!node.left()) {
     if (trouble.empty() && node.Waits()) {
       trouble = SignatureTrouble(bus.unverified());
@@ -34,6 +40,10 @@ int TakePart(Bus& bus, Node& node) {
     if (interrupted != 0) {
       node.Leave();
       return kInterrupted;
+    }
+    if (node.realtime() && !preferred) {
+      preferred = true;  // or not: then it keeps time as well as the machine lets it
+      RunBeforeOthers(node.role() == Role::kWorld ? kWorldPriority : kPriority);
     }
     const TimePoint now = Clock::now();
     bus.Wait(node.Poll(now) - now);

@@ -23,12 +23,12 @@ using NodeFactory =
 int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                const std::function<void(CLI::App&)>& extend = {});
 
-/// The same for an algorithm.
-template <class Algorithm>
+/// The same for an algorithm, and what stands in for it in real time (step_node.h).
+template <class Algorithm, class Failsafe = void>
 int RunService(int argc, char** argv) {
   return RunProcess(argc, argv, AlgorithmTraits<Algorithm>::kRole,
                     [](Bus& bus, std::optional<std::int64_t> run_id) {
-                      return std::make_unique<StepNode<Algorithm>>(bus, run_id);
+                      return std::make_unique<StepNode<Algorithm, Failsafe>>(bus, run_id);
                     });
 }
 

@@ -1,6 +1,11 @@
 // An algorithm as a node: its typed inputs and outputs around the bytes of Node.
+//
+// Two roles go on in real time when inputs fail, and have an algorithm for that, Failsafe, which
+// takes each input as a Heard<M>: the role that begins the steps (the world) and one that decides
+// in every step (the arbitrator). The others leave out a step that lacks an input.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <stdexcept>
@@ -12,12 +17,15 @@
 #include <fmt/core.h>
 
 #include "services/runtime/algorithm.h"
-#include "services/runtime/lead_gate.h"
+#include "services/runtime/deadline_rule.h"
+#include "services/runtime/lead_rule.h"
 #include "services/runtime/node.h"
+#include "services/runtime/tick_rule.h"
 
 namespace fogline {
 
-template <class Algorithm>
+/// @tparam Failsafe what stands in for the algorithm in real time; void: the algorithm itself
+template <class Algorithm, class Failsafe = void>
 class StepNode final : public Node {
  public:
   using Traits = AlgorithmTraits<Algorithm>;
@@ -37,9 +45,15 @@ class StepNode final : public Node {
     using Type = std::tuple<std::array<M, kRingSteps>...>;
   };
   using InputRings = typename Rings<typename Traits::Inputs>::Type;
+  static constexpr bool kFailsafe = !std::is_void_v<Failsafe>;
+  struct Nothing {};
+  using InRealtime = std::conditional_t<kFailsafe, Failsafe, Nothing>;
 
   void Configure(const Scenario& scenario) override {
     algorithm_ = std::make_unique<Algorithm>(scenario);
+    if constexpr (kFailsafe) {
+      if (realtime()) failsafe_ = std::make_unique<Failsafe>(scenario);
+    }
     if constexpr (Traits::kStarts) gate_->Configure(scenario, run_id());
   }
 
@@ -66,7 +80,27 @@ class StepNode final : public Node {
     return wrong;
   }
 
+  std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override {
+    if (!realtime()) {
+      if constexpr (Traits::kStarts) return std::make_unique<LeadRule>(*this, *gate_);
+      return Node::MakeRule(scenario);
+    }
+    if constexpr (kFailsafe && Traits::kStarts) {
+      return std::make_unique<TickRule>(*this, scenario, pace(), *gate_,
+                                        [this](const truth_t& truth) { Resume(truth); });
+    } else if constexpr (kFailsafe) {
+      return std::make_unique<DeadlineRule>(*this, scenario, pace());
+    } else if constexpr (Traits::kStarts) {
+      throw std::runtime_error("nothing here keeps the time of a run in real time");
+    } else {
+      return std::make_unique<RealtimeRule>(*this, scenario, pace());
+    }
+  }
+
   void Compute(std::int64_t step) override {
+    if constexpr (kFailsafe) {
+      if (failsafe_) return ComputeFailsafe(step);
+    }
     if constexpr (Traits::kStarts) {
       if (step == 0) return Publish(step, algorithm_->Start(run_id()));
     }
@@ -76,36 +110,69 @@ class StepNode final : public Node {
                              rings_));
   }
 
-  bool MayCompute(std::int64_t step, TimePoint now) override {
-    if constexpr (Traits::kStarts) return gate_->Open(step, now);
-    return true;
-  }
-  void OnGo(const run_t& run, TimePoint now) override {
+  // ---- real time, with what there is ------------------------------------------------------------
+
+  void ComputeFailsafe(std::int64_t step) {
     if constexpr (Traits::kStarts) {
-      gate_->OnGo(run, now);
-      Expect(next());
-      Advance(now);
+      Publish(step, step == 0 ? failsafe_->Start(run_id()) : StepFailsafe(step));
+    } else {
+      if ((minimal_risk() & status_t::HOST) != 0) failsafe_->DemandMinimalRisk();
+      Publish(step, StepFailsafe(step));
     }
+    status().fallback = failsafe_->fallback();
+    status().minimal_risk = failsafe_->minimal_risk();
   }
-  TimePoint PollMore(TimePoint now) override {
-    if constexpr (Traits::kStarts) {
-      if (Running() && gate_->started()) Expect(next());
-      if (Running() && gate_->Finished(next()) && AllInputsOf(next() - 1)) {
-        SetState(status_t::DONE);
+
+  const typename Traits::Output& StepFailsafe(std::int64_t step) {
+    const auto& rule = static_cast<const RealtimeRule&>(this->rule());
+    return [&]<std::size_t... I>(std::index_sequence<I...>)->const typename Traits::Output& {
+      if constexpr (Traits::kStarts) {
+        return failsafe_->Step({HeardBy<I>(step - lead_, rule)...});
+      } else {
+        return failsafe_->Step(HeaderOf(step), {HeardBy<I>(step - lead_, rule)...});
       }
-      if (const auto step = gate_->WantsRecorded(next(), now)) {
-        Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
+    }
+    (std::make_index_sequence<std::tuple_size_v<typename Traits::Inputs>>{});
+  }
+
+  /// The newest message of an input that is not newer than a step.
+  template <std::size_t I>
+  auto HeardBy(std::int64_t step, const RealtimeRule& rule) {
+    using M = std::tuple_element_t<I, typename Traits::Inputs>;
+    Heard<M> heard;
+    const Input& input = InputOf<M>();
+    std::int64_t newest = std::min(step, input.ring.newest());
+    const std::int64_t oldest = std::max<std::int64_t>(0, newest - kRingSteps + 1);
+    while (newest >= oldest && !input.ring.Has(newest)) --newest;
+    if (newest < oldest) return heard;
+    heard.state = rule.StateFor(static_cast<std::size_t>(&input - inputs().data()), step);
+    heard.newest = &std::get<I>(rings_)[RingSlot(newest)];
+    return heard;
+  }
+
+  template <class M>
+  const Input& InputOf() {
+    return *std::ranges::find(inputs(), IndexOf<M>(), &Input::channel);
+  }
+
+  /// That of the input which brings the step.
+  header_t HeaderOf(std::int64_t step) { return std::get<0>(rings_)[RingSlot(step)].header; }
+
+  /// Takes over from a world that was killed. What is known to be under way since the last step
+  /// that is recorded is computed again, so that no step is there twice.
+  void Resume(const truth_t& truth) {
+    if constexpr (kFailsafe && Traits::kStarts) {
+      failsafe_->Resume(truth, minimal_risk());
+      truth_t newest = truth;
+      while (newest.header.step < progress() && !newest.last) {
+        newest = std::get<truth_t>(failsafe_->Step({}));
       }
-      return gate_->NextPoll(next(), now);
+      StartAt(newest.header.step + 1);
+      if (newest.last) rule().SetFinal(newest.header.step);
     }
-    return now + kHeartbeat;
   }
-  bool AllInputsOf(std::int64_t step) {
-    for (const Input& input : inputs()) {
-      if (!input.ring.Has(step)) return false;
-    }
-    return true;
-  }
+
+  // ----------------------------------------------------------------------------------------------
 
   void Publish(std::int64_t step, const typename Traits::Output& output) {
     if constexpr (std::is_same_v<std::tuple<typename Traits::Output>, typename Traits::Outputs>) {
@@ -115,7 +182,7 @@ class StepNode final : public Node {
           [&]<std::size_t I> { PublishOne(step, std::get<I>(output)); });
     }
     if constexpr (Traits::kStarts) {
-      if (std::get<truth_t>(output).last) gate_->SetFinal(step);
+      if (std::get<truth_t>(output).last) rule().SetFinal(step);
     }
   }
 
@@ -136,6 +203,7 @@ class StepNode final : public Node {
   }
 
   std::unique_ptr<Algorithm> algorithm_;
+  std::unique_ptr<InRealtime> failsafe_;  // in real time, if there is one
   InputRings rings_;
   std::vector<std::uint8_t> encoded_;
   std::optional<LeadGate> gate_;  // of the role that begins the steps

@@ -41,6 +41,8 @@ class StepRing {
     kConflict,     // the same step with other bytes: two producers, or a producer that is not a
                    // function
     kOutOfWindow,  // so far ahead that it cannot belong to a run in step
+    kElsewhere,    // of no use here, but known to be under way
+    kLate,         // came when its step was over
   };
 
   /// @param needed the next step that the reader of this ring works on

@@ -1,9 +1,12 @@
 #include "services/runtime/this_process.h"
 
+#include <sched.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 namespace fogline {
@@ -16,6 +19,18 @@ ProcessUse MeasureThisProcess() {
   if (std::ifstream statm("/proc/self/statm"); statm) statm >> pages >> pages;
   return {.cpu_ms = cpu.tv_sec * 1000 + cpu.tv_nsec / 1'000'000,
           .rss_bytes = pages * sysconf(_SC_PAGESIZE)};
+}
+
+bool RunBeforeOthers(int priority) {
+  sched_param wanted{};
+  wanted.sched_priority = priority;
+  bool granted = true;
+  std::error_code unreadable;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", unreadable)) {
+    const auto thread = static_cast<pid_t>(std::atoi(task.path().filename().c_str()));
+    granted = sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0 && granted;
+  }
+  return granted && !unreadable;
 }
 
 std::string HostName() {

@@ -12,6 +12,11 @@ struct ProcessUse {
 };
 ProcessUse MeasureThisProcess();
 
+/// Asks the kernel to run every thread of this process before all ordinary ones (SCHED_FIFO), so
+/// that its steps begin on time on a busy machine, too. That takes CAP_SYS_NICE, or RLIMIT_RTPRIO.
+/// @return whether it was granted to all threads
+bool RunBeforeOthers(int priority);
+
 /// The name of this machine.
 std::string HostName();
 

@@ -45,6 +45,28 @@ const World::Output& World::Start(std::int64_t run_id) {
   return Publish();
 }
 
+void World::Resume(const truth_t& truth) {
+  if (truth.num_followers != kNumFollowers) {
+    throw std::invalid_argument("TRUTH: " + std::to_string(truth.num_followers) +
+                                " following cars instead of " + std::to_string(kNumFollowers));
+  }
+  run_id_ = truth.header.run_id;
+  step_ = truth.header.step;
+  collision_ = truth.collision;
+  collision_time_s_ = truth.collision_time_s;
+  const auto car = [](double position_m, double speed_mps, double acceleration_mps2) {
+    return Car{.motion = {position_m, speed_mps},
+               .command_mps2 = acceleration_mps2,
+               .applied_mps2 = acceleration_mps2};
+  };
+  cars_[kPreceding] =
+      car(truth.preceding_position_m, truth.preceding_speed_mps, truth.preceding_acceleration_mps2);
+  cars_[kHost] = car(truth.host_position_m, truth.host_speed_mps, truth.host_acceleration_mps2);
+  cars_[kFollower] = car(truth.follower_position_m[0], truth.follower_speed_mps[0],
+                         truth.follower_acceleration_mps2[0]);
+  Publish();
+}
+
 const World::Output& World::Step(const arbitration_t& host, const follower_command_t& followers) {
   Command(host, followers);
   Integrate();

@@ -32,11 +32,17 @@ class World {
   /// Step 0: the state that the scenario describes. Begins a new run.
   const Output& Start(std::int64_t run_id);
 
+  /// Goes on behind a step that another instance gave out, as this one would have.
+  void Resume(const truth_t& truth);
+
   /// With the commands of step k, step k + 1. The acceleration that truth and ego report is the
   /// command, or (v(k+1) - v(k)) / step_s of a car that came to rest within the step.
   /// @pre Start() was called; `host` and `followers` are those of the last step given out.
   /// @throw std::invalid_argument if a command is not finite, or not one per following car.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
+
+  /// The step given out last.
+  const truth_t& truth() const { return std::get<truth_t>(output_); }
 
  private:
   struct Car {

@@ -111,4 +111,31 @@ std::string MeasuresText(const RunMeasures& measures) {
   return text;
 }
 
+nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {
+  nlohmann::ordered_json json;
+  VisitFigures(figures, [&json](std::string_view name, const auto& value, std::string_view,
+                                std::string_view) { json[std::string(name)] = value; });
+  json["fallbacks"] = nlohmann::ordered_json::array();
+  for (const Fallback& fallback : figures.fallbacks) {
+    nlohmann::ordered_json entry{
+        {"step", fallback.step}, {"role", fallback.role}, {"what", fallback.what}};
+    entry["culprit"] = nullptr;
+    if (!fallback.culprit.empty()) entry["culprit"] = fallback.culprit;
+    json["fallbacks"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+std::string RealtimeText(const RealtimeFigures& figures) {
+  std::string text;
+  VisitFigures(figures, [&text](std::string_view name, const auto& value, std::string_view unit,
+                                std::string_view) {
+    text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+  });
+  for (const Fallback& fallback : figures.fallbacks) {
+    text += fmt::format("  {}\n", fallback.Text());
+  }
+  return text;
+}
+
 }  // namespace fogline

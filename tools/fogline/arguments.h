@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
 #include "tools/fogline/experiment.h"
@@ -60,5 +61,9 @@ std::string MeasuresJson(const RunMeasures& measures);
 
 /// The measures of a run as lines "name  value unit".
 std::string MeasuresText(const RunMeasures& measures);
+
+/// The same of the figures of a run in real time, and its fallbacks.
+nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures);
+std::string RealtimeText(const RealtimeFigures& figures);
 
 }  // namespace fogline

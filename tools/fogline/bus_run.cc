@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -21,6 +22,7 @@
 #include "services/radar/radar.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/conductor.h"
+#include "services/runtime/fallback_log.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
 #include "tools/fogline/interrupt.h"
@@ -37,6 +39,9 @@ constexpr Duration kJoinLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(20);
 // A process that is silent for so long hangs: ten of its signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
+// In real time half of that: whoever needs the process has done without it for long, and a sign of
+// life that is lost is no repair's business.
+constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
 ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
   // A slow pace is no stall: a step is expected to take its time.
@@ -44,6 +49,7 @@ ConductorOptions MakeConductorOptions(const Scenario& scenario, const Experiment
   return {.run_id = DrawRunId(),
           .scenario_text = PrintScenario(scenario),
           .pace = options.pace,
+          .realtime = options.realtime,
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,
@@ -104,12 +110,19 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                          .external = options.external,
                          .restarts = options.restarts,
                          // Whoever hangs is found before the run counts as stalled.
-                         .silence = std::min(kHangLimit, options.stall_limit / 2),
+                         .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
+                                             options.stall_limit / 2),
                          .say = [&](const std::string& line) {
                            if (options.announce) progress.Say(line);
                          }});
   if (options.announce) AnnounceProcesses(bus, run_id, supervisor.group(), options.external);
   std::string trouble;
+  FallbackLog fallbacks(std::llround(scenario.step_s * 1e6));
+  if (options.realtime && options.announce) {
+    conductor.OnEveryStatus([&](const status_t& status) {
+      if (const Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());
+    });
+  }
   try {
     while (conductor.phase() == Conductor::Phase::kJoining ||
            conductor.phase() == Conductor::Phase::kRunning) {

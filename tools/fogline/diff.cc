@@ -50,8 +50,9 @@ struct Difference {
   std::string b;
 };
 
-/// Bytes of a message without the run id: what the digest looks at.
+/// Bytes of a message without the run id: what the digest looks at. In real time there may be none.
 bool SameRunAside(Bytes a, Bytes b) {
+  if (a.empty() || b.empty()) return a.empty() == b.empty();
   return std::ranges::equal(a.first(kRunIdOffset), b.first(kRunIdOffset)) &&
          std::ranges::equal(a.subspan(kStepOffset), b.subspan(kStepOffset));
 }
@@ -59,6 +60,12 @@ bool SameRunAside(Bytes a, Bytes b) {
 template <class M>
 Difference FirstField(std::int64_t step, Bytes a, Bytes b) {
   Difference difference{.step = step, .channel = std::string(ChannelOf<M>().name)};
+  if (a.empty() || b.empty()) {
+    difference.field = "(message)";
+    difference.a = a.empty() ? "none" : "there";
+    difference.b = b.empty() ? "none" : "there";
+    return difference;
+  }
   M message_a{};
   M message_b{};
   if (!Decode(a, message_a) || !Decode(b, message_b)) {

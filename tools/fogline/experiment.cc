@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -41,6 +42,10 @@ class TemporaryDirectory {
  private:
   std::filesystem::path path_;
 };
+
+std::size_t PlaceOf(const ChannelInfo& channel) {
+  return static_cast<std::size_t>(&channel - kChannels.data());
+}
 
 /// Adds the messages of a step to a digest and a log, in the order of the graph table.
 class StepWriter {
@@ -143,7 +148,12 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
     for (const Bytes message : *messages) {
       if (!message.empty()) digest.Add(message);
     }
-    const Sample* sample = decoder.Decode(*messages);
+    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
+      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
+    });
+    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
+    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
+    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
     if (sample == nullptr) {
       throw InputError(
           fmt::format("{}: error: step {} does not decode: was it recorded with other "
@@ -161,6 +171,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   logged.result.measures = measures.Result();
   logged.scenario = run.scenario;
   logged.scenario_text = run.scenario_text;
+  logged.result.realtime = run.realtime;
   logged.complete = run.complete;
   logged.note = run.note;
   return logged;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "services/graph.h"
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
+#include "services/recorder/realtime_figures.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/strangers.h"
@@ -25,6 +27,7 @@ struct ExperimentOptions {
   /// Event log to write. Empty: a temporary one, or with direct none at all.
   std::filesystem::path log;
   double pace = 0;             // simulated seconds per second; 0: as fast as it goes
+  bool realtime = false;       // at that pace by the wall clock, whoever keeps up
   std::vector<Role> external;  // roles that somebody else starts
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
@@ -52,6 +55,7 @@ struct ExperimentResult {
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<Sample> samples;
+  std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
 /// Runs a scenario to its end and reads the result from its log.

@@ -30,6 +30,8 @@ Examples:
 
 // A step of 0.1 s then takes 100 s.
 constexpr double kMinPace = 1e-3;
+// Nine processes must pass on a step in this time, and their signs of life be heard in 64 steps.
+constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
@@ -38,6 +40,13 @@ struct RunArguments {
     verb.add_option("--pace", options.pace,
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
         ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    verb.add_flag(
+        "--realtime", options.realtime,
+        "Tick on the wall clock and wait for nobody: inputs that fail are noticed by their "
+        "age, and somebody else drives or the car stops");
+    verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
+        ->check(CLI::Range(kMinPace, 1000.0))
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
@@ -56,6 +65,7 @@ struct RunArguments {
   ScenarioArguments scenario;
   TransportArguments transport;
   ExperimentOptions options;
+  double speed = 1.0;
   double stall_s = 4.0;
   bool force = false;
   bool json = false;
@@ -88,8 +98,23 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
     json["restarts"].push_back(
         {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
   }
+  if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
   return json.dump(2);
+}
+
+/// @throws InputError if real time cannot go together with the other options
+void ApplyRealtime(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
+  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+    throw InputError(fmt::format(
+        "error: --realtime: --transport {} is one process; real time needs one for each role",
+        options.transport));
+  }
+  if (options.pace != 0) {
+    throw InputError("error: --pace: slows the lockstep down; with --realtime it is --speed");
+  }
+  options.pace = arguments.speed;
 }
 
 int Run(RunArguments& arguments) {
@@ -103,9 +128,16 @@ int Run(RunArguments& arguments) {
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
   }
+  if (options.realtime) ApplyRealtime(arguments);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
   const Scenario scenario = arguments.scenario.Load();
+  if (const double period_s = scenario.step_s / arguments.speed;
+      options.realtime && period_s < kMinPeriodS) {
+    throw InputError(fmt::format(
+        "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock, at least {:g}",
+        arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
+  }
   if (!options.log.empty()) {
     PrepareLog(options.log, arguments.force);
   } else if (!direct) {
@@ -130,6 +162,7 @@ int Run(RunArguments& arguments) {
     fmt::print("{} was started again {}: {}\n", NameOf(role.role),
                role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
   }
+  if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result.measures));

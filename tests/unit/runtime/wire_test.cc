@@ -58,6 +58,43 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   }
 }
 
+// One object takes all messages of a channel.
+TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
+  follower_command_t command{};
+  command.num_followers = 1;
+  command.acceleration_mps2 = {std::numeric_limits<double>::quiet_NaN()};
+  command.safe_distance_m = {33};
+  const follower_command_t nobody{};
+  std::vector<std::uint8_t> bytes;
+  Encode(nobody, bytes);
+  ASSERT_TRUE(Decode(bytes, command));
+  EXPECT_TRUE(command.acceleration_mps2.empty());
+  EXPECT_TRUE(command.safe_distance_m.empty());
+  EXPECT_EQ(FirstNonFiniteField(command), "");
+}
+
+TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
+  status_t status{};
+  status.num_inputs = 2;
+  status.input = {"RADAR", "LIDAR"};
+  status.input_state = {0, 0};
+  status.input_age_us = {0, 0};
+  status.input_rate_hz = {0, 0};
+  status.input_late = {0, 0};
+  std::vector<std::uint8_t> bytes;
+  Encode(status, bytes);
+  ASSERT_TRUE(Decode(bytes, status));
+  EXPECT_EQ(status.input.at(1), "LIDAR");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t length = text.find("LIDAR") - 4;
+  for (const std::uint32_t claim : {0U, 0x7fffffffU, 0xffffffffU, 0x80000000U, 1000U}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[length + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
+    }
+    EXPECT_FALSE(Decode(bytes, status)) << claim;
+  }
+}
+
 TEST(WireTest, FindsValuesThatAreNotFinite) {
   ego_t ego = SomeEgo();
   EXPECT_EQ(FirstNonFiniteField(ego), "");

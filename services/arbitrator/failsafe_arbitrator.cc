@@ -1,0 +1,101 @@
+#include "services/arbitrator/failsafe_arbitrator.h"
+
+#include <algorithm>
+
+namespace fogline {
+namespace {
+
+// The automation can drive if its command is there, the track that the command is made of, and both
+// sensors in pairs of one step, without which no Degree of Conflict tells whether to trust it. The
+// worst of these decides.
+Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
+  return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
+                   OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
+}
+
+}  // namespace
+
+FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
+    : arbitrator_(scenario),
+      pairs_(scenario.health),
+      minimal_risk_(scenario.minimal_risk, scenario.step_s) {
+  out_.threshold = scenario.arbitrator.threshold;
+}
+
+const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
+                                              const ArbitratorInputs& inputs) {
+  const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
+  if (pairs_.has_pair()) Regular(header, inputs);
+  decision_ = Judge(inputs, pairs);
+  const double applied_mps2 =
+      inputs.ego.newest != nullptr ? inputs.ego.newest->acceleration_mps2 : 0;
+  switch (decision_) {
+    case Decision::kRegular:
+      break;
+    case Decision::kAutomation:
+      Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
+      break;
+    case Decision::kHuman:
+      Drive(arbitration_t::HUMAN, inputs.driver.newest->acceleration_mps2);
+      break;
+    case Decision::kHold:
+      Drive(last_mode_, last_mps2_.value_or(applied_mps2));
+      break;
+    case Decision::kMinimalRisk:
+      Stop(inputs.ego);
+      break;
+  }
+  out_.header = header;
+  last_mps2_ = out_.acceleration_mps2;
+  last_mode_ = out_.mode;
+  return out_;
+}
+
+// The regular decision on the newest pair. Offers that are not there are not used for it, only
+// passed on; Judge() sees to it that none of those is.
+void FailsafeArbitrator::Regular(const header_t& header, const ArbitratorInputs& inputs) {
+  ego_t ego{};
+  ego.header = header;
+  static const track_t kNoTrack{};
+  static const accel_command_t kNoAutomation{};
+  static const driver_command_t kNoDriver{};
+  const auto or_none = [](const auto* message, const auto& none) -> const auto& {
+    return message != nullptr ? *message : none;
+  };
+  out_ = arbitrator_.Step(
+      ego, pairs_.radar(), pairs_.lidar(), or_none(inputs.track.newest, kNoTrack),
+      or_none(inputs.automation.newest, kNoAutomation), or_none(inputs.driver.newest, kNoDriver));
+}
+
+Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
+  if (minimal_risk_.begun() || demanded_) return Decision::kMinimalRisk;
+  const bool disputed = pairs_.has_pair() && out_.mode == arbitration_t::HUMAN;
+  return Decide(OfferOf(inputs.ego.state), AutomationOffer(inputs, pairs),
+                OfferOf(inputs.driver.state), disputed ? kDisputed : kCalm);
+}
+
+void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
+  out_.mode = mode;
+  out_.lambda_human = mode == arbitration_t::HUMAN ? 1 : 0;
+  out_.lambda_automation = 1 - out_.lambda_human;
+  out_.acceleration_mps2 = acceleration_mps2;
+}
+
+// From what is applied now as long as the odometry says so, otherwise from the last command.
+void FailsafeArbitrator::Stop(const Heard<ego_t>& ego) {
+  const ego_t* measured = Usable(ego.state) ? ego.newest : nullptr;
+  if (!minimal_risk_.begun()) {
+    const ego_t* known = ego.newest;
+    const double speed_mps = known != nullptr ? known->speed_mps : 0;
+    const double applied_mps2 = known != nullptr ? known->acceleration_mps2 : 0;
+    minimal_risk_.Begin(speed_mps,
+                        measured != nullptr ? applied_mps2 : last_mps2_.value_or(applied_mps2));
+  }
+  out_.mode = arbitration_t::MINIMAL_RISK;
+  out_.lambda_automation = 0;
+  out_.lambda_human = 0;
+  out_.acceleration_mps2 =
+      minimal_risk_.Step(measured != nullptr ? std::optional(measured->speed_mps) : std::nullopt);
+}
+
+}  // namespace fogline

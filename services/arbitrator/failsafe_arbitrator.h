@@ -1,0 +1,67 @@
+// The arbitrator in real time: it decides in every step with what there is. With all inputs there
+// it is the Arbitrator, bit by bit; without some of them the table of failsafe_table.h decides.
+#pragma once
+
+#include <optional>
+
+#include "scenario/scenario.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/arbitrator/failsafe_table.h"
+#include "services/arbitrator/sensor_pairs.h"
+#include "services/graph.h"
+#include "services/minimal_risk/minimal_risk.h"
+#include "services/runtime/input_state.h"
+
+namespace fogline {
+
+/// Everything that the arbitrator reads, as far as it has come.
+struct ArbitratorInputs {
+  Heard<ego_t> ego;
+  Heard<radar_t> radar;
+  Heard<lidar_t> lidar;
+  Heard<track_t> track;
+  Heard<accel_command_t> automation;
+  Heard<driver_command_t> driver;
+};
+
+class FailsafeArbitrator {
+ public:
+  explicit FailsafeArbitrator(const Scenario& scenario);
+
+  /// The host's command for the step of `header`. Once per decision; steps may be left out. Valid
+  /// until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK and both authorities
+  /// are 0; the conflict is that of the newest pair of sensor values, whatever its age.
+  const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
+
+  /// The manoeuvre begins at the next step whatever the inputs: the vehicle is in one already, or
+  /// the instance of this role before this one was.
+  void DemandMinimalRisk() { demanded_ = true; }
+
+  /// What it does instead of its regular work, "" if it does that.
+  std::string_view fallback() const { return FallbackText(decision_); }
+  /// Cars that are in a minimal risk manoeuvre, bits of status_t.
+  std::int8_t minimal_risk() const {
+    return minimal_risk_.begun() ? status_t::HOST : std::int8_t{0};
+  }
+  /// Which row of the table the last step took.
+  Decision decision() const { return decision_; }
+  /// The host stands in the minimal risk manoeuvre.
+  bool standing() const { return minimal_risk_.standing(); }
+
+ private:
+  void Regular(const header_t& header, const ArbitratorInputs& inputs);
+  Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
+  void Drive(std::int8_t mode, double acceleration_mps2);
+  void Stop(const Heard<ego_t>& ego);
+
+  Arbitrator arbitrator_;
+  SensorPairs pairs_;
+  MinimalRisk minimal_risk_;
+  bool demanded_ = false;
+  Decision decision_ = Decision::kHold;
+  std::optional<double> last_mps2_;  // commanded
+  std::int8_t last_mode_ = arbitration_t::AUTOMATION;
+  arbitration_t out_{};
+};
+
+}  // namespace fogline

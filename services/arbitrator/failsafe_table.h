@@ -1,0 +1,116 @@
+// Who drives the host when inputs of the arbitrator have failed: the whole rule, as one table.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "services/runtime/input_state.h"
+
+namespace fogline {
+
+/// What there is of something that the decision needs, from best to worst. Bits, so that a row of
+/// the table can name several.
+enum Offer : std::uint8_t {
+  kThere = 1,   // may be used; while it is STALE its last value holds
+  kNotYet = 2,  // has never come, and is not overdue
+  kGone = 4,    // LOST
+  kAnyOffer = kThere | kNotYet | kGone,
+};
+
+constexpr Offer OfferOf(InputState state) {
+  if (Usable(state)) return kThere;
+  return state == InputState::kLost ? kGone : kNotYet;
+}
+
+/// Whether the regular decision would be that the human drives; bits as well.
+enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
+
+enum class Decision : std::uint8_t {
+  kRegular,      // both can drive: as in lockstep
+  kAutomation,   // the human cannot, and need not
+  kHuman,        // the automation cannot
+  kHold,         // something that has just begun may still come: the last command stays
+  kMinimalRisk,  // nobody can
+};
+
+struct FailsafeRow {
+  std::uint8_t ego;  // the host's own odometry
+  std::uint8_t automation;
+  std::uint8_t human;
+  std::uint8_t conflict;
+  Decision decision;
+};
+
+// clang-format off
+inline constexpr std::array kFailsafeTable{
+    //          ego      automation  human      conflict      decision
+    FailsafeRow{kThere,  kThere,     kThere,    kAnyConflict, Decision::kRegular},
+    FailsafeRow{kThere,  kThere,     kNotYet,   kCalm,        Decision::kAutomation},
+    FailsafeRow{kThere,  kThere,     kNotYet,   kDisputed,    Decision::kHold},
+    FailsafeRow{kThere,  kThere,     kGone,     kCalm,        Decision::kAutomation},
+    FailsafeRow{kThere,  kThere,     kGone,     kDisputed,    Decision::kMinimalRisk},
+    FailsafeRow{kThere,  kNotYet,    kThere,    kAnyConflict, Decision::kHuman},
+    FailsafeRow{kThere,  kNotYet,    kNotYet,   kAnyConflict, Decision::kHold},
+    FailsafeRow{kThere,  kNotYet,    kGone,     kAnyConflict, Decision::kHold},
+    FailsafeRow{kThere,  kGone,      kThere,    kAnyConflict, Decision::kHuman},
+    FailsafeRow{kThere,  kGone,      kNotYet,   kAnyConflict, Decision::kHold},
+    FailsafeRow{kThere,  kGone,      kGone,     kAnyConflict, Decision::kMinimalRisk},
+    FailsafeRow{kNotYet, kAnyOffer,  kAnyOffer, kAnyConflict, Decision::kHold},
+    FailsafeRow{kGone,   kAnyOffer,  kAnyOffer, kAnyConflict, Decision::kMinimalRisk},
+};
+// clang-format on
+
+/// Whether a row is for this case.
+constexpr bool Applies(const FailsafeRow& row, Offer ego, Offer automation, Offer human,
+                       Conflict conflict) {
+  return (row.ego & ego) != 0 && (row.automation & automation) != 0 && (row.human & human) != 0 &&
+         (row.conflict & conflict) != 0;
+}
+
+/// The decision of the row that applies: there is exactly one.
+constexpr Decision Decide(Offer ego, Offer automation, Offer human, Conflict conflict) {
+  return std::ranges::find_if(
+             kFailsafeTable,
+             [&](const FailsafeRow& row) { return Applies(row, ego, automation, human, conflict); })
+      ->decision;
+}
+
+static_assert(
+    [] {
+      for (const Offer ego : {kThere, kNotYet, kGone}) {
+        for (const Offer automation : {kThere, kNotYet, kGone}) {
+          for (const Offer human : {kThere, kNotYet, kGone}) {
+            for (const Conflict conflict : {kCalm, kDisputed}) {
+              if (std::ranges::count_if(kFailsafeTable, [&](const FailsafeRow& row) {
+                    return Applies(row, ego, automation, human, conflict);
+                  }) != 1) {
+                return false;
+              }
+            }
+          }
+        }
+      }
+      return true;
+    }(),
+    "exactly one row of kFailsafeTable applies to each case");
+
+/// What the arbitrator does instead of its regular work, for STATUS; "" if it does that.
+constexpr std::string_view FallbackText(Decision decision) {
+  switch (decision) {
+    case Decision::kRegular:
+      return "";
+    case Decision::kAutomation:
+      return "the automation drives alone";
+    case Decision::kHuman:
+      return "the human drives";
+    case Decision::kHold:
+      return "the last command holds";
+    case Decision::kMinimalRisk:
+      return "minimal risk manoeuvre";
+  }
+  return "";
+}
+
+}  // namespace fogline

@@ -1,0 +1,55 @@
+// The minimal risk manoeuvre: how a car that nobody drives any more comes to a standstill in its
+// lane. It looks at nothing but the car itself, for whatever else it would need may be what failed.
+#pragma once
+
+#include <optional>
+
+#include "scenario/scenario.h"
+
+namespace fogline {
+
+/// Braking within limits on deceleration d and jerk j, from the acceleration that is applied now to
+/// rest. The command of a step of length h, from the one before it, a, and the speed v > 0, is
+///
+///     a'   = max(a - j h, -d, -r(v))           or, where even that is more than a + j h, a + j h
+///     r(v) = j (sqrt(h^2/4 + 2 v / j) - h/2)
+///
+/// r(v) is the braking that can still be released at the rate j, one step at a time, so that it is
+/// gone when the car stands: v = r^2/(2j) + r h/2. On this curve r falls by exactly j h in a step,
+/// and the last step's jump to rest is no larger. So the end is as smooth as the beginning, without
+/// a snap. Two cases leave a limit, each as little as can be:
+///   - a car that brakes harder than d now releases the brake at the rate j, down to d;
+///   - a car that brakes harder than r(v) now (it is about to stand) stops before the brake is
+///     released, with that jump.
+///
+/// Once begun it ends with the process: UN R157, 5.5.5, allows another activation only after a new
+/// run cycle. A car that stands is held with the command 0 and does not roll backwards.
+class MinimalRisk {
+ public:
+  /// @param step_s h, above 0
+  MinimalRisk(const MinimalRiskSection& limits, double step_s);
+
+  /// Begins at this speed (at least 0) and applied acceleration. Nothing begins it a second time.
+  void Begin(double speed_mps, double acceleration_mps2);
+  bool begun() const { return begun_; }
+
+  /// The acceleration for the step that begins here. Once per step. @pre begun()
+  /// @param speed_mps measured now, at least 0; without it, the one that the last command leads to
+  double Step(std::optional<double> speed_mps);
+
+  /// Whether the car was at standstill at the last step.
+  bool standing() const { return begun_ && speed_mps_ <= limits_.standstill_mps; }
+
+ private:
+  /// r(v).
+  double Releasable(double speed_mps) const;
+
+  MinimalRiskSection limits_;
+  double step_s_;
+  bool begun_ = false;
+  double speed_mps_ = 0;          // at the last step
+  double acceleration_mps2_ = 0;  // commanded then
+  bool first_ = true;
+};
+
+}  // namespace fogline

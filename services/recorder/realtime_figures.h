@@ -1,0 +1,69 @@
+// How a run in real time kept its time, from the STATUS messages in its log.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/runtime/fallback_log.h"
+
+namespace fogline {
+
+struct RealtimeFigures {
+  double speed = 1;  // simulated seconds per second
+  // Of the world's clock: steps; of these, more than 5 ms late; ticks at which its process stood
+  // still; how far from its due time a step began.
+  std::int64_t ticks = 0;
+  std::int64_t ticks_late = 0;
+  std::int64_t ticks_missed = 0;
+  std::int64_t jitter_p99_us = 0;
+  // From the world's TRUTH out to its HOST_COMMAND in.
+  std::int64_t latency_p50_us = 0;
+  std::int64_t latency_p99_us = 0;
+  std::int64_t latency_max_us = 0;
+  // Steps that a role left out, or had to do without an input that was due.
+  std::int64_t deadline_misses = 0;
+  // Messages that came too late to be used, and messages that are not in the log.
+  std::int64_t late_messages = 0;
+  std::int64_t missed_messages = 0;
+  std::vector<Fallback> fallbacks;
+};
+
+/// Calls `visit(name, value, unit, description)` for every figure that is a number, in order.
+template <class Visitor>
+void VisitFigures(const RealtimeFigures& f, Visitor&& visit) {
+  visit("speed", f.speed, "", "simulated seconds per second");
+  visit("ticks", f.ticks, "", "steps that the world has begun");
+  visit("ticks_late", f.ticks_late, "", "of these, more than 5 ms late");
+  visit("ticks_missed", f.ticks_missed, "", "ticks at which the world stood still");
+  visit("deadline_misses", f.deadline_misses, "", "steps without an input that was due");
+  visit("late_messages", f.late_messages, "", "messages that came too late to be used");
+  visit("missed_messages", f.missed_messages, "", "messages that are not in the log");
+  visit("jitter_p99_us", f.jitter_p99_us, "us", "how far from its due time a step begins");
+  visit("latency_p50_us", f.latency_p50_us, "us", "from sensor to command: median");
+  visit("latency_p99_us", f.latency_p99_us, "us", "the same: 99 % are below");
+  visit("latency_max_us", f.latency_max_us, "us", "the same: longest");
+}
+
+class RealtimeAccumulator {
+ public:
+  RealtimeAccumulator(double speed, std::int64_t step_us) : speed_(speed), fallbacks_(step_us) {}
+
+  /// The next STATUS of the log.
+  void Add(const status_t& status);
+  void AddMissed(std::int64_t messages) { missed_ += messages; }
+
+  RealtimeFigures Result() const;
+
+ private:
+  double speed_;
+  FallbackLog fallbacks_;
+  std::int64_t missed_ = 0;
+  // The last STATUS of each process: its counters are those of its life.
+  std::map<std::pair<std::string, std::int64_t>, status_t> last_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,96 @@
+#include "services/recorder/record_rule.h"
+
+#include <algorithm>
+
+namespace fogline {
+namespace {
+
+// A message is asked for when it is this late, in periods, so often, and so long apart.
+constexpr double kPatience = 1.5;
+constexpr int kAsks = 4;
+constexpr Duration kAskEvery = milliseconds(20);
+// Producers keep kRingSteps; half of that is left to those who answer.
+constexpr std::int64_t kMaxOpen = kRingSteps / 2;
+// STATUS messages that wait to be written: several of each role in each open step.
+constexpr std::size_t kMaxHeard = 4096;
+
+}  // namespace
+
+RecordRule::RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id)
+    : RealtimeRule(node, scenario, speed), run_id_(run_id) {}
+
+void RecordRule::ListenToStatus() {
+  listening_ = true;
+  bus().Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+    const auto* status = arrival.As<status_t>();
+    if (status == nullptr || status->header.run_id != run_id_ || heard_.size() >= kMaxHeard) return;
+    const Bytes bytes = arrival.bytes();
+    heard_.push_back(
+        {.step = std::max<std::int64_t>(newest_, 0), .bytes = {bytes.begin(), bytes.end()}});
+  });
+}
+
+void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use) {
+  for (; !heard_.empty() && heard_.front().step <= step; heard_.pop_front()) {
+    use(heard_.front().bytes);
+  }
+}
+
+void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
+  RealtimeRule::OnInput(input, step, time);
+  newest_ = std::max(newest_, step);
+  OpenAt(step, time);
+}
+
+RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
+  Open& open = open_[RingSlot(step)];
+  if (open.step != step) open = {.step = step, .seen = now};
+  return open;
+}
+
+TimePoint RecordRule::Fire(TimePoint now) {
+  if (!listening_) ListenToStatus();
+  while (Running() && next() <= newest_ && (Complete(next()) || GivenUp(next(), now))) {
+    const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
+    ComputeDue(next(), due, now);
+  }
+  if (!Running() || next() > newest_) return now + kHeartbeat;
+  if (now >= ask_at_) AskForHoles(now);
+  return ask_at_;
+}
+
+bool RecordRule::Complete(std::int64_t step) const {
+  return std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+}
+
+bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
+  const Open& open = OpenAt(step, now);
+  return step <= newest_ - kMaxOpen || (open.asked >= kAsks && now > open.asked_at + 2 * kAskEvery);
+}
+
+void RecordRule::AskForHoles(TimePoint now) {
+  ask_at_ = now + kAskEvery;
+  const auto patience =
+      duration_cast<Duration>(kPatience * std::chrono::duration<double>(period()));
+  std::int64_t end = next();  // of the steps to be asked for
+  while (end <= newest_ && now >= OpenAt(end, now).seen + patience) ++end;
+  std::int64_t first = next();
+  while (first < end && OpenAt(first, now).asked >= kAsks) ++first;
+  for (const Input& input : inputs()) {
+    for (std::int64_t step = first; step < end; ++step) {
+      if (input.ring.Has(step)) continue;
+      std::int64_t count = 1;
+      while (step + count < end && !input.ring.Has(step + count)) ++count;
+      Ask(kChannels[input.channel].name, {.first = step, .count = count});
+      ++status().repairs_asked;
+      step += count;
+    }
+  }
+  for (std::int64_t step = first; step < end; ++step) {
+    Open& open = OpenAt(step, now);
+    ++open.asked;
+    open.asked_at = now;
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,56 @@
+// Recording in real time: the world does not wait for the recorder. Steps are written in order as
+// soon as they are complete; what is missing is asked for as long as its producer can still have
+// it, and a step that stays incomplete is written as it is. Each STATUS goes into the log as well,
+// behind the step in which it came: how the roles were is part of what happened.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "services/runtime/realtime_rule.h"
+
+namespace fogline {
+
+class RecordRule final : public RealtimeRule {
+ public:
+  RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
+
+  void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  void SetFinal(std::int64_t step) override { final_ = step; }
+
+  /// Hands out what came in this step or before, once.
+  void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
+
+ private:
+  /// What is known of a step that is not written yet.
+  struct Open {
+    std::int64_t step = -1;
+    TimePoint seen{};  // its first message
+    int asked = 0;
+    TimePoint asked_at{};
+  };
+  struct Heard {
+    std::int64_t step;  // under way when it came
+    std::vector<std::uint8_t> bytes;
+  };
+
+  TimePoint Fire(TimePoint now) override;
+  Open& OpenAt(std::int64_t step, TimePoint now);
+  bool Complete(std::int64_t step) const;
+  /// Nothing more will come.
+  bool GivenUp(std::int64_t step, TimePoint now);
+  void AskForHoles(TimePoint now);
+  void ListenToStatus();
+
+  std::int64_t run_id_;
+  std::array<Open, kRingSteps> open_{};
+  std::deque<Heard> heard_;
+  std::int64_t newest_ = -1;
+  std::int64_t final_ = -1;
+  TimePoint ask_at_{};
+  bool listening_ = false;
+};
+
+}  // namespace fogline

@@ -1,0 +1,31 @@
+#include "services/runtime/deadline_rule.h"
+
+#include <algorithm>
+
+namespace fogline {
+
+DeadlineRule::DeadlineRule(Node& node, const Scenario& scenario, double speed)
+    : RealtimeRule(node, scenario, speed),
+      patience_(duration_cast<Duration>(scenario.health.deadline_share *
+                                        std::chrono::duration<double>(period()))) {}
+
+TimePoint DeadlineRule::Fire(TimePoint now) {
+  const Input& tick = inputs()[tick_input()];
+  const std::int64_t step = tick.ring.newest();
+  if (step < next()) return now + kHeartbeat;
+  bool complete = true;
+  TimePoint due = tick.heard;
+  for (std::size_t i = 0; i < inputs().size(); ++i) {
+    const bool there = inputs()[i].ring.Has(step);
+    // Nobody waits for what is lost.
+    if (!there && StateOf(i) != InputState::kLost) complete = false;
+    if (there) due = std::max(due, inputs()[i].heard);
+  }
+  const TimePoint deadline = tick.heard + patience_;
+  if (!complete && now < deadline) return deadline;
+  if (!complete) statistics().Miss();
+  ComputeDue(step, complete ? due : deadline, now);
+  return now + kHeartbeat;
+}
+
+}  // namespace fogline

@@ -1,0 +1,22 @@
+// Real time for the role that must decide in every step (the arbitrator): it does so as soon as all
+// inputs are there that are not lost, and at the latest so long after the world's tick that the
+// decision can still be on time; then with what there is.
+#pragma once
+
+#include <optional>
+
+#include "services/runtime/realtime_rule.h"
+
+namespace fogline {
+
+class DeadlineRule final : public RealtimeRule {
+ public:
+  DeadlineRule(Node& node, const Scenario& scenario, double speed);
+
+ private:
+  TimePoint Fire(TimePoint now) override;
+
+  Duration patience_;  // from the tick to the deadline
+};
+
+}  // namespace fogline

@@ -1,0 +1,99 @@
+#include "services/runtime/fallback_log.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+std::size_t ChannelNamed(std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(kChannels, name, &ChannelInfo::name) -
+                                  kChannels.begin());
+}
+
+std::size_t PlaceOf(std::string_view role) {
+  return static_cast<std::size_t>(std::ranges::find(kRoles, role, &RoleInfo::name) -
+                                  kRoles.begin());
+}
+
+void Append(std::string& list, std::string_view separator, std::string_view text) {
+  if (text.empty()) return;
+  if (!list.empty()) list += separator;
+  list += text;
+}
+
+}  // namespace
+
+std::string Fallback::Text() const {
+  std::string text = fmt::format("step {}: {}: {}", step, role, inputs);
+  if (!culprit.empty()) {
+    text += fmt::format("{}(culprit: {}, last heard {:.2f} s ago)", inputs.empty() ? "" : " ",
+                        culprit, age_s);
+  }
+  if (!does.empty()) text += (inputs.empty() && culprit.empty() ? "" : ": ") + does;
+  return text;
+}
+
+const Fallback* FallbackLog::Add(const status_t& status) {
+  const std::size_t role = PlaceOf(status.role);
+  // Of the recorder's inputs each has somebody else who works on it.
+  if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
+  Known& known = roles_[role];
+  std::string lost;
+  std::string back;
+  std::string stale;  // news only if something is done about it
+  for (std::size_t i = 0; i < status.input.size(); ++i) {
+    const std::size_t channel = ChannelNamed(status.input[i]);
+    if (channel == kNumChannels) continue;
+    const std::string_view name = kChannels[channel].name;
+    InputState& known_state = known.inputs[channel];
+    const auto state = static_cast<InputState>(status.input_state[i]);
+    if (state == InputState::kStale) Append(stale, ", ", name);
+    if (state == InputState::kLost && known_state != InputState::kLost) Append(lost, ", ", name);
+    if (state == InputState::kOk && known_state == InputState::kLost) Append(back, ", ", name);
+    // A process that has been started again has still to hear of what was lost before.
+    if (state == InputState::kLost || state == InputState::kOk) known_state = state;
+  }
+  std::string does;
+  if (status.fallback != known.does) {
+    does = status.fallback.empty() ? "as usual again" : status.fallback;
+    known.does = status.fallback;
+  }
+  std::string inputs;
+  if (!lost.empty()) Append(inputs, ", ", lost + " lost");
+  if (!back.empty()) Append(inputs, ", ", back + " ok again");
+  if (inputs.empty() && does.empty()) return nullptr;
+  if (inputs.empty() && !status.fallback.empty() && !stale.empty()) inputs = stale + " stale";
+  Fallback& change = all_.emplace_back();
+  change.step = status.header.utime / step_us_;
+  change.role = status.role;
+  change.inputs = inputs;
+  change.does = does;
+  change.what = inputs;
+  Append(change.what, ": ", does);
+  if (!lost.empty() || !status.fallback.empty()) change.culprit = Culprit(status);
+  change.age_s = static_cast<double>(status.last_heard_ms) * 1e-3;
+  return &change;
+}
+
+// The role knows which of its own inputs comes first; the others say what silences them. The world
+// is silenced by nothing, the arbitrator by nothing but the world.
+std::string FallbackLog::Culprit(const status_t& status) const {
+  const std::size_t channel = ChannelNamed(status.waiting_for);
+  if (channel == kNumChannels) return "";
+  ChannelSet missing;
+  missing.set(channel);
+  LostByRole reported;
+  for (std::size_t role = 0; role < kRoles.size(); ++role) {
+    if (kRoles[role].role == Role::kWorld) continue;
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      if (kRoles[role].role == Role::kArbitrator && kChannels[i].from != Role::kWorld) continue;
+      if (roles_[role].inputs[i] == InputState::kLost) reported[role].set(i);
+    }
+  }
+  const auto culprit = FindCulprit(missing, reported);
+  return culprit ? std::string(NameOf(culprit->role)) : "";
+}
+
+}  // namespace fogline

@@ -1,0 +1,25 @@
+#include "services/runtime/lead_rule.h"
+
+#include <algorithm>
+
+namespace fogline {
+
+void LeadRule::OnGo(const run_t& run, TimePoint now) {
+  gate_.OnGo(run, now);
+  Expect(next());
+  Advance(now);
+}
+
+TimePoint LeadRule::Poll(TimePoint now) {
+  if (gate_.started()) Expect(next());
+  const bool complete = std::ranges::all_of(
+      inputs(), [this](const Input& input) { return input.ring.Has(next() - 1); });
+  if (gate_.Finished(next()) && complete) SetState(status_t::DONE);
+  if (const auto step = gate_.WantsRecorded(next(), now)) {
+    Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
+  }
+  const TimePoint at = gate_.NextPoll(next(), now);
+  return Running() ? std::min(at, LockstepRule::Poll(now)) : at;
+}
+
+}  // namespace fogline

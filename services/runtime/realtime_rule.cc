@@ -1,0 +1,136 @@
+#include "services/runtime/realtime_rule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/runtime/culprit.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kMicrosPerSecond = 1e6;
+
+}  // namespace
+
+Duration PeriodOf(const Scenario& scenario, double speed) {
+  return duration_cast<Duration>(std::chrono::duration<double>(scenario.step_s / speed));
+}
+
+RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
+    : FireRule(node),
+      period_(PeriodOf(scenario, speed)),
+      step_us_(std::llround(scenario.step_s * kMicrosPerSecond)),
+      limits_(scenario.health),
+      clock_(period_, Clock::now()),
+      tick_input_(static_cast<std::size_t>(
+          std::ranges::find(inputs(), Role::kWorld,
+                            [](const Input& input) { return kChannels[input.channel].from; }) -
+          inputs().begin())),
+      late_(inputs().size()) {
+  const TimePoint began = clock_.At(Clock::now());
+  health_.assign(inputs().size(), InputHealth(limits_, period_, began));
+}
+
+StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
+  const StepRing& ring = inputs()[input].ring;
+  if (ring.Has(step) && std::ranges::equal(ring.Get(step), bytes)) {
+    return StepRing::Verdict::kDuplicate;
+  }
+  if (step + lead() < next() || step <= ring.newest() - kRingSteps || ring.Has(step)) {
+    CountLate(input);
+    return StepRing::Verdict::kLate;
+  }
+  return step < std::max(next(), progress() + 1) + kRingSteps ? StepRing::Verdict::kNew
+                                                              : StepRing::Verdict::kOutOfWindow;
+}
+
+void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
+  newest_ = std::max(newest_, step);
+  if (input == tick_input_) {
+    if (!clock_.started()) health_[input] = InputHealth(limits_, period_, time);
+    clock_.Tick(step, time);
+  }
+  health_[input].Arrived(step, ClockOf(input, time));
+}
+
+TimePoint RealtimeRule::Poll(TimePoint now) {
+  bus().Drain();  // the newest step is wanted, and not those that a backlog begins with
+  if (!Running()) return now;
+  const TimePoint health_at = UpdateHealth(now);
+  const TimePoint fire_at = Fire(now);
+  return std::min({now + kHeartbeat, health_at, fire_at});
+}
+
+TimePoint RealtimeRule::Fire(TimePoint now) {
+  std::int64_t newest = inputs().front().ring.newest();
+  for (const Input& input : inputs()) newest = std::min(newest, input.ring.newest());
+  const std::int64_t oldest = std::max(next(), newest - kRingSteps + 1);
+  for (std::int64_t step = newest; step >= oldest; --step) {
+    const bool all =
+        std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+    if (!all) continue;
+    const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
+    ComputeDue(step, due, now);
+    break;
+  }
+  return now + kHeartbeat;
+}
+
+void RealtimeRule::ComputeDue(std::int64_t step, TimePoint due, TimePoint now) {
+  if (next() > 0) {
+    for (std::int64_t missed = next(); missed < step; ++missed) statistics_.Miss();
+  }
+  if (!Compute(step)) return;
+  statistics_.Tick(due, now);
+  if (status().fallback == fallback_) return;
+  fallback_ = status().fallback;
+  PublishStatus();
+}
+
+TimePoint RealtimeRule::UpdateHealth(TimePoint now) {
+  if (tick_input_ < inputs().size() && !clock_.started()) return TimePoint::max();
+  TimePoint next = TimePoint::max();
+  bool changed = false;
+  for (std::size_t i = 0; i < health_.size(); ++i) {
+    const std::int8_t before =
+        i < status().input_state.size() ? status().input_state[i] : std::int8_t{-1};
+    const auto state = static_cast<std::int8_t>(health_[i].Update(ClockOf(i, now)));
+    changed = changed || state != before;
+    const TimePoint change = health_[i].NextChange();
+    next = std::min(next, i == tick_input_ ? change : clock_.Wall(change));
+  }
+  if (changed) PublishStatus();
+  return next;
+}
+
+void RealtimeRule::WriteStatus(TimePoint now) {
+  ClearInputs(status());
+  for (std::size_t i = 0; i < health_.size(); ++i) {
+    WriteInput(kChannels[inputs()[i].channel].name, health_[i], ClockOf(i, now), status());
+    status().input_late.back() += late_[i];
+  }
+  statistics_.Write(status());
+  // How far the run is, which may be further than the role itself.
+  status().header.utime = std::max<std::int64_t>(0, std::max(newest_, next() - 1)) * step_us_;
+  NameCulprit(now);
+}
+
+void RealtimeRule::NameCulprit(TimePoint now) {
+  ChannelSet lost;
+  ChannelSet stale;
+  for (std::size_t i = 0; i < health_.size(); ++i) {
+    if (health_[i].state() == InputState::kLost) lost.set(inputs()[i].channel);
+    if (health_[i].state() == InputState::kStale) stale.set(inputs()[i].channel);
+  }
+  const auto culprit = FindCulprit(lost.any() ? lost : stale, {});
+  if (!culprit) return;
+  const auto input = static_cast<std::size_t>(
+      std::ranges::find(inputs(), culprit->channel, &Input::channel) - inputs().begin());
+  const std::int64_t age_ms = Milliseconds(health_[input].Age(ClockOf(input, now)));
+  status().waiting_for = kChannels[culprit->channel].name;
+  status().last_heard_step = health_[input].newest();
+  status().last_heard_ms = status().last_heard_step < 0 ? 0 : age_ms;
+  status().waiting_ms = age_ms;
+}
+
+}  // namespace fogline

@@ -1,0 +1,79 @@
+// Real time: the world ticks on the wall clock and waits for nobody, so a role that lacks an input
+// does not ask for it (by the time it came it would be old) but leaves the step out. It computes
+// the newest step for which all its inputs are there; what it has missed it counts. What comes
+// after its step is over is late: it is counted and never used.
+//
+// It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
+// and how well it keeps its time, and says it at once when that changes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "services/runtime/fire_rule.h"
+#include "services/runtime/input_health.h"
+#include "services/runtime/realtime_statistics.h"
+#include "services/runtime/run_clock.h"
+
+namespace fogline {
+
+/// How long a step takes on the wall clock.
+Duration PeriodOf(const Scenario& scenario, double speed);
+
+class RealtimeRule : public FireRule {
+ public:
+  /// @param speed simulated seconds per second, above 0
+  RealtimeRule(Node& node, const Scenario& scenario, double speed);
+
+  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
+  void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  TimePoint Poll(TimePoint now) override;
+  void WriteStatus(TimePoint now) override;
+
+  InputState StateOf(std::size_t input) const { return health_[input].state(); }
+  /// The state of an input for an algorithm that computes a step without some of its inputs. The
+  /// world's tick of this very step cannot be lost, however long it was before.
+  InputState StateFor(std::size_t input, std::int64_t step) const {
+    return input == tick_input_ && inputs()[input].ring.Has(step) ? InputState::kOk
+                                                                  : StateOf(input);
+  }
+
+ protected:
+  /// Computes the step whose time has come, if any. @return when to be called again at the latest
+  virtual TimePoint Fire(TimePoint now);
+
+  /// Computes a step that was due then; steps between the last one and it are missed.
+  void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
+  /// A message that is too late to be used.
+  void CountLate(std::size_t input) { ++late_[input]; }
+
+  Duration period() const { return period_; }
+  RunClock& clock() { return clock_; }
+  RealtimeStatistics& statistics() { return statistics_; }
+  /// The input that brings the world's ticks; inputs().size() if there is none.
+  std::size_t tick_input() const { return tick_input_; }
+
+ private:
+  /// Takes the time into account. @return when that may change a state
+  TimePoint UpdateHealth(TimePoint now);
+  /// The world's ticks are judged on the wall clock, everything else on that of the run.
+  TimePoint ClockOf(std::size_t input, TimePoint now) const {
+    return input == tick_input_ && clock_.started() ? now : clock_.At(now);
+  }
+  void NameCulprit(TimePoint now);
+
+  Duration period_;
+  std::int64_t step_us_;
+  HealthSection limits_;
+  RunClock clock_;
+  std::size_t tick_input_;
+  std::vector<InputHealth> health_;
+  std::vector<std::int64_t> late_;
+  RealtimeStatistics statistics_;
+  std::int64_t newest_ = -1;  // newest step that is known to be under way
+  std::string fallback_;      // as last published
+};
+
+}  // namespace fogline

@@ -1,0 +1,130 @@
+#include "services/runtime/tick_rule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fogline {
+namespace {
+
+// How long the recorder may take to write the last steps: it waits for repairs, or is itself
+// started again.
+constexpr Duration kEndLimit = milliseconds(3000);
+// A world that is started again asks the recorder this often, and takes the newest answer that has
+// come so long after the first.
+constexpr Duration kAskEvery = milliseconds(20);
+constexpr Duration kAnswersLast = milliseconds(5);
+// What the runner knows of the progress is so many steps old at most, or it does not matter.
+constexpr std::int64_t kProgressAge = 8;
+
+}  // namespace
+
+TickRule::TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate,
+                   Resume resume)
+    : RealtimeRule(node, scenario, speed), gate_(gate), resume_(std::move(resume)) {}
+
+void TickRule::OnGo(const run_t& run, TimePoint now) {
+  if (phase_ != Phase::kWaiting) return;
+  gate_.OnGo(run, now);
+  start_ = now;
+  phase_ = progress() < 0 ? Phase::kTicking : Phase::kResuming;
+}
+
+void TickRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
+  RealtimeRule::OnInput(input, step, time);
+  const bool from_host = inputs()[input].channel == IndexOf<arbitration_t>();
+  if (from_host && step + lead() == next() && sent_[RingSlot(step)] != TimePoint{}) {
+    statistics().Latency(time - sent_[RingSlot(step)]);
+  }
+}
+
+void TickRule::SetFinal(std::int64_t step) {
+  gate_.SetFinal(step);
+  phase_ = Phase::kEnding;
+}
+
+void TickRule::WriteStatus(TimePoint now) {
+  RealtimeRule::WriteStatus(now);
+  status().ticks_missed = ticks_missed_;
+}
+
+TimePoint TickRule::Fire(TimePoint now) {
+  switch (phase_) {
+    case Phase::kWaiting:
+      break;
+    case Phase::kResuming:
+      return LookForTruth(now);
+    case Phase::kTicking:
+      return Tick(now);
+    case Phase::kEnding:
+      return End(now);
+  }
+  return now + kHeartbeat;
+}
+
+TimePoint TickRule::Due(std::int64_t n) const {
+  return start_ +
+         duration_cast<Duration>(static_cast<double>(n) * std::chrono::duration<double>(period()));
+}
+
+TimePoint TickRule::Tick(TimePoint now) {
+  const TimePoint due = Due(tick_);
+  if (now < due) return due;
+  if (now - due >= period()) {
+    const std::int64_t missed = (now - due) / period() + 1;
+    ticks_missed_ += missed;
+    tick_ += missed;
+    return Due(tick_);
+  }
+  const std::int64_t step = next();
+  for (const Input& input : inputs()) {
+    if (step >= lead() && !input.ring.Has(step - lead())) {
+      statistics().Miss();
+      break;
+    }
+  }
+  clock().Tick(step, now);
+  ++tick_;
+  ComputeDue(step, due, now);
+  sent_[RingSlot(step)] = Clock::now();
+  return phase_ == Phase::kTicking ? Due(tick_) : now;
+}
+
+TimePoint TickRule::End(TimePoint now) {
+  if (!give_up_at_) give_up_at_ = now + kEndLimit;
+  if (gate_.Finished(next()) || now >= *give_up_at_) {
+    SetState(status_t::DONE);
+    return now + kHeartbeat;
+  }
+  if (const auto step = gate_.WantsRecorded(next(), now)) {
+    Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
+  }
+  return std::min(*give_up_at_, gate_.NextPoll(next(), now));
+}
+
+TimePoint TickRule::LookForTruth(TimePoint now) {
+  if (!subscribed_) {
+    subscribed_ = true;
+    bus().Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
+      const auto* truth = arrival.As<truth_t>();
+      if (phase_ != Phase::kResuming || truth == nullptr) return;
+      if (truth->header.run_id != status().header.run_id) return;
+      if (!truth_) truth_at_ = arrival.time();
+      if (!truth_ || truth->header.step > truth_->header.step) truth_ = *truth;
+    });
+  }
+  if (truth_ && now >= truth_at_ + kAnswersLast) {
+    start_ = now;
+    phase_ = Phase::kTicking;
+    resume_(*truth_);
+    return now;
+  }
+  if (now >= ask_at_) {
+    ask_at_ = now + kAskEvery;
+    const std::int64_t first = std::max<std::int64_t>(0, progress() - kProgressAge);
+    Ask(ChannelOf<truth_t>().name, {.first = first, .count = kRingSteps});
+    ++status().repairs_asked;
+  }
+  return truth_ ? truth_at_ + kAnswersLast : ask_at_;
+}
+
+}  // namespace fogline

@@ -1,0 +1,47 @@
+// The world in real time: it moves the cars at every tick with the commands that are there. What a
+// car does without one is the vehicle's own fallback (vehicle_fallback.h).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "services/runtime/input_state.h"
+#include "services/world/vehicle_fallback.h"
+#include "services/world/world.h"
+
+namespace fogline {
+
+/// Everything that the world reads, as far as it has come.
+struct WorldInputs {
+  Heard<arbitration_t> host;
+  Heard<follower_command_t> followers;
+};
+
+class FailsafeWorld {
+ public:
+  using Output = World::Output;
+
+  explicit FailsafeWorld(const Scenario& scenario) : world_(scenario), vehicles_(scenario) {}
+
+  const Output& Start(std::int64_t run_id) { return world_.Start(run_id); }
+  /// Goes on behind a step that a process before this one gave out.
+  /// @param minimal_risk cars that were in the manoeuvre (bits of status_t), and stay in it
+  void Resume(const truth_t& truth, std::int8_t minimal_risk);
+  /// The next step.
+  const Output& Step(const WorldInputs& inputs);
+
+  /// What cars do without a command, "" if every car has one.
+  const std::string& fallback() const { return fallback_; }
+  /// Cars that are in a minimal risk manoeuvre, bits of status_t.
+  std::int8_t minimal_risk() const;
+
+ private:
+  void Describe(const WorldInputs& inputs);
+
+  World world_;
+  VehicleFallback vehicles_;
+  truth_t now_{};
+  std::string fallback_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,61 @@
+#include "services/world/vehicle_fallback.h"
+
+namespace fogline {
+
+double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
+                         double applied_mps2) {
+  if (state == InputState::kLost) minimal_risk_.Begin(speed_mps, applied_mps2);
+  if (minimal_risk_.begun()) return minimal_risk_.Step(speed_mps);
+  if (Usable(state) && command_mps2) last_mps2_ = command_mps2;
+  if (!last_mps2_) last_mps2_ = applied_mps2;
+  return *last_mps2_;
+}
+
+VehicleFallback::VehicleFallback(const Scenario& scenario)
+    : host_(scenario.minimal_risk, scenario.step_s),
+      follower_(scenario.minimal_risk, scenario.step_s) {
+  host_out_.lambda_automation = 1;
+  followers_out_.num_followers = 1;
+  followers_out_.acceleration_mps2.assign(1, 0.0);
+  followers_out_.safe_distance_m.assign(1, 0.0);
+}
+
+void VehicleFallback::Step(const truth_t& now, const Heard<arbitration_t>& host,
+                           const Heard<follower_command_t>& followers) {
+  StepHost(now, host);
+  StepFollower(now, followers);
+}
+
+void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
+  if (Usable(host.state)) {
+    if (commanded_ && host.newest->mode != arbitration_t::MINIMAL_RISK) {
+      host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
+    }
+    if (host.newest->mode == arbitration_t::MINIMAL_RISK) commanded_ = true;
+    host_out_ = *host.newest;
+  }
+  host_out_.header = now.header;
+  host_out_.acceleration_mps2 = host_.Step(
+      host.state, Usable(host.state) ? std::optional(host.newest->acceleration_mps2) : std::nullopt,
+      now.host_speed_mps, now.host_acceleration_mps2);
+  if (host_.in_minimal_risk()) {
+    host_out_.mode = arbitration_t::MINIMAL_RISK;
+    host_out_.lambda_automation = 0;
+    host_out_.lambda_human = 0;
+  }
+}
+
+// A message without an acceleration for the car is as good as none.
+void VehicleFallback::StepFollower(const truth_t& now, const Heard<follower_command_t>& followers) {
+  if (now.num_followers < 1) return;
+  followers_out_.header = now.header;
+  std::optional<double> command_mps2;
+  if (Usable(followers.state) && followers.newest->num_followers > 0) {
+    command_mps2 = followers.newest->acceleration_mps2[0];
+    followers_out_.safe_distance_m[0] = followers.newest->safe_distance_m[0];
+  }
+  followers_out_.acceleration_mps2[0] = follower_.Step(
+      followers.state, command_mps2, now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+}
+
+}  // namespace fogline

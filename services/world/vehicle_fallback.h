@@ -1,0 +1,89 @@
+// What the cars themselves do, in real time, when their commands stay away: the last one holds for
+// a moment, then the car stops. No process but the world itself is needed for it.
+#pragma once
+
+#include <optional>
+
+#include "fogline/arbitration_t.hpp"
+#include "fogline/follower_command_t.hpp"
+#include "fogline/truth_t.hpp"
+#include "scenario/scenario.h"
+#include "services/minimal_risk/minimal_risk.h"
+#include "services/runtime/input_state.h"
+
+namespace fogline {
+
+/// One car:
+///
+///     command        | carried out
+///     ---------------|---------------------------------------------------------
+///     OK             | the command
+///     AWAITED, STALE | the last one; before the first, what is applied now
+///     LOST           | minimal risk manoeuvre, whatever comes afterwards
+class CarFallback {
+ public:
+  CarFallback(const MinimalRiskSection& limits, double step_s) : minimal_risk_(limits, step_s) {}
+
+  /// The acceleration for the step that begins here. Once per step.
+  /// @param command_mps2 the newest command, if any has come
+  /// @param speed_mps, applied_mps2 of the car now
+  double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
+              double applied_mps2);
+
+  /// The manoeuvre begins, unless it has begun already.
+  void BeginMinimalRisk(double speed_mps, double applied_mps2) {
+    minimal_risk_.Begin(speed_mps, applied_mps2);
+  }
+  bool in_minimal_risk() const { return minimal_risk_.begun(); }
+  bool standing() const { return minimal_risk_.standing(); }
+
+ private:
+  MinimalRisk minimal_risk_;
+  std::optional<double> last_mps2_;
+};
+
+/// The host and the following car. Their commands come out in the form that World::Step takes.
+///
+/// Once the arbitrator has commanded the host's minimal risk manoeuvre the vehicle remembers it: it
+/// goes on with that command as long as it comes, and by itself when it stays away or when another
+/// arbitrator, which knows nothing of it, commands anything else.
+class VehicleFallback {
+ public:
+  explicit VehicleFallback(const Scenario& scenario);
+
+  /// The commands for the step that begins with `now`. Once per step; see host() and followers().
+  void Step(const truth_t& now, const Heard<arbitration_t>& host,
+            const Heard<follower_command_t>& followers);
+
+  /// A process before this one was in the manoeuvre: so is this one, from now on.
+  void ResumeHost(const truth_t& now) {
+    host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
+  }
+  void ResumeFollower(const truth_t& now) {
+    if (now.num_followers < 1) return;
+    follower_.BeginMinimalRisk(now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+  }
+
+  /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
+  /// yet, with the authorities and the mode that this means.
+  const arbitration_t& host() const { return host_out_; }
+  const follower_command_t& followers() const { return followers_out_; }
+
+  /// The host is in the manoeuvre, by its own or by the arbitrator's command.
+  bool host_in_minimal_risk() const { return commanded_ || host_.in_minimal_risk(); }
+  /// The vehicle itself does it: the arbitrator is to be told.
+  bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
+  bool follower_in_minimal_risk() const { return follower_.in_minimal_risk(); }
+
+ private:
+  void StepHost(const truth_t& now, const Heard<arbitration_t>& host);
+  void StepFollower(const truth_t& now, const Heard<follower_command_t>& followers);
+
+  CarFallback host_;
+  CarFallback follower_;
+  bool commanded_ = false;  // by the arbitrator, at least once
+  arbitration_t host_out_{};
+  follower_command_t followers_out_{};
+};
+
+}  // namespace fogline

@@ -1,0 +1,161 @@
+// A run in real time without the time: all roles in one process, on a clock that is counted. Each
+// role can fall silent at a step. Who lacks an input then falls silent too, as its process would,
+// but for the arbitrator and the world, which do with what there is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "services/acc/acc.h"
+#include "services/arbitrator/failsafe_arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/radar/radar.h"
+#include "services/runtime/input_health.h"
+#include "services/world/vehicle_fallback.h"
+#include "services/world/world.h"
+
+namespace fogline::test {
+
+/// One channel at its reader: what has come, and how it is.
+template <class M>
+class Line {
+ public:
+  Line(const HealthSection& section, Duration period) : health_(section, period, TimePoint()) {}
+
+  void Send(const M& message, TimePoint now) {
+    if (health_.Arrived(message.header.step, now)) newest_ = message;
+  }
+  Heard<M> At(TimePoint now) { return {health_.Update(now), newest_ ? &*newest_ : nullptr}; }
+  /// Something of this step may still come.
+  bool Waits(std::int64_t step, TimePoint now) {
+    return health_.Update(now) != InputState::kLost && health_.newest() < step;
+  }
+
+ private:
+  InputHealth health_;
+  std::optional<M> newest_;
+};
+
+/// What is to be seen of a step: its truth, the arbitrator's command for it (nullptr if it is
+/// silent), and the command that the vehicle carries out in it.
+struct Moment {
+  const truth_t& truth;
+  const arbitration_t* sent;
+  const arbitration_t& carried_out;
+  const FailsafeArbitrator& arbitrator;
+  const VehicleFallback& vehicle;
+};
+
+class RealTimeLoop {
+ public:
+  explicit RealTimeLoop(const Scenario& scenario)
+      : period_(duration_cast<Duration>(std::chrono::duration<double>(scenario.step_s))),
+        deadline_(duration_cast<Duration>(scenario.health.deadline_share * period_)),
+        world_(scenario),
+        radar_(scenario),
+        lidar_(scenario),
+        fusion_(scenario),
+        acc_(scenario),
+        driver_(scenario),
+        follower_(scenario),
+        arbitrator_(scenario),
+        vehicle_(scenario),
+        radars_(scenario.health, period_),
+        lidars_(scenario.health, period_),
+        tracks_(scenario.health, period_),
+        automation_(scenario.health, period_),
+        drivers_(scenario.health, period_),
+        hosts_(scenario.health, period_),
+        followers_(scenario.health, period_) {
+    silent_from_.fill(std::numeric_limits<std::int64_t>::max());
+  }
+
+  /// The role sends nothing from this step on.
+  void Silence(Role role, std::int64_t step) {
+    silent_from_[static_cast<std::size_t>(role)] = step;
+  }
+
+  /// Runs to the end; `visit(const Moment&)` for every step.
+  template <class Visit>
+  void Run(Visit&& visit) {
+    const auto* output = &world_.Start(1);
+    while (true) {
+      const auto& [truth, ego] = *output;
+      const std::int64_t step = truth.header.step;
+      const TimePoint tick = TimePoint() + step * period_;
+      Offers(truth, ego, tick + kTravel);
+      const arbitration_t* sent = nullptr;
+      if (Speaks(Role::kArbitrator, step)) sent = &Arbitrate(ego, tick + 2 * kTravel);
+      vehicle_.Step(truth, hosts_.At(tick + period_), followers_.At(tick + period_));
+      visit(Moment{truth, sent, vehicle_.host(), arbitrator_, vehicle_});
+      if (truth.last) break;
+      output = &world_.Step(vehicle_.host(), vehicle_.followers());
+    }
+  }
+
+ private:
+  static constexpr Duration kTravel = milliseconds(1);
+
+  bool Speaks(Role role, std::int64_t step) const {
+    return step < silent_from_[static_cast<std::size_t>(role)];
+  }
+
+  void Offers(const truth_t& truth, const ego_t& ego, TimePoint now) {
+    const std::int64_t step = truth.header.step;
+    const auto* radar = Speaks(Role::kRadar, step) ? &radar_.Step(truth) : nullptr;
+    const auto* lidar = Speaks(Role::kLidar, step) ? &lidar_.Step(truth) : nullptr;
+    if (radar != nullptr) radars_.Send(*radar, now);
+    if (lidar != nullptr) lidars_.Send(*lidar, now);
+    if (radar != nullptr && lidar != nullptr && Speaks(Role::kFusion, step)) {
+      const track_t& track = fusion_.Step(ego, *radar, *lidar);
+      tracks_.Send(track, now);
+      if (Speaks(Role::kAcc, step)) automation_.Send(acc_.Step(ego, track), now);
+    }
+    if (Speaks(Role::kDriver, step)) drivers_.Send(driver_.Step(truth), now);
+    if (Speaks(Role::kFollower, step)) followers_.Send(follower_.Step(truth), now);
+  }
+
+  // At once if nothing is missing that may still come, at the deadline otherwise.
+  const arbitration_t& Arbitrate(const ego_t& ego, TimePoint now) {
+    const std::int64_t step = ego.header.step;
+    const bool waits = std::apply([&](auto&... line) { return (line.Waits(step, now) || ...); },
+                                  std::tie(radars_, lidars_, tracks_, automation_, drivers_));
+    const TimePoint at = waits ? now + deadline_ : now;
+    const arbitration_t& command = arbitrator_.Step(ego.header, {{InputState::kOk, &ego},
+                                                                 radars_.At(at),
+                                                                 lidars_.At(at),
+                                                                 tracks_.At(at),
+                                                                 automation_.At(at),
+                                                                 drivers_.At(at)});
+    hosts_.Send(command, at);
+    return command;
+  }
+
+  Duration period_;
+  Duration deadline_;
+  World world_;
+  Radar radar_;
+  Lidar lidar_;
+  Fusion fusion_;
+  Acc acc_;
+  Driver driver_;
+  Follower follower_;
+  FailsafeArbitrator arbitrator_;
+  VehicleFallback vehicle_;
+  Line<radar_t> radars_;
+  Line<lidar_t> lidars_;
+  Line<track_t> tracks_;
+  Line<accel_command_t> automation_;
+  Line<driver_command_t> drivers_;
+  Line<arbitration_t> hosts_;
+  Line<follower_command_t> followers_;
+  std::array<std::int64_t, kRoles.size()> silent_from_{};
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,128 @@
+// Each role falls silent at many steps of the shipped scenarios: what does the vehicle do?
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scenario/loader.h"
+#include "services/closed_loop/closed_loop.h"
+#include "tests/property/fallback/real_time_loop.h"
+
+namespace fogline {
+namespace {
+
+using test::Moment;
+using test::RealTimeLoop;
+
+constexpr double kRounding = 1e-9;
+constexpr std::int64_t kDetection = 3;       // periods
+constexpr std::int64_t kInForce = 1;         // further period
+constexpr std::int64_t kBetweenDeaths = 13;  // steps
+
+Scenario Shipped(const std::string& name) {
+  return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/" + name, {});
+}
+
+class SilentRolesTest : public testing::TestWithParam<const char*> {
+ protected:
+  // Runs with these roles silent, from every so many steps on: check(silent from, moment).
+  template <class Check>
+  void ForEachDeath(std::initializer_list<Role> roles, Check&& check) {
+    for (std::int64_t death = 0; death < scenario_.steps - 10; death += kBetweenDeaths) {
+      SCOPED_TRACE("silent from step " + std::to_string(death));
+      RealTimeLoop loop(scenario_);
+      for (const Role role : roles) loop.Silence(role, death);
+      double last_mps2 = 0;
+      loop.Run([&](const Moment& m) {
+        ASSERT_EQ(m.truth.collision, truth_t::COLLISION_NONE) << "at step " << m.truth.header.step;
+        // What the command of the step before says is what the car has done since.
+        if (m.truth.host_speed_mps > 0 && m.truth.header.step > 0) {
+          ASSERT_EQ(m.truth.host_acceleration_mps2, last_mps2);
+        }
+        last_mps2 = m.carried_out.acceleration_mps2;
+        ASSERT_TRUE(std::isfinite(last_mps2));
+        check(death, m);
+      });
+      if (HasFatalFailure()) return;
+    }
+  }
+  // Whether the fallback must be in force in this step.
+  static bool Due(std::int64_t death, const Moment& m) {
+    return m.truth.header.step >= death - 1 + kDetection + kInForce;
+  }
+
+  Scenario scenario_ = Shipped(GetParam());
+};
+
+TEST_P(SilentRolesTest, NobodySilentIsTheLockstepRun) {
+  ClosedLoop lockstep(scenario_);
+  std::vector<double> commands;
+  lockstep.Run(1, [&](const StepView& step) { commands.push_back(step.host.acceleration_mps2); });
+  std::size_t k = 0;
+  RealTimeLoop(scenario_).Run([&](const Moment& m) {
+    ASSERT_LT(k, commands.size());
+    ASSERT_EQ(m.carried_out.acceleration_mps2, commands[k++]);
+  });
+  EXPECT_EQ(k, commands.size());
+}
+
+TEST_P(SilentRolesTest, TheHumanDrivesWithoutASensorTheTrackOrTheAutomation) {
+  for (const Role role : {Role::kRadar, Role::kLidar, Role::kFusion, Role::kAcc}) {
+    SCOPED_TRACE(NameOf(role));
+    ForEachDeath({role}, [&](std::int64_t death, const Moment& m) {
+      if (Due(death, m)) {
+        ASSERT_EQ(m.carried_out.mode, arbitration_t::HUMAN);
+      }
+    });
+  }
+}
+
+TEST_P(SilentRolesTest, WithoutTheHumanTheAutomationDrivesUntilTheConflictAsksForHim) {
+  ForEachDeath({Role::kDriver}, [&](std::int64_t death, const Moment& m) {
+    if (!Due(death, m)) return;
+    ASSERT_NE(m.carried_out.mode, arbitration_t::HUMAN);
+    if (m.carried_out.doc >= m.carried_out.threshold) {
+      ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+    }
+  });
+}
+
+TEST_P(SilentRolesTest, TheHostStopsWithoutHumanAndAutomation) {
+  ForEachDeath({Role::kDriver, Role::kAcc}, [&](std::int64_t death, const Moment& m) {
+    if (!Due(death, m)) return;
+    ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+    ASSERT_FALSE(m.vehicle.host_stops_by_itself());
+  });
+}
+
+TEST_P(SilentRolesTest, TheVehicleStopsByItselfWithoutTheArbitrator) {
+  ForEachDeath({Role::kArbitrator}, [&](std::int64_t death, const Moment& m) {
+    if (!Due(death, m)) return;
+    ASSERT_TRUE(m.vehicle.host_stops_by_itself());
+    ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+    ASSERT_GE(m.carried_out.acceleration_mps2,
+              std::min(-scenario_.minimal_risk.deceleration_mps2, m.truth.host_acceleration_mps2) -
+                  kRounding);
+  });
+}
+
+TEST_P(SilentRolesTest, TheFollowingCarStopsByItselfWithoutItsDriver) {
+  ForEachDeath({Role::kFollower}, [&](std::int64_t death, const Moment& m) {
+    if (!Due(death, m)) return;
+    ASSERT_TRUE(m.vehicle.follower_in_minimal_risk());
+    ASSERT_NE(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, SilentRolesTest, testing::Values("paper.json", "dense_fog.json"),
+                         [](const auto& shipped) {
+                           const std::string name = shipped.param;
+                           return name.substr(0, name.find('.'));
+                         });
+
+}  // namespace
+}  // namespace fogline

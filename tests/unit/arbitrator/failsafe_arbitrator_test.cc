@@ -1,0 +1,228 @@
+#include "services/arbitrator/failsafe_arbitrator.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kAutomation_mps2 = 0.123;
+constexpr double kHuman_mps2 = -0.456;
+constexpr double kApplied_mps2 = 0.3;
+
+Scenario SomeScenario() {
+  Scenario scenario;
+  scenario.arbitrator.window_steps = 1;
+  scenario.minimal_risk = {.deceleration_mps2 = 3, .jerk_mps3 = 2};
+  return scenario;
+}
+
+// The arbitrator with messages of its own, which a test changes.
+class FailsafeArbitratorTest : public testing::Test {
+ protected:
+  FailsafeArbitratorTest() {
+    radar_.valid = lidar_.valid = 1;
+    radar_.range_m = lidar_.range_m = 32;
+    ego_.speed_mps = 20;
+    ego_.acceleration_mps2 = kApplied_mps2;
+    automation_.acceleration_mps2 = kAutomation_mps2;
+    driver_.acceleration_mps2 = kHuman_mps2;
+    SetAll(InputState::kOk);
+  }
+
+  void SetAll(InputState state) {
+    Set(inputs_.ego, state, ego_);
+    Set(inputs_.radar, state, radar_);
+    Set(inputs_.lidar, state, lidar_);
+    Set(inputs_.track, state, track_);
+    Set(inputs_.automation, state, automation_);
+    Set(inputs_.driver, state, driver_);
+  }
+  template <class M>
+  static void Set(Heard<M>& input, InputState state, const M& message) {
+    input = {.state = state, .newest = state == InputState::kAwaited ? nullptr : &message};
+  }
+  void Disagree() { radar_.range_m = lidar_.range_m + 5; }
+
+  // The next step; sensors that are OK bring a value of it.
+  const arbitration_t& Step() {
+    const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
+    ++step_;
+    if (inputs_.radar.state == InputState::kOk) radar_.header = header;
+    if (inputs_.lidar.state == InputState::kOk) lidar_.header = header;
+    return arbitrator_.Step(header, inputs_);
+  }
+  void ExpectAutomation(const arbitration_t& out) {
+    EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
+    EXPECT_EQ(out.lambda_automation, 1);
+    EXPECT_EQ(out.lambda_human, 0);
+    EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
+  }
+  void ExpectHuman(const arbitration_t& out) {
+    EXPECT_EQ(out.mode, arbitration_t::HUMAN);
+    EXPECT_EQ(out.lambda_automation, 0);
+    EXPECT_EQ(out.lambda_human, 1);
+    EXPECT_EQ(out.acceleration_mps2, kHuman_mps2);
+  }
+  void ExpectMinimalRisk(const arbitration_t& out, double acceleration_mps2) {
+    EXPECT_EQ(out.mode, arbitration_t::MINIMAL_RISK);
+    EXPECT_EQ(out.lambda_automation, 0);
+    EXPECT_EQ(out.lambda_human, 0);
+    EXPECT_NEAR(out.acceleration_mps2, acceleration_mps2, 1e-12);
+  }
+
+  FailsafeArbitrator arbitrator_{SomeScenario()};
+  ego_t ego_{};
+  radar_t radar_{};
+  lidar_t lidar_{};
+  track_t track_{};
+  accel_command_t automation_{};
+  driver_command_t driver_{};
+  ArbitratorInputs inputs_;
+  std::int64_t step_ = 0;
+};
+
+// The state of an input that gives an offer.
+InputState StateOf(Offer offer) {
+  return offer == kThere    ? InputState::kOk
+         : offer == kNotYet ? InputState::kAwaited
+                            : InputState::kLost;
+}
+
+// Every row of the table, with every combination that it names: what comes out is what the row
+// says.
+TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
+  int cases = 0;
+  for (const FailsafeRow& row : kFailsafeTable) {
+    for (const Offer ego : {kThere, kNotYet, kGone}) {
+      for (const Offer automation : {kThere, kNotYet, kGone}) {
+        for (const Offer human : {kThere, kNotYet, kGone}) {
+          for (const Conflict conflict : {kCalm, kDisputed}) {
+            if (!Applies(row, ego, automation, human, conflict)) continue;
+            ++cases;
+            SCOPED_TRACE("case " + std::to_string(cases));
+            arbitrator_ = FailsafeArbitrator(SomeScenario());
+            SetAll(InputState::kOk);
+            radar_.range_m = lidar_.range_m + (conflict == kDisputed ? 5 : 0);
+            Set(inputs_.ego, StateOf(ego), ego_);
+            Set(inputs_.automation, StateOf(automation), automation_);
+            Set(inputs_.driver, StateOf(human), driver_);
+            const arbitration_t& out = Step();
+            EXPECT_EQ(arbitrator_.decision(), row.decision);
+            switch (row.decision) {
+              case Decision::kRegular:
+                conflict == kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
+                break;
+              case Decision::kAutomation:
+                ExpectAutomation(out);
+                break;
+              case Decision::kHuman:
+                ExpectHuman(out);
+                break;
+              case Decision::kHold:
+                EXPECT_EQ(out.acceleration_mps2, ego == kThere ? kApplied_mps2 : 0);
+                break;
+              case Decision::kMinimalRisk:
+                ExpectMinimalRisk(out, kApplied_mps2 - 0.2);
+                break;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(cases, 3 * 3 * 3 * 2);
+}
+
+TEST_F(FailsafeArbitratorTest, CopiesTheHeaderOfItsStep) {
+  Step();
+  const arbitration_t& out = Step();
+  EXPECT_EQ(out.header.run_id, 7);
+  EXPECT_EQ(out.header.step, 1);
+  EXPECT_EQ(out.header.utime, 100'000);
+}
+
+TEST_F(FailsafeArbitratorTest, CallsTheHumanForEachInputThatTheAutomationNeeds) {
+  for (InputState* state : {&inputs_.radar.state, &inputs_.lidar.state, &inputs_.track.state,
+                            &inputs_.automation.state}) {
+    SetAll(InputState::kOk);
+    ExpectAutomation(Step());
+    *state = InputState::kLost;
+    ExpectHuman(Step());
+  }
+}
+
+TEST_F(FailsafeArbitratorTest, CallsTheHumanWhereTheSensorsComeInTimeButNeverOfTheSameStep) {
+  ExpectAutomation(Step());
+  lidar_.header.step = -10;
+  inputs_.lidar.state = InputState::kStale;  // the test then leaves its step alone
+  for (int k = 0; k < 5; ++k) Step();
+  inputs_.radar.state = InputState::kOk;
+  ExpectHuman(Step());
+}
+
+TEST_F(FailsafeArbitratorTest, HoldsTheLastOffersWhileTheyAreStale) {
+  SetAll(InputState::kStale);
+  ExpectAutomation(Step());
+  Disagree();
+  radar_.header.step = lidar_.header.step = 1;
+  ExpectHuman(Step());
+}
+
+TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
+  ExpectAutomation(Step());
+  // GIVEN a LiDAR value that has not come, and a radar value 5 m further on
+  inputs_.lidar.state = InputState::kStale;
+  Disagree();
+  // THEN the last pair's conflict holds until the LiDAR's value of that step is there
+  const arbitration_t& held = Step();
+  EXPECT_EQ(held.conflict_m, 0);
+  ExpectAutomation(held);
+  inputs_.lidar.state = InputState::kOk;
+  ExpectHuman(Step());
+}
+
+TEST_F(FailsafeArbitratorTest, StopsWhenTheHumanIsLostAndTheConflictAsksForHim) {
+  inputs_.driver.state = InputState::kLost;
+  ExpectAutomation(Step());
+  Disagree();
+  ExpectMinimalRisk(Step(), kApplied_mps2 - 0.2);
+}
+
+TEST_F(FailsafeArbitratorTest, NeverLeavesTheMinimalRiskManoeuvre) {
+  SetAll(InputState::kLost);
+  inputs_.ego.state = InputState::kOk;
+  ExpectMinimalRisk(Step(), kApplied_mps2 - 0.2);
+  SetAll(InputState::kOk);
+  ExpectMinimalRisk(Step(), kApplied_mps2 - 0.4);
+  ego_.speed_mps = 0;
+  for (int k = 0; k < 100; ++k) Step();
+  ExpectMinimalRisk(Step(), 0);
+  EXPECT_TRUE(arbitrator_.standing());
+}
+
+TEST_F(FailsafeArbitratorTest, StopsOnDemand) {
+  ExpectAutomation(Step());
+  arbitrator_.DemandMinimalRisk();
+  ExpectMinimalRisk(Step(), kApplied_mps2 - 0.2);
+  EXPECT_EQ(arbitrator_.decision(), Decision::kMinimalRisk);
+}
+
+TEST_F(FailsafeArbitratorTest, BeginsFromItsLastCommandWithoutOdometry) {
+  ExpectAutomation(Step());
+  inputs_.ego.state = InputState::kLost;
+  ExpectMinimalRisk(Step(), kAutomation_mps2 - 0.2);
+}
+
+TEST_F(FailsafeArbitratorTest, HandsBackOnceTheAutomationIsThereAgain) {
+  inputs_.automation.state = InputState::kLost;
+  ExpectHuman(Step());
+  EXPECT_EQ(FallbackText(arbitrator_.decision()), "the human drives");
+  inputs_.automation.state = InputState::kOk;
+  ExpectAutomation(Step());
+  EXPECT_EQ(FallbackText(arbitrator_.decision()), "");
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,98 @@
+#include "services/runtime/duration_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "services/runtime/random.h"
+
+namespace fogline {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::nanoseconds;
+
+TEST(DurationHistogramTest, KnowsNothingOfNothing) {
+  const DurationHistogram histogram;
+  EXPECT_EQ(histogram.count(), 0);
+  EXPECT_EQ(histogram.QuantileUs(0.99), 0);
+  EXPECT_EQ(histogram.MaxUs(), 0);
+}
+
+TEST(DurationHistogramTest, IsExactBelow128Microseconds) {
+  DurationHistogram histogram;
+  for (int us = 1; us <= 100; ++us) histogram.Add(microseconds(us));
+  EXPECT_EQ(histogram.QuantileUs(0), 1);
+  EXPECT_EQ(histogram.QuantileUs(0.5), 50);
+  EXPECT_EQ(histogram.QuantileUs(0.99), 99);
+  EXPECT_EQ(histogram.QuantileUs(1), 100);
+  EXPECT_EQ(histogram.MaxUs(), 100);
+}
+
+TEST(DurationHistogramTest, CountsWhatIsOutsideItsRangeAtItsEnds) {
+  DurationHistogram histogram;
+  histogram.Add(microseconds(-5));
+  EXPECT_EQ(histogram.QuantileUs(1), 0);
+  histogram.Add(std::chrono::hours(10));
+  EXPECT_EQ(histogram.MaxUs(), DurationHistogram::kMaxUs);
+  EXPECT_EQ(histogram.QuantileUs(1), DurationHistogram::kMaxUs);
+  EXPECT_EQ(histogram.count(), 2);
+}
+
+TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
+  DurationHistogram histogram;
+  histogram.Add(nanoseconds(1));
+  EXPECT_EQ(histogram.MaxUs(), 1);
+}
+
+// Alone in its histogram a duration comes out as it is, thanks to the maximum; below a larger one
+// it is rounded up within its cell.
+TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
+  for (std::int64_t us = 1; us < DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
+    DurationHistogram histogram;
+    histogram.Add(microseconds(us));
+    EXPECT_EQ(histogram.QuantileUs(1), us);
+    histogram.Add(microseconds(DurationHistogram::kMaxUs));
+    const std::int64_t median = histogram.QuantileUs(0.5);
+    ASSERT_GE(median, us);
+    ASSERT_LE(median - us, us / 64) << us;
+  }
+}
+
+TEST(DurationHistogramTest, AgreesWithSorting) {
+  const Random random(3, Stream::kRadar);
+  DurationHistogram histogram;
+  std::vector<std::int64_t> all;
+  for (std::int64_t i = 0; i < 20'000; ++i) {
+    // A latency with a long tail: 300 us by a factor of e to either side, often.
+    all.push_back(static_cast<std::int64_t>(300 * std::exp(random.Normal2(i, 0)[0])));
+    histogram.Add(microseconds(all.back()));
+  }
+  std::ranges::sort(all);
+  for (const double q : {0.01, 0.5, 0.9, 0.99, 0.999, 1.0}) {
+    const std::int64_t exact =
+        all[static_cast<std::size_t>(std::ceil(q * static_cast<double>(all.size()))) - 1];
+    EXPECT_GE(histogram.QuantileUs(q), exact) << q;
+    EXPECT_LE(histogram.QuantileUs(q), exact + exact / 64) << q;
+  }
+}
+
+TEST(DurationHistogramTest, TheSumOfTwoIsThatOfAllTheirDurations) {
+  DurationHistogram both;
+  DurationHistogram a;
+  DurationHistogram b;
+  for (int us = 1; us < 3000; us += 7) {
+    (us % 2 == 0 ? a : b).Add(microseconds(us));
+    both.Add(microseconds(us));
+  }
+  a.Add(b);
+  EXPECT_EQ(a.count(), both.count());
+  EXPECT_EQ(a.MaxUs(), both.MaxUs());
+  for (const double q : {0.1, 0.5, 0.99}) EXPECT_EQ(a.QuantileUs(q), both.QuantileUs(q));
+}
+
+}  // namespace
+}  // namespace fogline
