@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/random.h"
 
 namespace fogline {
 namespace {
@@ -92,7 +93,8 @@ FaultRates ParseFaults(std::string_view text) {
 
 std::array<double, 2> Faults::Uniform2(Draw draw) const {
   constexpr std::uint32_t kDraws = 4;
-  return random_.Uniform2(
+  const Random random(rates_.seed, Stream::kFaults);
+  return random.Uniform2(
       count_, kDraws * static_cast<std::uint32_t>(role_) + static_cast<std::uint32_t>(draw));
 }
 
