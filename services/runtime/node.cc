@@ -220,8 +220,8 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
       if (const RefusalCounter wrong = Wrong(index, arrival)) return Refuse(wrong);
       const ChannelInfo& channel = kChannels[inputs_[index].channel];
       return Fail(
-          fmt::format("step {}: {} came twice with different contents: is there a second {}?",
-                      step, channel.name, NameOf(channel.from)));
+          fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
+                      channel.name, NameOf(channel.from)));
     }
     case StepRing::Verdict::kNew:
       return TakeInput(index, step, arrival);

@@ -33,8 +33,10 @@ class RunClock {
 
   /// @pre `now` is not before the last tick
   TimePoint At(TimePoint now) const { return std::min(now, limit_) - paused_; }
-  /// When At() is that, on the wall clock, if the world ticks on.
-  TimePoint Wall(TimePoint at) const { return at == TimePoint::max() ? at : at + paused_; }
+  /// When At() is that, on the wall clock; TimePoint::max() if not before the next tick.
+  TimePoint Wall(TimePoint at) const {
+    return at > limit_ - paused_ ? TimePoint::max() : at + paused_;
+  }
 
   bool started() const { return step_ >= 0; }
   /// Newest step that the world has begun.

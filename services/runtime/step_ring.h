@@ -62,7 +62,7 @@ class StepRing {
     newest_ = std::max(newest_, step);
   }
 
-  bool Has(std::int64_t step) const { return slots_[RingSlot(step)].step == step; }
+  bool Has(std::int64_t step) const { return step >= 0 && slots_[RingSlot(step)].step == step; }
 
   /// Bytes of a step that the ring has.
   Bytes Get(std::int64_t step) const { return slots_[RingSlot(step)].bytes; }

@@ -28,9 +28,9 @@ constexpr double kSpeed = 5;
 constexpr double kPeriodS = kStepS / kSpeed;
 // A step at which the automation drives in both scenarios, and in which nothing else goes on.
 constexpr int kFaultStep = 60;
-// Section minimal_risk.
-constexpr double kDecelerationMps2 = 3;
-constexpr double kJerkMps3 = 2.5;
+// Defaults of section minimal_risk.
+constexpr double kDecelerationMps2 = 1;
+constexpr double kJerkMps3 = 1;
 // Rounding of numbers near 100 m.
 constexpr double kRounding = 1e-9;
 
@@ -178,7 +178,7 @@ void ExpectStandstillWithinLimits(const Log& log, std::int64_t step) {
     const double jerk = (after.host_acceleration_mps2 - before.host_acceleration_mps2) / kStepS;
     EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
     EXPECT_GE(after.host_acceleration_mps2, -kDecelerationMps2 - kRounding) << "step " << k;
-    if (stood) EXPECT_EQ(after.host_speed_mps, 0) << "drives off at step " << k;
+    EXPECT_TRUE(!stood || after.host_speed_mps == 0) << "drives off at step " << k;
     stood = stood || after.host_speed_mps == 0;
   }
 }
@@ -190,15 +190,15 @@ void ExpectNoCollision(const Log& log) {
 }
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
-  RealtimeRun run("scenario/paper.json", 120);
+  RealtimeRun run("scenario/paper.json", 60);
   const auto result = run.Finish();
   const auto& realtime = result["realtime"];
   EXPECT_EQ(realtime["missed_messages"], 0) << realtime.dump(2);
-  EXPECT_EQ(realtime["ticks"], 120);
+  EXPECT_EQ(realtime["ticks"], 60);
   EXPECT_GT(realtime["latency_p50_us"], 0);
   if (realtime["deadline_misses"] == 0) {
     const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
-                                         "--set", "/steps=120", "--transport", "direct"});
+                                         "--set", "/steps=60", "--transport", "direct"});
     EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
   }
 }
@@ -242,8 +242,6 @@ void Judge(const Log& log, const Fault& fault, const nlohmann::json& result) {
     EXPECT_LT(log.truth.at(begin + 2).host_acceleration_mps2,
               log.truth.at(begin).host_acceleration_mps2);
     ExpectStandstillWithinLimits(log, begin);
-    EXPECT_EQ(log.status.back().minimal_risk | status_t::HOST,
-              log.status.back().minimal_risk | status_t::HOST);
   } else if (fault.role == "world" || fault.role == "follower" || fault.role == "driver") {
     // The host is none the worse for it.
     ExpectCommandsAreCarriedOut(log, 1, last);
@@ -258,7 +256,9 @@ class FaultInRealtimeTest : public testing::TestWithParam<Fault> {};
 
 TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) {
   const Fault& fault = GetParam();
-  RealtimeRun run("scenario/" + fault.scenario + ".json", 180);
+  // From 20 m/s the manoeuvre takes 21 s.
+  const int steps = fault.role == "arbitrator" ? kFaultStep + 230 : kFaultStep + 80;
+  RealtimeRun run("scenario/" + fault.scenario + ".json", steps);
   run.WaitForStep(kFaultStep);
   run.Signal(fault.role, fault.signal);
   const auto result = run.Finish();

@@ -84,7 +84,7 @@ TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   Encode(status, bytes);
   RecordProperty("bytes", static_cast<int>(bytes.size()));
   // 200 bytes are left for an error in words.
-  EXPECT_LE(bytes.size(), kMaxStepMessageBytes - 200);
+  EXPECT_LE(bytes.size(), kMaxMessageBytes - 200);
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ TEST(ExplainTest, ListsTheFieldsOfASectionAndOfTheWhole) {
   EXPECT_THAT(
       ExplainField("/measures"),
       testing::HasSubstr("/measures/safety_floor_m  a number in [0, 10] m, default 0.001 m"));
-  EXPECT_THAT(ExplainField("/"), testing::HasSubstr("    /world        The cars at step 0"));
+  EXPECT_THAT(ExplainField("/"), testing::HasSubstr("    /world         The cars at step 0"));
   EXPECT_EQ(ExplainField("/"), ExplainField(""));
 }
 
