@@ -143,7 +143,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
                    const nlohmann::detail::exception& error) override {
     // The parser's position is behind the byte at which it gave up; the token's start is the better
     // place, except within a string, which may be long.
-    const std::string detail = SyntaxDetail(error.what());
+    const std::string detail = EscapeControls(SyntaxDetail(error.what()));
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
     const std::size_t offset =
         detail.starts_with("invalid string") ? last : std::min(TokenStart(), last);
