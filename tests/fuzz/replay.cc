@@ -2,7 +2,11 @@
 // ones each time:
 //   fuzz_NAME_replay COUNT [FILE | FOLDER]...
 //   fuzz_NAME_replay --seeds FOLDER     writes the seeds there, for libFuzzer
+// An input that breaks something is left in the file fuzz_NAME_replay.finding beside the program.
+#include <sanitizer/common_interface_defs.h>
+
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -181,10 +185,22 @@ std::vector<fs::path> FilesIn(const fs::path& path) {
   return files;
 }
 
+std::string finding_path;
+Bytes running;
+
+void SaveFinding() {
+  std::ofstream out(finding_path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(running.data()),
+            static_cast<std::streamsize>(running.size()));
+  out.close();
+  fmt::print(stderr, "the input is in {}\n", finding_path);
+}
+
 /// @return whether the input was taken
 bool Run(const Input& input) {
   // In a block of its own size, so that a look beyond its end is one.
   const std::vector<std::uint8_t> exact(input.begin(), input.end());
+  running = exact;
   const long before = Taken();
   LLVMFuzzerTestOneInput(exact.data(), exact.size());
   return Taken() > before;
@@ -228,6 +244,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: {0} COUNT [FILE | FOLDER]...\n       {0} --seeds FOLDER\n", argv[0]);
     return 2;
   }
+  fogline::fuzz::finding_path = std::string(argv[0]) + ".finding";
+  __sanitizer_set_death_callback(fogline::fuzz::SaveFinding);
+  std::signal(SIGABRT, [](int) { fogline::fuzz::SaveFinding(); });
   return fogline::fuzz::Replay(std::strtol(arguments[0].c_str(), nullptr, 10),
                                {arguments.begin() + 1, arguments.end()});
 }

@@ -4,6 +4,7 @@
 
 #include "scenario/loader.h"
 #include "services/recorder/run_log.h"
+#include "services/runtime/seal.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {
@@ -92,11 +93,21 @@ void DemandRunOrRefusal(Bytes bytes) {
 std::vector<Input> Seeds() {
   const Input log = SampleLog();
   const Input torn(log.begin(), log.end() - 9);
-  // The same events from back to front, but for the scenario's parts.
   const MemoryFile file(log);
   EventLogReader reader(file.path());
   std::vector<Event> events;
   while (const auto event = reader.Next()) events.push_back(*event);
+
+  // Signed traffic as lcm-logger writes it.
+  const MemoryFile sealed;
+  Seal seal(SealKey({}), {});
+  {
+    EventLogWriter writer(sealed.path());
+    for (const Event& event : events) {
+      writer.Write(event.channel, event.utime, seal.Sign(event.channel, event.data));
+    }
+  }
+  // The same events from back to front, but for the scenario's parts.
   const auto steps = std::ranges::find_if(
       events, [](const Event& event) { return event.channel != ChannelOf<run_t>().name; });
   std::reverse(steps, events.end());
@@ -106,7 +117,7 @@ std::vector<Input> Seeds() {
     EventLogWriter writer(reversed.path());
     for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
-  return {log, torn, reversed.Content()};
+  return {log, torn, sealed.Content(), reversed.Content()};
 }
 
 }  // namespace fogline::fuzz
