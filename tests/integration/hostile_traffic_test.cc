@@ -1,0 +1,83 @@
+// A run under 20,000 datagrams a second that are none of its messages.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+constexpr double kRateHz = 20'000;
+// Simulated time of the scenario.
+constexpr double kScenarioS = 50;
+
+/// How long a run shall take: campaigns ask for more.
+double Seconds(double usually) {
+  const char* asked = std::getenv("FOGLINE_TEST_SECONDS");
+  return asked != nullptr ? std::atof(asked) : usually;
+}
+
+class HostileTrafficTest : public NetworkTest {
+ protected:
+  struct Ended {
+    nlohmann::json result;  // of the run
+    nlohmann::json sent;    // at the run
+  };
+
+  /// A run of so many seconds on a machine whose network is full of hostile traffic since before it
+  /// began. It must succeed.
+  /// @param more arguments of the hostile program
+  Ended RunUnder(std::vector<std::string> more, double seconds) {
+    const Machine machine("target");
+    machine.RouteMulticastToItself();
+    more.insert(more.begin(), {Program("hostile_traffic"), "--port", "7700", "--rate",
+                               std::to_string(kRateHz), "--seconds", "600"});
+    Background hostile(machine.On(more));
+    Background run(machine.On(Run({"--lcm-url", "udpm://239.255.76.67:7700?ttl=0", "--pace",
+                                   std::to_string(kScenarioS / seconds)})));
+    EXPECT_EQ(run.Wait(std::chrono::seconds(200)), 0) << run.Err();
+    hostile.Signal(SIGTERM);
+    EXPECT_EQ(hostile.Wait(), 0) << hostile.Err();
+    return {ResultOf(run), nlohmann::json::parse(hostile.Out(), nullptr, false)};
+  }
+};
+
+TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
+  const double seconds = Seconds(4);
+  const auto [result, sent] = RunUnder({}, seconds);
+  // GIVEN that it was there
+  EXPECT_GT(sent["sent"], kRateHz / 2 * seconds) << sent;
+  for (const char* kind : {"noise", "noise_on_a_channel", "not_finite", "wrong_step", "foreign_run",
+                           "wrong_type", "truncated", "oversized", "fragment", "request"}) {
+    EXPECT_GT(sent.value(kind, 0), 500) << kind;
+  }
+  // THEN the result is that of the undisturbed run
+  EXPECT_EQ(result["digest"], Undisturbed());
+  // AND it took no longer than its pace wants, but for moments
+  EXPECT_LT(result["wall_s"], 2 * seconds);
+  // AND what was refused is counted by its kind
+  for (const char* kind : {"foreign", "malformed", "wrong_type", "not_finite", "out_of_window"}) {
+    EXPECT_GT(result["refused"][kind], 500) << result["refused"];
+  }
+  // AND of those who claimed to be of other runs a few are named
+  EXPECT_LE(result["strangers"].size(), 32U);
+}
+
+/// Floods of the two kinds that cost most: what must be answered, and what LCM's parser takes
+/// amiss.
+class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(FloodTest, ChangesNoResult) {
+  const double seconds = Seconds(1.5);
+  const auto [result, sent] = RunUnder({"--only", GetParam()}, seconds);
+  EXPECT_GT(sent.value(GetParam(), 0), kRateHz / 2 * seconds) << sent;
+  EXPECT_EQ(result["digest"], Undisturbed());
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FloodTest, testing::Values("request", "fragment"),
+                         [](const auto& kind) { return kind.param; });
+
+}  // namespace
+}  // namespace fogline::test
