@@ -58,12 +58,14 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   // LCM keeps its sockets to itself. They are those that opening it adds; one opens at a time.
   static std::mutex opening;
   const std::lock_guard lock(opening);
-  const std::vector<int> before = UdpSockets();
-  lcm_ = lcm_create(url_.c_str());
-  if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
-  // Not those of mpudpm, which tells its ports on a channel of its own.
-  if (url_.starts_with("udpm://")) {
-    std::ranges::set_difference(UdpSockets(), before, std::back_inserter(sockets_));
+  {
+    // From its first datagram on a socket takes nothing but LCM's test of itself. Not those of
+    // mpudpm, which tells its ports on a channel of its own.
+    std::optional<FilterFromTheStart> filter;
+    if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({"LCM_SELF_TEST"}));
+    lcm_ = lcm_create(url_.c_str());
+    if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
+    if (filter) sockets_ = filter->sockets();
   }
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);

@@ -2,6 +2,8 @@
 
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -67,27 +69,19 @@ void AppendChannel(const std::string& channel, std::vector<sock_filter>& program
   program.push_back(Take(kWholeDatagram));
 }
 
-bool IsUdp(int fd) {
-  int type = 0;
-  int domain = 0;
-  socklen_t size = sizeof(type);
-  if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) return false;
-  size = sizeof(domain);
-  return getsockopt(fd, SOL_SOCKET, SO_DOMAIN, &domain, &size) == 0 && domain == AF_INET;
-}
+thread_local FilterFromTheStart* at_bind = nullptr;
 
 }  // namespace
 
-std::vector<int> UdpSockets() {
-  std::vector<int> sockets;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    const std::string name = entry.path().filename().string();
-    int fd = -1;
-    std::from_chars(name.data(), name.data() + name.size(), fd);
-    if (IsUdp(fd)) sockets.push_back(fd);
-  }
-  std::ranges::sort(sockets);
-  return sockets;
+FilterFromTheStart::FilterFromTheStart(std::vector<sock_filter> program)
+    : program_(std::move(program)) {
+  at_bind = this;
+}
+FilterFromTheStart::~FilterFromTheStart() { at_bind = nullptr; }
+
+void FilterFromTheStart::Take(int socket) {
+  AttachFilter(socket, program_);
+  sockets_.push_back(socket);
 }
 
 std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels) {
@@ -118,3 +112,9 @@ void DetachFilter(int socket) {
 }
 
 }  // namespace fogline
+
+// In place of the C library's, also for LCM: nothing arrives before a socket is bound.
+extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
+  if (fogline::at_bind != nullptr) fogline::at_bind->Take(socket);
+  return static_cast<int>(syscall(SYS_bind, socket, address, size));
+}

@@ -17,8 +17,24 @@
 
 namespace fogline {
 
-/// UDP sockets (IPv4) of this process.
-std::vector<int> UdpSockets();
+/// While it lives, every socket that this thread binds (in LCM, which keeps its sockets to itself)
+/// has this filter before it can receive anything. One at a time in a thread.
+class FilterFromTheStart {
+ public:
+  explicit FilterFromTheStart(std::vector<sock_filter> program);
+  ~FilterFromTheStart();
+  FilterFromTheStart(const FilterFromTheStart&) = delete;
+  FilterFromTheStart& operator=(const FilterFromTheStart&) = delete;
+
+  /// Called for each.
+  void Take(int socket);
+  /// Those that have it.
+  const std::vector<int>& sockets() const { return sockets_; }
+
+ private:
+  std::vector<sock_filter> program_;
+  std::vector<int> sockets_;
+};
 
 /// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on
 /// these channels, of up to kMaxMessageBytes of data and a signature, and nothing else. Fragments

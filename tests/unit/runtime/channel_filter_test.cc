@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <lcm/lcm.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -111,12 +112,20 @@ TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
   EXPECT_EQ(socket.Receive(), largest);
 }
 
-TEST(ChannelFilterTest, FindsTheSocketsThatLcmOpens) {
-  const std::size_t before = UdpSockets().size();
+TEST(FilterFromTheStartTest, IsOnEverySocketThatLcmBindsInThisThread) {
+  const FilterFromTheStart filter(ChannelFilter({"LCM_SELF_TEST"}));
   const Bus memory("memq://");
-  EXPECT_EQ(UdpSockets().size(), before);
-  const Bus network(FreshMulticastUrl());
-  EXPECT_GT(UdpSockets().size(), before);
+  EXPECT_TRUE(filter.sockets().empty());
+  lcm_t* network = lcm_create(FreshMulticastUrl().c_str());
+  ASSERT_NE(network, nullptr);
+  EXPECT_GE(lcm_get_fileno(network), 0);
+  ASSERT_FALSE(filter.sockets().empty());
+  for (const int socket : filter.sockets()) {
+    socklen_t instructions = 0;
+    EXPECT_EQ(getsockopt(socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions), 0);
+    EXPECT_GT(instructions, 0U);
+  }
+  lcm_destroy(network);
 }
 
 }  // namespace
