@@ -165,7 +165,7 @@ class StepNode final : public Node {
       failsafe_->Resume(truth, minimal_risk());
       truth_t newest = truth;
       while (newest.header.step < progress() && !newest.last) {
-        newest = std::get<truth_t>(failsafe_->Step({}));
+        newest = std::get<truth_t>(StepFailsafe(newest.header.step + 1));
       }
       StartAt(newest.header.step + 1);
       if (newest.last) rule().SetFinal(newest.header.step);

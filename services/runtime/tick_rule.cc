@@ -122,6 +122,9 @@ TimePoint TickRule::LookForTruth(TimePoint now) {
     ask_at_ = now + kAskEvery;
     const std::int64_t first = std::max<std::int64_t>(0, progress() - kProgressAge);
     Ask(ChannelOf<truth_t>().name, {.first = first, .count = kRingSteps});
+    for (const Input& input : inputs()) {  // what was commanded then, from who commanded it
+      Ask(kChannels[input.channel].name, {.first = first, .count = kRingSteps});
+    }
     ++status().repairs_asked;
   }
   return truth_ ? truth_at_ + kAnswersLast : ask_at_;
