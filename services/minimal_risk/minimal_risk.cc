@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace fogline {
+namespace {
+
+// The last step brakes so much harder, or rounding would leave the car a speed of 1e-17 m/s.
+constexpr double kToRest = 1.0 + 1e-12;
+
+}  // namespace
 
 MinimalRisk::MinimalRisk(const MinimalRiskSection& limits, double step_s)
     : limits_(limits), step_s_(step_s) {}
@@ -33,12 +39,11 @@ double MinimalRisk::Step(std::optional<double> speed_mps) {
   return acceleration_mps2_;
 }
 
-// Multiplied out, so that nothing cancels as v goes to 0: there r = 2 v / h, and the car stands
-// after half a step.
 double MinimalRisk::Releasable(double speed_mps) const {
-  const double half_step_s = 0.5 * step_s_;
-  return 2.0 * speed_mps /
-         (half_step_s + std::sqrt(half_step_s * half_step_s + 2.0 * speed_mps / limits_.jerk_mps3));
+  const double change = limits_.jerk_mps3 * step_s_;
+  const double steps =
+      std::max(1.0, std::ceil(0.5 * (std::sqrt(1.0 + 8.0 * speed_mps / (change * step_s_)) - 1.0)));
+  return kToRest * speed_mps / (steps * step_s_) + 0.5 * (steps - 1.0) * change;
 }
 
 }  // namespace fogline

@@ -12,12 +12,12 @@ namespace fogline {
 /// rest. The command of a step of length h, from the one before it, a, and the speed v > 0, is
 ///
 ///     a'   = max(a - j h, -d, -r(v))           or, where even that is more than a + j h, a + j h
-///     r(v) = j (sqrt(h^2/4 + 2 v / j) - h/2)
+///     r(v) = v/(n h) + (n - 1) j h/2          n = ceil((sqrt(1 + 8 v/(j h^2)) - 1)/2)
 ///
-/// r(v) is the braking that can still be released at the rate j, one step at a time, so that it is
-/// gone when the car stands: v = r^2/(2j) + r h/2. On this curve r falls by exactly j h in a step,
-/// and the last step's jump to rest is no larger. So the end is as smooth as the beginning, without
-/// a snap. Two cases leave a limit, each as little as can be:
+/// r(v) is the braking that can still be released at the rate j, one step at a time, so that the
+/// car stands exactly when a step ends: n steps of r, r - j h, r - 2 j h, ... add up to v, and the
+/// last of them is at most j h. So the end is as smooth as the beginning, without a snap. Two cases
+/// leave a limit, each as little as can be:
 ///   - a car that brakes harder than d now releases the brake at the rate j, down to d;
 ///   - a car that brakes harder than r(v) now (it is about to stand) stops before the brake is
 ///     released, with that jump.

@@ -29,7 +29,8 @@ Motion Advance(const Motion& from, double acceleration_mps2, double duration_s) 
   const double v = from.speed_mps;
   const double a = acceleration_mps2;
   if (TimeToRest(v, a) <= duration_s) return {from.position_m + v * v / (-2.0 * a), 0.0};
-  return {from.position_m + (v + 0.5 * a * duration_s) * duration_s, v + a * duration_s};
+  return {from.position_m + (v + 0.5 * a * duration_s) * duration_s,
+          std::max(0.0, v + a * duration_s)};
 }
 
 std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
