@@ -62,7 +62,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     // From its first datagram on a socket takes nothing but LCM's test of itself. Not those of
     // mpudpm, which tells its ports on a channel of its own.
     std::optional<FilterFromTheStart> filter;
-    if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({"LCM_SELF_TEST"}));
+    if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({{"LCM_SELF_TEST"}}));
     lcm_ = lcm_create(url_.c_str());
     if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
     if (filter) sockets_ = filter->sockets();
@@ -85,10 +85,14 @@ Bus::Topic& Bus::TopicOf(std::string_view channel) {
   return topics_.emplace_back(Topic{.bus = this, .channel = std::string(channel)});
 }
 
-void Bus::Subscribe(std::string_view channel, Handler handler) {
+void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& contents) {
   Topic& topic = TopicOf(channel);
   topic.handlers.push_back(std::move(handler));
-  if (topic.handlers.size() > 1) return;
+  if (topic.handlers.size() > 1) {
+    topic.wanted = {};  // several readers: all of it
+    return FilterSockets();
+  }
+  topic.wanted = contents;
   if (tcpq_) {
     return tcpq_->Subscribe(channel, Escaped(channel),
                             [&topic](Bytes bytes) { Deliver(bytes, topic); });
@@ -97,12 +101,16 @@ void Bus::Subscribe(std::string_view channel, Handler handler) {
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
   lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
-  if (watcher_) return;                            // wants everything
-  std::vector<std::string> subscribed;
-  for (const Topic& other : topics_) {
-    if (!other.handlers.empty()) subscribed.push_back(other.channel);
+  FilterSockets();
+}
+
+void Bus::FilterSockets() {
+  if (watcher_) return;  // wants everything
+  std::vector<Wanted> wanted;
+  for (const Topic& topic : topics_) {
+    if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted});
   }
-  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(subscribed));
+  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(wanted));
 }
 
 void Bus::SubscribeAll(Watcher watcher) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "services/runtime/arrival.h"
+#include "services/runtime/channel_filter.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/faults.h"
 #include "services/runtime/seal.h"
@@ -50,7 +51,8 @@ class Bus {
   /// Calls `handler` from Wait() for every message on exactly this channel, handlers of one channel
   /// in the order of their subscription; what the message holds is valid during the call. What a
   /// handler throws comes out of Wait().
-  void Subscribe(std::string_view channel, Handler handler);
+  /// @param contents what `handler` needs; where the kernel can, it drops the others of the channel
+  void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
 
   /// Calls `watcher` from Wait() for every message on any channel, and lets the kernel drop none of
   /// them. Once at most.
@@ -96,6 +98,7 @@ class Bus {
   /// What the signature vouches for; nothing if the message is refused.
   std::optional<Bytes> Verified(const Topic& topic, Bytes bytes);
   void CallHandlers(Topic& topic, Bytes bytes);
+  void FilterSockets();
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
   static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
@@ -129,6 +132,7 @@ struct Bus::Topic {
   std::string channel;
   Arrival arrival;
   std::vector<Handler> handlers;
+  Contents wanted;  // by all handlers
 };
 
 /// A multicast URL of this machine only, on a port drawn at random: runs do not meet by chance.

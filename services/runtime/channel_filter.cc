@@ -46,27 +46,39 @@ std::uint32_t BigEndian(std::string_view bytes) {
   return value;
 }
 
-/// Takes the datagram if its channel is this one; otherwise the program goes on behind.
-void AppendChannel(const std::string& channel, std::vector<sock_filter>& program) {
-  const std::string_view name(channel.c_str(), channel.size() + 1);  // with its final 0
+/// Appends what skips `then` more instructions unless the datagram has this text there.
+void AppendText(std::string_view text, std::size_t at, std::size_t then,
+                std::vector<sock_filter>& program) {
   struct Piece {
     std::size_t offset;
     std::size_t size;
   };
   std::vector<Piece> pieces;
-  for (std::size_t offset = 0; offset < name.size();) {
-    const std::size_t left = name.size() - offset;
+  for (std::size_t offset = 0; offset < text.size();) {
+    const std::size_t left = text.size() - offset;
     const std::size_t size = left >= 4 ? 4 : left >= 2 ? 2 : 1;
     pieces.push_back({offset, size});
     offset += size;
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const auto [offset, size] = pieces[i];
-    const std::size_t rest = 2 * (pieces.size() - 1 - i) + 1;
-    program.push_back(Load(size, kChannelOffset + offset));
-    program.push_back(SkipUnless(BigEndian(name.substr(offset, size)), rest));
+    const std::size_t rest = 2 * (pieces.size() - 1 - i) + then;
+    program.push_back(Load(size, at + offset));
+    program.push_back(SkipUnless(BigEndian(text.substr(offset, size)), rest));
   }
-  program.push_back(Take(kWholeDatagram));
+}
+
+/// Takes the datagram if it is wanted; if its channel is another one, the program goes on behind.
+void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
+  const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with its 0
+  std::vector<sock_filter> contents;
+  for (const std::string& text : wanted.contents.texts) {
+    AppendText(text, kChannelOffset + name.size() + wanted.contents.offset, 1, contents);
+    contents.push_back(Take(kWholeDatagram));
+  }
+  contents.push_back(Take(wanted.contents.texts.empty() ? kWholeDatagram : kNothing));
+  AppendText(name, kChannelOffset, contents.size(), program);
+  program.insert(program.end(), contents.begin(), contents.end());
 }
 
 thread_local FilterFromTheStart* at_bind = nullptr;
@@ -84,7 +96,7 @@ void FilterFromTheStart::Take(int socket) {
   sockets_.push_back(socket);
 }
 
-std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels) {
+std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program{
       BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
       BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // to Take(kNothing)
@@ -93,9 +105,9 @@ std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels) {
       Take(kNothing),
   };
   // A program that looks beyond the end of a datagram drops it. From short names to long ones, none
-  // looks further than the name that matches.
-  std::ranges::stable_sort(channels, {}, &std::string::size);
-  for (const std::string& channel : channels) AppendChannel(channel, program);
+  // looks further than the name that matches, and then what is wanted of it.
+  std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
+  for (const Wanted& one : wanted) AppendWanted(one, program);
   program.push_back(Take(kNothing));
   return program;
 }

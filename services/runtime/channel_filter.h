@@ -12,6 +12,7 @@
 
 #include <linux/filter.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -36,10 +37,22 @@ class FilterFromTheStart {
   std::vector<int> sockets_;
 };
 
+/// What of a channel's data is wanted: that which has one of these texts at a place of its own.
+struct Contents {
+  std::size_t offset = 0;
+  std::vector<std::string> texts;
+};
+
+/// A channel that is wanted; without texts all of it.
+struct Wanted {
+  std::string channel;
+  Contents contents{};
+};
+
 /// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on
 /// these channels, of up to kMaxMessageBytes of data and a signature, and nothing else. Fragments
 /// of large messages ("LC03") are not taken.
-std::vector<sock_filter> ChannelFilter(std::vector<std::string> channels);
+std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
 /// Filters what the socket receives from now on, instead of by an earlier filter. Where the kernel
 /// will not, the socket goes on receiving everything.

@@ -60,7 +60,8 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
     if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
     OnStatus(*arrival.As<status_t>());
   });
-  bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); });
+  bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); },
+                 {.offset = kHeaderEnd, .texts = {EncodedText(ChannelOf<run_t>().name)}});
 }
 
 TimePoint Conductor::Poll(TimePoint now) {

@@ -6,7 +6,7 @@ namespace fogline {
 namespace {
 
 // Being asked makes a node ask at once, but no more often than this.
-constexpr Duration kMinBetweenAsks = milliseconds(1);
+constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
 

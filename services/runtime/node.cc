@@ -16,6 +16,10 @@
 namespace fogline {
 namespace {
 
+// An answer is everybody's: whoever asks within this time has it, or will ask again.
+constexpr Duration kAnswerHolds = milliseconds(1);
+// The newest steps are those that a run waits for. Whatever else is asked for, they are answered.
+constexpr std::int64_t kNewest = 2;
 // A part of the scenario is asked for this often.
 constexpr Duration kPartPatience = milliseconds(20);
 // What went wrong must fit into a STATUS with everything else.
@@ -23,6 +27,18 @@ constexpr std::size_t kMaxErrorBytes = 700;
 // The runner repeats itself five times a second; a role that hears nothing for so long is an
 // orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
+
+/// The requests that a role can answer: for its own channels. The recorder has them all.
+Contents RequestsTo(Role role) {
+  Contents requests{.offset = kHeaderEnd, .texts = {}};
+  if (role == Role::kRecorder) return requests;
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace == Pace::kStep && channel.from == role) {
+      requests.texts.push_back(EncodedText(channel.name));
+    }
+  }
+  return requests;
+}
 
 }  // namespace
 
@@ -43,7 +59,8 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
                    [this, i](Arrival& arrival) { OnInput(i, arrival); });
   }
   bus_.Subscribe(ChannelOf<run_t>().name, [this](Bytes bytes) { OnRun(bytes); });
-  bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); });
+  bus_.Subscribe(
+      ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); }, RequestsTo(role));
   status_.role = NameOf(role);
   status_.host = HostName();
   status_.pid = getpid();
@@ -142,6 +159,7 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
   for (Output& output : outputs_) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
+    output.answered[RingSlot(step)] = {};
     // If it is so old that it is on disk, the recorder answers for it.
     if (step > progress_ - 2 * kMaxAhead) bus_.Publish(output.topic, bytes);
   }
@@ -252,12 +270,21 @@ void Node::OnResend(Bytes bytes) {
                         .count = std::clamp<std::int64_t>(resend.count, 1, kRingSteps)};
   for (Output& output : outputs_) {
     if (kChannels[output.channel].name != resend.channel) continue;
-    for (std::int64_t k = step; k < step + steps.count; ++k) {
-      if (output.ring.Has(k)) Answer(resend.channel, output.ring.Get(k), now);
-    }
+    AnswerFrom(output, steps, now);
     if (step >= next_) rule_->OnAskedAhead(step, now);
   }
   OnAsked(resend.channel, steps, now);
+}
+
+void Node::AnswerFrom(Output& output, StepRange steps, TimePoint now) {
+  for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {
+    TimePoint& answered = output.answered[RingSlot(step)];
+    if (!output.ring.Has(step) || now - answered < kAnswerHolds) continue;
+    if (step < next_ - kNewest && !budget_.Take(now)) continue;
+    answered = now;
+    bus_.Publish(output.topic, output.ring.Get(step));
+    ++status_.repairs_served;
+  }
 }
 
 bool Node::ComputeNow(std::int64_t step) {

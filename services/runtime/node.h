@@ -5,6 +5,7 @@
 // Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -61,6 +62,7 @@ class Node {
     std::size_t channel;
     Bus::Topic& topic;
     StepRing ring;
+    std::array<TimePoint, kRingSteps> answered{};  // when its steps were published again
   };
 
   /// The scenario is here: make the algorithm. @throws std::exception with what is wrong
@@ -118,7 +120,8 @@ class Node {
   /// The world reads the commands of step k - 1 to make step k: its lead is 1. Everybody else's is
   /// 0.
   std::int64_t lead_ = 0;
-  /// What a node answers. Repairs on a network that loses a third take a few hundred a second.
+  /// What a node answers of steps that are over. Repairs on a network that loses a third take a few
+  /// hundred a second.
   AnswerBudget budget_{2000, 500};
 
   static constexpr Duration kHeartbeat = milliseconds(200);
@@ -129,6 +132,7 @@ class Node {
   /// Counts a message that is not taken.
   void Refuse(RefusalCounter kind) { ++(status_.*kind); }
   void OnResend(Bytes bytes);
+  void AnswerFrom(Output& output, StepRange steps, TimePoint now);
   void Join(const run_t& run);
   void TakeInput(std::size_t index, std::int64_t step, Arrival& arrival);
   bool ComputeNow(std::int64_t step);

@@ -21,10 +21,10 @@ class Patience {
     return ask_at_;
   }
 
-  /// Asked now; who waits on asks again after twice the time.
+  /// Asked now; who waits on asks again, each time after a quarter more.
   void Asked(TimePoint now) { asked_ = now; }
   void AskedInVain(TimePoint now) {
-    wait_ = std::min(2 * wait_, kLongest);
+    wait_ = std::min(wait_ + wait_ / 4, kLongest);
     ask_at_ = now + wait_;
   }
   /// Asked for many steps at once: as long as they come in there is no reason to ask again.
@@ -38,7 +38,8 @@ class Patience {
   void Computed(TimePoint now) {
     // Steps that had to be repaired say nothing of how long a step takes (Karn & Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
-      step_time_ += ((now - computed_) - step_time_) / kSmoothing;
+      const Duration took = now - computed_;
+      step_time_ += (took - step_time_) / (took < step_time_ ? kDown : kUp);
     }
     computed_ = now;
     since_.reset();
@@ -49,13 +50,15 @@ class Patience {
   TimePoint asked() const { return asked_; }
 
  private:
-  // A few times what a step usually takes, within bounds; twice as long each time that it asks in
+  // A few times what a step usually takes, within bounds; a little longer each time that it asks in
   // vain.
   static constexpr int kSteps = 4;
   static constexpr Duration kShortest = milliseconds(2);
-  static constexpr Duration kLongest = milliseconds(50);
-  // Weight of the newest step in the smoothed duration of a step.
-  static constexpr int kSmoothing = 8;
+  static constexpr Duration kLongest = milliseconds(10);
+  // Inverse weights of the newest step in the smoothed duration of a step. Others' repairs make
+  // steps longer, too: the short ones tell what a step takes.
+  static constexpr int kDown = 2;
+  static constexpr int kUp = 64;
 
   std::optional<TimePoint> since_;
   TimePoint ask_at_{};

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -34,6 +35,15 @@ inline std::int64_t ReadInt64(Bytes bytes, std::size_t offset) {
   std::memcpy(&value, bytes.data() + offset, sizeof(value));
   if constexpr (std::endian::native == std::endian::little) value = __builtin_bswap64(value);
   return static_cast<std::int64_t>(value);
+}
+
+/// A text as LCM encodes it: the length with the final 0, big endian, and the characters.
+inline std::string EncodedText(std::string_view text) {
+  const std::size_t size = text.size() + 1;
+  std::string encoded;
+  for (const int shift : {24, 16, 8, 0}) encoded += static_cast<char>((size >> shift) & 0xff);
+  encoded += text;
+  return encoded + '\0';
 }
 
 /// The fingerprint that the messages of a channel begin with, by place in kChannels.

@@ -25,7 +25,7 @@ std::string Datagram(const std::string& channel, const std::string& data = "1234
 /// A receiving socket behind a filter, and one that sends to it.
 class FilteredSocket {
  public:
-  explicit FilteredSocket(const std::vector<std::string>& channels) {
+  explicit FilteredSocket(const std::vector<Wanted>& wanted) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -34,7 +34,7 @@ class FilteredSocket {
     EXPECT_EQ(bind(receiver_, where, size), 0);
     EXPECT_EQ(getsockname(receiver_, where, &size), 0);
     EXPECT_EQ(connect(sender_, where, size), 0);
-    AttachFilter(receiver_, ChannelFilter(channels));
+    AttachFilter(receiver_, ChannelFilter(wanted));
   }
   ~FilteredSocket() {
     close(receiver_);
@@ -62,20 +62,22 @@ class FilteredSocket {
 
 TEST(ChannelFilterTest, TakesWhatIsSubscribedWholeAndInOrder) {
   const std::vector<std::string> channels{"FOLLOWER_COMMAND", "A", "TRUTH", "RUN", "RADAR", "AB"};
-  const FilteredSocket socket(channels);
+  std::vector<Wanted> wanted;
+  for (const std::string& channel : channels) wanted.push_back({channel});
+  const FilteredSocket socket(wanted);
   for (const std::string& channel : channels) socket.Send(Datagram(channel));
   for (const std::string& channel : channels) EXPECT_EQ(socket.Receive(), Datagram(channel));
 }
 
 TEST(ChannelFilterTest, TakesAMessageWithoutData) {
   // GIVEN a longer channel too, whose name a datagram as short as this one cannot hold
-  const FilteredSocket socket({"RUN_OF_LONGER_NAME", "RUN"});
+  const FilteredSocket socket({{"RUN_OF_LONGER_NAME"}, {"RUN"}});
   socket.Send(Datagram("RUN", ""));
   EXPECT_EQ(socket.Receive(), Datagram("RUN", ""));
 }
 
 TEST(ChannelFilterTest, DropsEveryOtherChannel) {
-  const FilteredSocket socket({"RADAR", "TRUTH"});
+  const FilteredSocket socket({{"RADAR"}, {"TRUTH"}});
   for (const char* other :
        {"RADA", "RADAR2", "TRUT", "TRUTHS", "radar", "LIDAR", "", "RADAR TRUTH"}) {
     socket.Send(Datagram(other));
@@ -85,7 +87,7 @@ TEST(ChannelFilterTest, DropsEveryOtherChannel) {
 }
 
 TEST(ChannelFilterTest, DropsWhateverIsNoMessageInOneDatagram) {
-  const FilteredSocket socket({"RADAR"});
+  const FilteredSocket socket({{"RADAR"}});
   socket.Send("LC03\0\0\0\7RADAR\0 a fragment"s);
   socket.Send("LC01\0\0\0\7RADAR\0 of an old version"s);
   for (const std::string& noise : {""s, "L"s, "LC02"s, "LC02\0\0\0\7"s, "LC02\0\0\0\7RADAR"s}) {
@@ -95,16 +97,29 @@ TEST(ChannelFilterTest, DropsWhateverIsNoMessageInOneDatagram) {
   EXPECT_EQ(socket.Receive(), Datagram("RADAR"));
 }
 
+TEST(ChannelFilterTest, TakesOfAChannelWhatHasAWantedTextAtItsPlace) {
+  const FilteredSocket socket({{"RESEND", {.offset = 4, .texts = {"TRUTH", "EGO"}}}, {"RUN"}});
+  for (const char* other : {"", "1234", "1234TRUT", "12345TRUTH", "TRUTH", "1234RADAR"}) {
+    socket.Send(Datagram("RESEND", other));
+  }
+  for (const char* wanted : {"1234TRUTH", "1234EGO and more"}) {
+    socket.Send(Datagram("RESEND", wanted));
+    EXPECT_EQ(socket.Receive(), Datagram("RESEND", wanted));
+  }
+  socket.Send(Datagram("RUN", "any"));
+  EXPECT_EQ(socket.Receive(), Datagram("RUN", "any"));
+}
+
 TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
   const FilteredSocket socket({});
   socket.Send(Datagram("RADAR"));
-  AttachFilter(socket.receiver(), ChannelFilter({"LIDAR"}));
+  AttachFilter(socket.receiver(), ChannelFilter({{"LIDAR"}}));
   socket.Send(Datagram("LIDAR"));
   EXPECT_EQ(socket.Receive(), Datagram("LIDAR"));
 }
 
 TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
-  const FilteredSocket socket({"RADAR"});
+  const FilteredSocket socket({{"RADAR"}});
   const std::string largest = Datagram("RADAR", std::string(kMaxMessageBytes + kSealBytes, 'x'));
   socket.Send(Datagram("RADAR", std::string(2000, 'x')));
   socket.Send(Datagram("RADAR", std::string(60'000, 'x')));
@@ -113,7 +128,7 @@ TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
 }
 
 TEST(FilterFromTheStartTest, IsOnEverySocketThatLcmBindsInThisThread) {
-  const FilterFromTheStart filter(ChannelFilter({"LCM_SELF_TEST"}));
+  const FilterFromTheStart filter(ChannelFilter({{"LCM_SELF_TEST"}}));
   const Bus memory("memq://");
   EXPECT_TRUE(filter.sockets().empty());
   lcm_t* network = lcm_create(FreshMulticastUrl().c_str());

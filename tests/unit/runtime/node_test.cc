@@ -166,7 +166,7 @@ TEST_F(NodeTest, AnswersARangeFromItsRing) {
     EXPECT_EQ(commands_[i].acceleration_mps2, said[i + 2].acceleration_mps2);
   }
   commands_.clear();
-  script_.AskFor("DRIVER_COMMAND", 3, 0);  // from somebody who knows no ranges
+  script_.AskFor("DRIVER_COMMAND", 7, 0);  // from somebody who knows no ranges
   EXPECT_EQ(commands_.size(), 1U);
 }
 
@@ -248,9 +248,21 @@ TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // 500 at once and 2000 a second, of 12,800.
-  EXPECT_GE(commands_.size(), 500U);
-  EXPECT_LE(static_cast<double>(commands_.size()), 501 + 2000 * took.count());
+  // Each step once a millisecond at most, of 12,800 that were asked for.
+  EXPECT_GE(commands_.size(), static_cast<std::size_t>(kRingSteps));
+  EXPECT_LE(static_cast<double>(commands_.size()), kRingSteps * (1 + 1000 * took.count()));
+}
+
+TEST_F(NodeTest, AnswersForTheNewestStepsInAFloodOfRequestsForOldOnes) {
+  script_.SayRun(run_t::GO, -1);
+  for (std::int64_t k = 0; k < kRingSteps; ++k) script_.Say(Truth(k));
+  // GIVEN that what it answers in a burst is used up
+  const TimePoint until = Clock::now() + milliseconds(20);
+  while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, kRingSteps - 3);
+  commands_.clear();
+  // WHEN somebody asks for what the run waits for
+  script_.AskFor("DRIVER_COMMAND", kRingSteps - 1, 1);
+  EXPECT_EQ(commands_.size(), 1U);
 }
 
 }  // namespace
