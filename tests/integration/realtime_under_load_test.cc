@@ -1,0 +1,94 @@
+// Real time while other programs want both cores: nothing is missed, and nothing grows.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <list>
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/wire.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+/// Steps per second, and how much of the time that a campaign asks for it takes.
+struct Rhythm {
+  int rate_hz;
+  double share;
+};
+
+void PrintTo(const Rhythm& rhythm, std::ostream* out) { *out << rhythm.rate_hz << " Hz"; }
+
+/// A program for each core that never rests. They end with this object, and by themselves.
+class Load {
+ public:
+  Load() {
+    for (unsigned core = 0; core < std::max(2U, std::thread::hardware_concurrency()); ++core) {
+      busy_.emplace_back(
+          std::vector<std::string>{"timeout", "1200", "sh", "-c", "while :; do :; done"});
+    }
+  }
+
+ private:
+  std::list<Background> busy_;
+};
+
+/// Memory of every role in the course of a run, by role, as its STATUS said it.
+std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::string& log) {
+  std::map<std::string, std::vector<std::int64_t>> memory;
+  EventLogReader reader(log);
+  while (const auto event = reader.Next()) {
+    status_t status{};
+    if (event->channel != ChannelOf<status_t>().name || !Decode(event->data, status)) continue;
+    if (status.state == status_t::RUNNING) memory[status.role].push_back(status.rss_bytes);
+  }
+  return memory;
+}
+
+class RealtimeUnderLoadTest : public testing::TestWithParam<Rhythm> {};
+
+TEST_P(RealtimeUnderLoadTest, MissesNothingAndGrowsNowhere) {
+  constexpr double kUsually_s = 5;
+  const char* asked = std::getenv("FOGLINE_TEST_SECONDS");
+  const double seconds = asked != nullptr ? std::atof(asked) * GetParam().share : kUsually_s;
+  const int steps = static_cast<int>(seconds * GetParam().rate_hz);
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Load load;
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json", "--realtime", "--set",
+                  "/steps=" + std::to_string(steps), "--set",
+                  "/step_s=" + std::to_string(1.0 / GetParam().rate_hz), "--log", log},
+                 std::chrono::seconds(static_cast<int>(seconds) + 60));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto realtime = nlohmann::json::parse(run.out)["realtime"];
+  std::cout << realtime.dump(2) << "\n";
+  EXPECT_EQ(realtime["ticks"], steps);
+  EXPECT_EQ(realtime["missed_messages"], 0);
+  EXPECT_TRUE(realtime["ticks_late"].is_number());
+  EXPECT_GT(realtime["latency_p99_us"], 0);
+
+  const auto memory = MemoryIn(log);
+  EXPECT_EQ(memory.size(), kRoles.size());
+  for (const auto& [role, bytes] : memory) {
+    // Once everything has been in use; LCM's ring of received datagrams then still has pages to
+    // touch for the first time, of its 200 KiB.
+    constexpr std::int64_t kFlat = 512 * 1024;
+    const std::size_t first = std::max<std::size_t>(10, bytes.size() / 10);
+    ASSERT_GT(bytes.size(), first + 1) << role;
+    std::cout << role << ": " << bytes[first] << " to " << bytes.back() << " bytes\n";
+    EXPECT_LE(bytes.back() - bytes[first], kFlat) << role;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(At, RealtimeUnderLoadTest,
+                         testing::Values(Rhythm{10, 1}, Rhythm{100, 0.5}), [](const auto& rhythm) {
+                           return std::to_string(rhythm.param.rate_hz) + "Hz";
+                         });
+
+}  // namespace
+}  // namespace fogline::test
