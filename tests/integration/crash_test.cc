@@ -201,18 +201,35 @@ TEST(CrashTest, WhileTheRunIsJoinedIsRepairedToo) {
   EXPECT_EQ(result["restarts"].size(), 3U);
 }
 
-TEST(CrashTest, AProcessThatHangsIsKilledAndStartedAgain) {
+void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) {
   WatchedRun watched({"--stall-timeout", "2"});
   watched.WaitForStep(100);
-  for (const char* role : {"world", "acc", "recorder"}) watched.Signal(role, SIGSTOP);
+  for (const std::string& role : roles) watched.Signal(role, SIGSTOP);
   const auto result = watched.ExpectSameResult();
-  ASSERT_EQ(result["restarts"].size(), 3U);
-  for (const char* role : {"world", "acc", "recorder"}) {
+  ASSERT_EQ(result["restarts"].size(), roles.size());
+  for (const std::string& role : roles) {
     EXPECT_EQ(WatchedRun::RestartsOf(result, role), 1) << role;
   }
   EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(),
               testing::MatchesRegex("was silent for 1\\.[0-9] s and was killed at step [0-9]+"));
 }
+
+std::vector<std::string> EveryRole() {
+  std::vector<std::string> roles;
+  for (const RoleInfo& role : kRoles) roles.emplace_back(role.name);
+  return roles;
+}
+
+TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
+  ExpectHangersAreStartedAgain(EveryRole());
+}
+
+class HangTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(HangTest, IsDetectedAndMended) { ExpectHangersAreStartedAgain({GetParam()}); }
+
+INSTANTIATE_TEST_SUITE_P(Campaign, HangTest, testing::ValuesIn(EveryRole()),
+                         [](const auto& role) { return role.param; });
 
 TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
   WatchedRun watched({"--restarts", "2"});
