@@ -38,8 +38,10 @@ void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>&
 
 void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   RealtimeRule::OnInput(input, step, time);
+  // Steps before it that nothing has come of, too, are late from now on.
+  const std::int64_t known = std::max({next(), newest_ + 1, step - kRingSteps + 1});
+  for (std::int64_t k = std::min(step, known); k <= step; ++k) OpenAt(k, time);
   newest_ = std::max(newest_, step);
-  OpenAt(step, time);
 }
 
 RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {

@@ -115,6 +115,8 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
+  // In real time there is time for it, and nobody sends again what a killed process had in hand.
+  if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
     status().header.step = step;
