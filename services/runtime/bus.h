@@ -45,6 +45,7 @@ class Bus {
 
   /// From now on signs what it sends, and refuses what is not signed well.
   void Secure(const Seal& seal) { seal_ = seal; }
+  bool secured() const { return seal_.has_value(); }
   /// From now on receives as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
 

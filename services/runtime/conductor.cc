@@ -32,14 +32,15 @@ std::optional<Role> RoleNamed(std::string_view name) {
   return std::nullopt;
 }
 
-/// Whether a process can have counted so far. Sums of such numbers, and times, do not overflow.
-bool IsPossible(const status_t& status) {
+/// Whether a process can have counted so far, in a run of so many steps. Sums of such numbers, and
+/// times, do not overflow.
+bool IsPossible(const status_t& status, std::int64_t steps) {
   const auto counted = [](std::int64_t number) { return number >= 0 && number <= kMaxStep; };
-  return status.header.step >= -1 && status.header.step <= kMaxStep &&
-         counted(status.last_heard_ms) && counted(status.repairs_asked) &&
-         counted(status.repairs_served) && counted(status.duplicates) &&
-         std::ranges::all_of(
-             kRefusals, [&](const RefusalKind& kind) { return counted(status.*kind.counter); });
+  return status.header.step >= -1 && status.header.step <= steps && counted(status.last_heard_ms) &&
+         counted(status.repairs_asked) && counted(status.repairs_served) &&
+         counted(status.duplicates) && std::ranges::all_of(kRefusals, [&](const RefusalKind& kind) {
+           return counted(status.*kind.counter);
+         });
 }
 
 const ChannelInfo* ChannelNamed(std::string_view name) {
@@ -155,7 +156,7 @@ void Conductor::OnStatus(const status_t& heard) {
     strangers_.Hear(heard);
     return Refuse(&status_t::foreign);
   }
-  if (!IsPossible(heard)) return Refuse(&status_t::out_of_window);
+  if (!IsPossible(heard, options_.steps)) return Refuse(&status_t::out_of_window);
   status_t status = heard;  // with texts as they may be printed
   status.host = EscapeControls(heard.host);
   status.error = EscapeControls(heard.error);
@@ -180,22 +181,35 @@ void Conductor::OnStatus(const status_t& heard) {
   progress_ = std::max(progress_, status.header.step);
   member.status = status;
   member.heard = now;
+  const bool decides = *role == Role::kWorld || *role == Role::kArbitrator;
   if (const auto cars = static_cast<std::int8_t>(minimal_risk_ | status.minimal_risk);
-      cars != minimal_risk_) {
+      decides && cars != minimal_risk_) {
     minimal_risk_ = cars;
     announce_at_ = now;
   }
   if (on_status_) on_status_(status);
-  if (member.status->state == status_t::FAILED) {
-    return Fail(fmt::format("{}: {}", member.status->role, member.status->error));
-  }
+  if (member.status->state == status_t::FAILED) return OnFailure(*role, status);
   if (*role == Role::kWorld && member.status->state == status_t::DONE) phase_ = Phase::kDone;
+}
+
+void Conductor::OnFailure(Role role, const status_t& status) {
+  // In real time the cars are under way: what fails is lost, and the others know what to do then.
+  if (GoesOnWithout(role)) return;
+  Fail(fmt::format("{}: {}", status.role, status.error));
 }
 
 bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
   const auto same = [&](const status_t& other) { return other.instance == status.instance; };
-  if (std::ranges::any_of(member.dead, same)) return false;
+  if (const auto dead = std::ranges::find_if(member.dead, same); dead != member.dead.end()) {
+    // What it said before its death may come late. If it speaks on, it was not dead.
+    if (IsExternal(role) && member.status && status.sequence > dead->sequence &&
+        now - member.replaced_at > kOnItsWay) {
+      Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
+                       member.status->pid, member.status->host, status.pid, status.host));
+    }
+    return false;
+  }
   if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
     return false;
   }
@@ -223,6 +237,7 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   member.dead.push_back(std::move(*member.status));
   member.status.reset();
   member.rival.reset();
+  member.replaced_at = now;
   return true;
 }
 
@@ -252,18 +267,20 @@ void Conductor::OnResend(Bytes bytes) {
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
   for (auto i = static_cast<std::size_t>(resend.header.step); i < parts_.size(); ++i) {
-    Announce(i);
+    Announce(i, resend.instance);
   }
 }
 
-void Conductor::Announce(std::size_t part) {
+void Conductor::Announce(std::size_t part, std::int64_t answer_to) {
   // A run in real time that goes waits for nobody: who joins late joins a run that goes.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
-  Announce(go ? run_t::GO : run_t::PREPARE, part);
+  Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
 }
 
-void Conductor::Announce(std::int8_t phase, std::size_t part) {
+void Conductor::Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to) {
   run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
+  run.sequence = ++sequence_;
+  run.answer_to = answer_to;
   run.progress = progress_;
   run.realtime = options_.realtime;
   run.minimal_risk = minimal_risk_;

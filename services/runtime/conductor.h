@@ -16,6 +16,7 @@
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
+#include "services/runtime/step_ring.h"
 #include "services/runtime/strangers.h"
 
 namespace fogline {
@@ -23,6 +24,7 @@ namespace fogline {
 struct ConductorOptions {
   std::int64_t run_id = 0;
   std::string scenario_text;                  // the effective scenario
+  std::int64_t steps = kMaxStep;              // of it
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
   bool realtime = false;                      // at that pace, whoever keeps up
   Duration join_limit{};                      // for the roles to be ready; 0: no limit
@@ -56,6 +58,12 @@ class Conductor {
   std::string KeyTrouble() const;
   /// Who is of another run and speaks on this network.
   const Strangers& strangers() const { return strangers_; }
+  /// Whether the run goes on when this role is gone for good. In real time it does, unless the road
+  /// or the log is gone.
+  bool GoesOnWithout(Role role) const {
+    return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
+           role != Role::kRecorder;
+  }
   /// Tells every role to leave; may be repeated.
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
@@ -80,21 +88,24 @@ class Conductor {
     std::vector<std::int32_t> pids;  // of processes on this machine that are dead
     std::optional<status_t> rival;   // another instance that says that it is this role, and since
     TimePoint rival_since{};
-    int replaced = 0;  // times that an external role was started again
+    int replaced = 0;  // times that an external role was started again, and when last
+    TimePoint replaced_at{};
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
  private:
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
+  /// The role has failed and said so.
+  void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
   bool IsExternal(Role role) const;
   /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
   bool Admit(Role role, const status_t& status, TimePoint now);
   void AnnounceWhenDue(TimePoint now);
-  void Announce(std::size_t part);
-  void Announce(std::int8_t phase, std::size_t part);
+  void Announce(std::size_t part, std::int64_t answer_to = 0);
+  void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
   /// The one line that says who holds up the run.
   std::string Culprit(TimePoint now) const;
 
@@ -114,6 +125,7 @@ class Conductor {
   TimePoint began_;
   TimePoint announce_at_{};
   TimePoint parts_at_{};
+  std::int64_t sequence_ = 0;  // of what it has said
   std::int64_t progress_ = -1;
   TimePoint progressed_{};
   std::vector<std::uint8_t> buffer_;

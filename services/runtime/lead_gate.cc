@@ -21,9 +21,13 @@ LeadGate::LeadGate(Bus& bus, status_t& own) {
       return;
     }
     // One that has failed may not have on disk what it had computed.
-    if (status->role == NameOf(Role::kRecorder) && status->state != status_t::FAILED) {
-      recorded_ = std::max(recorded_, status->header.step);
+    if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
+    // Nor has anybody what the world has not begun, unless an earlier one had.
+    if (status->header.step > std::max(own.header.step, begun_before_)) {
+      ++own.out_of_window;
+      return;
     }
+    recorded_ = std::max(recorded_, status->header.step);
   });
 }
 
@@ -33,6 +37,7 @@ void LeadGate::Configure(const Scenario& scenario, std::int64_t run_id) {
 }
 
 void LeadGate::OnGo(const run_t& run, TimePoint now) {
+  begun_before_ = std::max(begun_before_, run.progress);
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);

@@ -50,6 +50,7 @@ class LeadGate {
   double pace_ = 0;
   TimePoint start_{};
   std::int64_t recorded_ = -1;
+  std::int64_t begun_before_ = -1;  // by a world that was there before this one
   std::optional<std::int64_t> final_;
   std::optional<TimePoint> ask_at_;
   Duration patience_{};

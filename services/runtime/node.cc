@@ -24,6 +24,8 @@ constexpr std::int64_t kNewest = 2;
 constexpr Duration kPartPatience = milliseconds(20);
 // What went wrong must fit into a STATUS with everything else.
 constexpr std::size_t kMaxErrorBytes = 700;
+// Announcements that repeat are answered this often at most.
+constexpr Duration kAnnouncedPatience = milliseconds(20);
 // The runner repeats itself five times a second; a role that hears nothing for so long is an
 // orphan.
 constexpr Duration kRunnerSilence = milliseconds(5000);
@@ -43,7 +45,12 @@ Contents RequestsTo(Role role) {
 }  // namespace
 
 Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
-    : bus_(bus), role_(role), run_id_(run_id), bound_(run_id.has_value()) {
+    : bus_(bus),
+      role_(role),
+      chosen_(run_id.has_value()),
+      run_id_(run_id),
+      bound_(chosen_),
+      fresh_(!bus.secured()) {
   for (std::size_t i = 0; i < kChannels.size(); ++i) {
     const ChannelInfo& channel = kChannels[i];
     if (channel.pace != Pace::kStep) continue;
@@ -79,9 +86,12 @@ std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
 
 TimePoint Node::Poll(TimePoint now) {
   if (left_) return now + kHeartbeat;
-  if (status_.state != status_t::WAITING && now - runner_heard_ > kRunnerSilence) {
-    Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
-    return now + kHeartbeat;
+  if (runner_heard_ != TimePoint{} && now - runner_heard_ > kRunnerSilence) {
+    if (status_.state != status_t::WAITING) {
+      Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
+      return now + kHeartbeat;
+    }
+    if (!chosen_) Unbind();
   }
   TimePoint next = now + kHeartbeat;
   if (Running()) {
@@ -140,12 +150,13 @@ void Node::PublishStatus() {
   bus_.Publish(ChannelOf<status_t>().name, buffer_);
 }
 
-void Node::Ask(std::string_view channel, StepRange steps) {
+void Node::Ask(std::int64_t run_id, std::string_view channel, StepRange steps) {
   resend_t resend{};
-  resend.header = {.run_id = *run_id_, .step = steps.first, .utime = 0};
+  resend.header = {.run_id = run_id, .step = steps.first, .utime = 0};
   resend.channel = channel;
   resend.count = static_cast<std::int32_t>(steps.count);
   resend.requester = NameOf(role_);
+  resend.instance = status_.instance;
   Encode(resend, buffer_);
   bus_.Publish(ChannelOf<resend_t>().name, buffer_);
 }
@@ -160,8 +171,9 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // If it is so old that it is on disk, the recorder answers for it.
-    if (step > progress_ - 2 * kMaxAhead) bus_.Publish(output.topic, bytes);
+    // If it is so old that it is on disk, the recorder answers for it. Real time does not look
+    // back.
+    if (realtime_ || step > progress_ - 2 * kMaxAhead) bus_.Publish(output.topic, bytes);
   }
 }
 
@@ -178,22 +190,56 @@ void Node::OnRun(Bytes bytes) {
   if (bound_ ? run.header.run_id != *run_id_ : run.phase == run_t::STOP) {
     return Refuse(&status_t::foreign);
   }
-  if (run.progress > kMaxStep) return Refuse(&status_t::out_of_window);
+  if (run.progress > steps_) return Refuse(&status_t::out_of_window);
+  const TimePoint now = Clock::now();
+  if (!IsFresh(run, now)) return;
+  if (status_.state == status_t::WAITING && run.phase != run_t::STOP && !parts_.Add(run)) {
+    return Refuse(&status_t::malformed);
+  }
   run_id_ = run.header.run_id;
   bound_ = true;
-  runner_heard_ = Clock::now();
+  const bool news = TakeNews(run, now);
+  if (!left_ && status_.state == status_t::WAITING && parts_.Complete()) Join(run);
+  if (news && run.phase == run_t::GO && Running()) rule_->OnGo(run, now);
+}
+
+bool Node::IsFresh(const run_t& run, TimePoint now) {
+  if (fresh_) return true;
+  fresh_ = run.answer_to == status_.instance;
+  if (!fresh_ && questions_.Take(now)) {
+    Ask(run.header.run_id, ChannelOf<run_t>().name, {.first = 0, .count = 1});
+  }
+  return fresh_;
+}
+
+bool Node::TakeNews(const run_t& run, TimePoint now) {
+  if (run.sequence <= sequence_) {
+    ++status_.duplicates;
+    return false;
+  }
+  sequence_ = run.sequence;
+  runner_heard_ = now;
   progress_ = std::max(progress_, run.progress);
   minimal_risk_ = run.minimal_risk;
   if (rule_) rule_->OnProgress();
   if (run.phase == run_t::STOP) {
     Leave();
-  } else if (status_.state == status_t::WAITING) {
-    if (!parts_.Add(run)) return Refuse(&status_t::malformed);
-    if (parts_.Complete()) Join(run);
-  } else if (run.phase == run_t::PREPARE && run.header.step == 0) {
+  } else if (status_.state != status_t::WAITING && run.phase == run_t::PREPARE &&
+             run.header.step == 0 && now >= announced_at_ + kAnnouncedPatience) {
+    announced_at_ = now;
     PublishStatus();  // the announcement repeats: somebody has not heard us yet
   }
-  if (run.phase == run_t::GO && Running()) rule_->OnGo(run, Clock::now());
+  return true;
+}
+
+void Node::Unbind() {
+  parts_ = {};
+  run_id_.reset();
+  bound_ = false;
+  fresh_ = !bus_.secured();
+  sequence_ = 0;
+  progress_ = -1;
+  runner_heard_ = {};
 }
 
 void Node::Join(const run_t& run) {
@@ -204,6 +250,8 @@ void Node::Join(const run_t& run) {
   pace_ = run.pace;
   try {
     const Scenario scenario = ParseScenario(parts_.Text());
+    steps_ = scenario.steps;
+    progress_ = std::min(progress_, steps_);
     Configure(scenario);
     rule_ = MakeRule(scenario);
   } catch (const std::exception& error) {

@@ -92,7 +92,7 @@ class Node {
   void Fail(const std::string& error);
   void SetState(std::int8_t state);
   void PublishStatus();
-  void Ask(std::string_view channel, StepRange steps);
+  void Ask(std::string_view channel, StepRange steps) { Ask(*run_id_, channel, steps); }
   /// Publishes again what somebody has asked for, unless too much was asked for lately.
   void Answer(std::string_view channel, Bytes bytes, TimePoint now);
   /// The steps before this one are done, by a predecessor. Call it in Configure().
@@ -128,7 +128,15 @@ class Node {
 
  private:
   void OnRun(Bytes bytes);
+  /// Whether the runner can be believed to have said this just now, and not in an old run. Asks it,
+  /// if that is not known.
+  bool IsFresh(const run_t& run, TimePoint now);
+  /// Takes what the runner says of the run as a whole, if it says it for the first time.
+  bool TakeNews(const run_t& run, TimePoint now);
+  /// Forgets a run whose runner has fallen silent before all of it was known.
+  void Unbind();
   void OnInput(std::size_t index, Arrival& arrival);
+  void Ask(std::int64_t run_id, std::string_view channel, StepRange steps);
   /// Counts a message that is not taken.
   void Refuse(RefusalCounter kind) { ++(status_.*kind); }
   void OnResend(Bytes bytes);
@@ -141,8 +149,12 @@ class Node {
 
   Bus& bus_;
   const Role role_;
+  const bool chosen_;  // the run, by option: no other one is looked for
   std::optional<std::int64_t> run_id_;
   bool bound_;  // to the run of run_id_: by option, or since a run was announced
+  bool fresh_;  // the runner has answered this process, or without a key it need not
+  AnswerBudget questions_{200, 20};  // to runners, whether they are still there
+  std::int64_t sequence_ = 0;        // newest word of the runner
   ScenarioParts parts_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
@@ -152,11 +164,13 @@ class Node {
   std::int8_t minimal_risk_ = 0;
   std::int64_t next_ = 0;  // step to compute next
   std::int64_t progress_ = -1;
+  std::int64_t steps_ = kMaxStep;  // of the scenario, once it is known
   bool left_ = false;
   status_t status_{};
   std::vector<std::uint8_t> buffer_;
 
-  TimePoint part_at_{};  // when to ask for a part of the scenario
+  TimePoint part_at_{};       // when to ask for a part of the scenario
+  TimePoint announced_at_{};  // when a repeated announcement was answered
   TimePoint status_at_{};
   TimePoint use_at_{};
   TimePoint runner_heard_{};

@@ -40,8 +40,10 @@ StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, B
     CountLate(input);
     return StepRing::Verdict::kLate;
   }
-  return step < std::max(next(), progress() + 1) + kRingSteps ? StepRing::Verdict::kNew
-                                                              : StepRing::Verdict::kOutOfWindow;
+  // Once ticks are heard nothing is from the future.
+  const std::int64_t newest = clock_.started() ? clock_.NewestPossible(Clock::now())
+                                               : std::max(next(), progress() + 1) + kRingSteps - 1;
+  return step <= newest ? StepRing::Verdict::kNew : StepRing::Verdict::kOutOfWindow;
 }
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {

@@ -38,6 +38,9 @@ class RunClock {
     return at > limit_ - paused_ ? TimePoint::max() : at + paused_;
   }
 
+  /// The newest step that can be under way: a tick may be early by what another one was late.
+  std::int64_t NewestPossible(TimePoint now) const { return step_ + (now - heard_) / period_ + 2; }
+
   bool started() const { return step_ >= 0; }
   /// Newest step that the world has begun.
   std::int64_t step() const { return step_; }

@@ -19,8 +19,11 @@ constexpr std::int64_t kProgressAge = 8;
 }  // namespace
 
 TickRule::TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate,
-                   Resume resume)
-    : RealtimeRule(node, scenario, speed), gate_(gate), resume_(std::move(resume)) {}
+                   TakeOver take_over)
+    : RealtimeRule(node, scenario, speed),
+      gate_(gate),
+      take_over_(std::move(take_over)),
+      steps_(scenario.steps) {}
 
 void TickRule::OnGo(const run_t& run, TimePoint now) {
   if (phase_ != Phase::kWaiting) return;
@@ -101,26 +104,44 @@ TimePoint TickRule::End(TimePoint now) {
   return std::min(*give_up_at_, gate_.NextPoll(next(), now));
 }
 
+TimePoint TickRule::Resume(TimePoint now) {
+  start_ = now;
+  phase_ = Phase::kTicking;  // unless the run is over with it
+  try {
+    take_over_(*truth_);
+  } catch (const std::exception&) {  // it is of another road
+    ++status().malformed;
+    truth_.reset();
+    phase_ = Phase::kResuming;
+    return ask_at_;
+  }
+  return now;
+}
+
+std::int64_t TickRule::FirstAsked() { return std::max<std::int64_t>(0, progress() - kProgressAge); }
+
+// Of this run, and not far from where it is known to be.
+bool TickRule::CanResume(const truth_t& truth) {
+  return truth.header.run_id == status().header.run_id && truth.header.step >= 0 &&
+         truth.header.step < std::min(steps_, FirstAsked() + kRingSteps);
+}
+
 TimePoint TickRule::LookForTruth(TimePoint now) {
   if (!subscribed_) {
     subscribed_ = true;
     bus().Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
       const auto* truth = arrival.As<truth_t>();
-      if (phase_ != Phase::kResuming || truth == nullptr) return;
-      if (truth->header.run_id != status().header.run_id) return;
+      if (phase_ != Phase::kResuming || truth == nullptr || !CanResume(*truth)) return;
       if (!truth_) truth_at_ = arrival.time();
       if (!truth_ || truth->header.step > truth_->header.step) truth_ = *truth;
     });
   }
   if (truth_ && now >= truth_at_ + kAnswersLast) {
-    start_ = now;
-    phase_ = Phase::kTicking;
-    resume_(*truth_);
-    return now;
+    return Resume(now);
   }
   if (now >= ask_at_) {
     ask_at_ = now + kAskEvery;
-    const std::int64_t first = std::max<std::int64_t>(0, progress() - kProgressAge);
+    const std::int64_t first = FirstAsked();
     Ask(ChannelOf<truth_t>().name, {.first = first, .count = kRingSteps});
     for (const Input& input : inputs()) {  // what was commanded then, from who commanded it
       Ask(kChannels[input.channel].name, {.first = first, .count = kRingSteps});

@@ -21,9 +21,9 @@ namespace fogline {
 class TickRule final : public RealtimeRule {
  public:
   /// Takes over behind this step, and computes in silence what is known to be under way.
-  using Resume = std::function<void(const truth_t& truth)>;
+  using TakeOver = std::function<void(const truth_t& truth)>;
 
-  TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate, Resume resume);
+  TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate, TakeOver take_over);
 
   void OnGo(const run_t& run, TimePoint now) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
@@ -35,13 +35,19 @@ class TickRule final : public RealtimeRule {
 
   TimePoint Fire(TimePoint now) override;
   TimePoint LookForTruth(TimePoint now);
+  /// Where the steps begin that a world which is started again asks for.
+  std::int64_t FirstAsked();
+  /// Whether a TRUTH can be the one to go on from.
+  bool CanResume(const truth_t& truth);
+  TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
 
   LeadGate& gate_;
-  Resume resume_;
+  TakeOver take_over_;
+  std::int64_t steps_;  // of the scenario
   Phase phase_ = Phase::kWaiting;
 
   TimePoint start_{};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "services/runtime/bus.h"
 #include "tests/support/command.h"
@@ -159,6 +160,36 @@ TEST_F(SignedTrafficTest,
   EXPECT_GT(result["refused"]["badly_signed"], 1000);
   EXPECT_GT(result["refused"]["foreign"], 100);
   EXPECT_EQ(result["refused"]["malformed"], 0);
+}
+
+TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
+  Intruder intruder(url_);
+  // GIVEN the announcements and the end of an earlier run with the same key
+  Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
+  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
+  ResultOf(earlier);
+  std::vector<Message> announcements;
+  for (const auto& [channel, message] : intruder.heard()) {
+    if (channel == "RUN") announcements.push_back(message);
+  }
+  ASSERT_GT(announcements.size(), 3U);
+  const std::int64_t earlier_id = Intruder::RunIdOf(announcements.front());
+  const auto replay = [&] {
+    for (const Message& message : announcements) intruder.Say("RUN", message);
+  };
+  // WHEN they are said again to a driver that waits for a run
+  Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
+  for (int i = 0; i < 50; ++i) {
+    replay();
+    ASSERT_TRUE(IsAlive(driver.pid())) << "it took part";
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  // THEN it is there for the run that is under way now
+  Background run(Run({"--key", key_, "--external", "driver", "--set", "/steps=30"}));
+  intruder.AccompanyUntilTheEnd(run, {earlier_id},
+                                [&](const std::string&, const Message&) { replay(); });
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=30"));
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
 TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {

@@ -48,6 +48,7 @@ ConductorOptions MakeConductorOptions(const Scenario& scenario, const Experiment
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   return {.run_id = DrawRunId(),
           .scenario_text = PrintScenario(scenario),
+          .steps = scenario.steps,
           .pace = options.pace,
           .realtime = options.realtime,
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),

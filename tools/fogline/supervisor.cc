@@ -72,7 +72,7 @@ void Supervisor::Look(TimePoint now) {
       options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})",
                                NameOf(child.role), before, child.death, child.pid,
                                child.policy.restarts(), child.policy.limit()));
-    } else if (!child.start_at && options_.restarts > 0) {
+    } else if (!child.start_at && !child.gone && options_.restarts > 0) {
       KillIfItHangs(child, now);
     }
   }
@@ -93,10 +93,15 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
   if (exit.killed && options_.restarts > 0) {
     text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
   }
+  const bool goes_on = conductor_.GoesOnWithout(exit.role);
+  if (goes_on) text += "; the run goes on without it";
   for (const std::string& line : exit.lines) {
     text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
   }
-  conductor_.Fail(std::move(text));
+  if (!goes_on) return conductor_.Fail(std::move(text));
+  conductor_.Bury(exit.role, exit.pid, now);
+  child->gone = true;
+  options_.say(text);
 }
 
 void Supervisor::KillIfItHangs(Child& child, TimePoint now) {

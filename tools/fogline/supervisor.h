@@ -50,6 +50,7 @@ class Supervisor {
     std::string hung{};   // how long it was silent when it was killed for that
     std::string death{};  // the last one, in words
     std::optional<TimePoint> start_at{};
+    bool gone = false;  // for good, and the run goes on
   };
   void Start(Child& child, TimePoint now);
   void OnExit(const ProcessGroup::Exit& exit, TimePoint now);

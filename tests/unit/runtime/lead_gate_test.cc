@@ -42,9 +42,22 @@ TEST_F(LeadGateTest, LetsTheWorldRunOnlySoFarAheadOfWhatIsOnDisk) {
   Go(0, -1);
   EXPECT_TRUE(gate_.Open(kMaxAhead - 1, now_));
   EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  own_.header.step = kMaxAhead - 1;
   Recorded(10);
   EXPECT_TRUE(gate_.Open(kMaxAhead + 10, now_));
   EXPECT_FALSE(gate_.Open(kMaxAhead + 11, now_));
+}
+
+TEST_F(LeadGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
+  Go(0, -1);
+  own_.header.step = 5;
+  Recorded(6);
+  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  EXPECT_EQ(own_.out_of_window, 1);
+  // Unless by the world that was there before.
+  Go(0, 6);
+  Recorded(6);
+  EXPECT_TRUE(gate_.Open(kMaxAhead + 6, now_));
 }
 
 TEST_F(LeadGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {

@@ -227,6 +227,30 @@ TEST_F(NodeTest, CountsWhatItRefusesOfRunAndResend) {
   EXPECT_FALSE(node_.left());
 }
 
+TEST_F(NodeTest, LetsAnOlderWordOfTheRunnerCountForNothing) {
+  script_.SayRun(run_t::GO, -1);
+  run_t older = MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
+  older.sequence = 1;
+  script_.Say(older);
+  EXPECT_FALSE(node_.left());
+  EXPECT_EQ(Status().duplicates, 1);
+  older.sequence = 1000;
+  script_.Say(older);
+  EXPECT_TRUE(node_.left());
+}
+
+TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioIsThere) {
+  Script other;
+  StepNode<Driver> node(other.bus(), std::nullopt);
+  const std::vector<std::string> parts{"{", "}"};
+  other.Say(MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, HashOf("{}"), parts, 0));
+  other.SayRun(run_t::PREPARE, -1);
+  EXPECT_TRUE(node.Waits());
+  other.Poll(node, Clock::now() + milliseconds(6000));
+  other.SayRun(run_t::PREPARE, -1);
+  EXPECT_FALSE(node.Waits());
+}
+
 TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
   script_.SayRun(run_t::GO, -1);
   const std::string huge(10'000, 'x');

@@ -35,7 +35,10 @@ class Script {
   }
 
   template <class M>
-  void Say(const M& message) {
+  void Say(M message) {
+    if constexpr (std::is_same_v<M, run_t>) {
+      if (message.sequence == 0) message.sequence = ++sequence_;
+    }
     std::vector<std::uint8_t> bytes;
     Encode(message, bytes);
     bus_.Publish(ChannelOf<M>().name, bytes);
@@ -76,6 +79,7 @@ class Script {
 
  private:
   std::string text_;
+  std::int64_t sequence_ = 0;  // of what the runner says
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
              std::vector<driver_command_t>>
       heard_;
