@@ -17,6 +17,8 @@ constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
 // starts again asks for its inputs of 63 steps at a time, one that has six for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
+// Who asks within this time after an answer has it.
+constexpr Duration kAnswerHolds = milliseconds(2);
 
 }  // namespace
 
@@ -135,17 +137,27 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
   // can be read.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
   steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
-  const bool recorded = std::ranges::any_of(
-      inputs(), [channel](const Input& input) { return kChannels[input.channel].name == channel; });
+  for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
+    AnswerStep(channel, k, now);
+  }
+}
+
+void Recorder::AnswerStep(std::string_view channel, std::int64_t step, TimePoint now) {
+  const auto input = std::ranges::find_if(
+      inputs(), [channel](const Input& one) { return kChannels[one.channel].name == channel; });
   // Reading is work, too: none of it for nothing.
-  if (steps.count <= 0 || !recorded || !budget_.Has(now)) return;
-  history_->ForEach(channel, steps, [&](Bytes bytes) { Answer(channel, bytes, now); });
+  if (input == inputs().end() || !budget_.Has(now)) return;
+  Answered& last = answered_[input->channel][RingSlot(step)];
+  if (last.step == step && now - last.at < kAnswerHolds) return;
+  last = {.step = step, .at = now};
+  history_->ForEach(channel, {.first = step, .count = 1},
+                    [&](Bytes bytes) { Answer(channel, bytes, now); });
 }
 
 // In real time nobody computes old steps again. A world that has been started again wants to know
 // where the cars are: it is the only one that asks for TRUTH, and its producer is dead.
 void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint now) {
-  if (channel != ChannelOf<truth_t>().name) return;
+  if (channel != ChannelOf<truth_t>().name || !budget_.Has(now)) return;
   const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
   bool answered = false;
   for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {
@@ -156,8 +168,7 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
   // It may have been started again itself.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
-  history_->ForEach(channel, {.first = history_->steps() - 1, .count = 1},
-                    [&](Bytes bytes) { Answer(channel, bytes, now); });
+  AnswerStep(channel, history_->steps() - 1, now);
 }
 
 void Recorder::BeforeStatus() {

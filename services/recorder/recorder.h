@@ -42,6 +42,9 @@ class Recorder final : public Node {
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
   void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
+  /// Hands out one step of a channel again, unless it was handed out just now. An answer is
+  /// everybody's.
+  void AnswerStep(std::string_view channel, std::int64_t step, TimePoint now);
 
   const std::filesystem::path file_;
   const Existing existing_;
@@ -50,6 +53,11 @@ class Recorder final : public Node {
   std::int64_t final_ = -1;  // step after which the run ends, once known
   std::int64_t step_us_ = 0;
   RecordRule* recording_ = nullptr;  // the rule, in real time
+  struct Answered {
+    std::int64_t step = -1;
+    TimePoint at{};
+  };
+  std::array<std::array<Answered, kRingSteps>, kChannels.size()> answered_{};
 };
 
 }  // namespace fogline

@@ -104,11 +104,16 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
   FilterSockets();
 }
 
+void Bus::Thin(std::string_view channel, double share) {
+  TopicOf(channel).share = share;
+  FilterSockets();
+}
+
 void Bus::FilterSockets() {
   if (watcher_) return;  // wants everything
   std::vector<Wanted> wanted;
   for (const Topic& topic : topics_) {
-    if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted});
+    if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted, topic.share});
   }
   for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(wanted));
 }

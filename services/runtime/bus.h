@@ -55,6 +55,9 @@ class Bus {
   /// @param contents what `handler` needs; where the kernel can, it drops the others of the channel
   void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
 
+  /// Takes a share of a channel only, in [0, 1], as far as the kernel can choose. 1: all of it.
+  void Thin(std::string_view channel, double share);
+
   /// Calls `watcher` from Wait() for every message on any channel, and lets the kernel drop none of
   /// them. Once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
@@ -134,6 +137,7 @@ struct Bus::Topic {
   Arrival arrival;
   std::vector<Handler> handlers;
   Contents wanted;  // by all handlers
+  double share = 1;
 };
 
 /// A multicast URL of this machine only, on a port drawn at random: runs do not meet by chance.

@@ -72,6 +72,13 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with its 0
   std::vector<sock_filter> contents;
+  if (wanted.share < 1) {
+    constexpr double kRandomMax = 4294967295.0;
+    const auto limit = static_cast<std::uint32_t>(std::max(0.0, wanted.share) * kRandomMax);
+    contents.push_back(Load(4, static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_RANDOM)));
+    contents.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, limit, 0, 1));
+    contents.push_back(Take(kNothing));
+  }
   for (const std::string& text : wanted.contents.texts) {
     AppendText(text, kChannelOffset + name.size() + wanted.contents.offset, 1, contents);
     contents.push_back(Take(kWholeDatagram));

@@ -43,10 +43,12 @@ struct Contents {
   std::vector<std::string> texts;
 };
 
-/// A channel that is wanted; without texts all of it.
+/// A channel that is wanted; without texts all of it. Of a channel that is flooded only a share, in
+/// [0, 1], drawn at random by the kernel.
 struct Wanted {
   std::string channel;
   Contents contents{};
+  double share = 1;
 };
 
 /// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on

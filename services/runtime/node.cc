@@ -303,13 +303,14 @@ void Node::TakeInput(std::size_t index, std::int64_t step, Arrival& arrival) {
 }
 
 void Node::OnResend(Bytes bytes) {
+  const TimePoint now = Clock::now();
+  if (const auto share = requests_.Count(now)) bus_.Thin(ChannelOf<resend_t>().name, *share);
   resend_t resend{};
   if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
   if (bound_ && resend.header.run_id != *run_id_) return Refuse(&status_t::foreign);
   const std::int64_t step = resend.header.step;
   if (step < 0 || step > kMaxStep) return Refuse(&status_t::out_of_window);
   if (!Running()) return;
-  const TimePoint now = Clock::now();
   if (resend.channel == ChannelOf<status_t>().name) {
     if (budget_.Take(now)) OnStatusAsked(step, now);
     return;

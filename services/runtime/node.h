@@ -17,6 +17,7 @@
 #include "services/runtime/answer_budget.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/flood_gate.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/step_ring.h"
 
@@ -154,6 +155,7 @@ class Node {
   bool bound_;  // to the run of run_id_: by option, or since a run was announced
   bool fresh_;  // the runner has answered this process, or without a key it need not
   AnswerBudget questions_{200, 20};  // to runners, whether they are still there
+  FloodGate requests_{3000};         // many times what the worst network makes necessary
   std::int64_t sequence_ = 0;        // newest word of the runner
   ScenarioParts parts_;
   std::vector<Input> inputs_;

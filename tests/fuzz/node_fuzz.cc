@@ -64,13 +64,10 @@ class Run {
   void Do(Action action, Cutter& cutter) {
     switch (action) {
       case kAnnounce:
-        return Say(Sample<run_t>(0));
+        return SayRun(run_t::PREPARE);
       case kGo:
-      case kStop: {
-        auto run = Sample<run_t>(0);
-        run.phase = action == kGo ? run_t::GO : run_t::STOP;
-        return Say(run);
-      }
+      case kStop:
+        return SayRun(action == kGo ? run_t::GO : run_t::STOP);
       case kCommands: {
         Say(Sample<arbitration_t>(step_));
         auto follower = Sample<follower_command_t>(step_++);
@@ -103,6 +100,12 @@ class Run {
   void Say(const M& message) {
     Publish(ChannelOf<M>().name, Encoded(message));
   }
+  void SayRun(std::int8_t phase) {
+    auto run = Sample<run_t>(0);
+    run.phase = phase;
+    run.sequence = ++sequence_;
+    Say(run);
+  }
   void Publish(std::string_view channel, Bytes bytes) {
     bus_.Publish(channel, bytes);
     bus_.Drain();
@@ -116,6 +119,7 @@ class Run {
   Recorder recorder_{bus_, {}, log_.path()};
   std::array<Node*, 3> nodes_{&world_, &driver_, &recorder_};
   std::int64_t step_ = 0;
+  std::int64_t sequence_ = 0;
 };
 
 }  // namespace

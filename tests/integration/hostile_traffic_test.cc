@@ -48,9 +48,10 @@ TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
   const double seconds = Seconds(4);
   const auto [result, sent] = RunUnder({}, seconds);
   // GIVEN that it was there
-  EXPECT_GT(sent["sent"], kRateHz / 2 * seconds) << sent;
-  for (const char* kind : {"noise", "noise_on_a_channel", "not_finite", "wrong_step", "foreign_run",
-                           "wrong_type", "truncated", "oversized", "fragment", "request"}) {
+  EXPECT_GT(sent["sent"], 0.9 * kRateHz * seconds) << sent;
+  for (const char* kind :
+       {"noise", "noise_on_a_channel", "not_finite", "wrong_step", "foreign_run", "wrong_type",
+        "truncated", "oversized", "fragment", "request", "replayed"}) {
     EXPECT_GT(sent.value(kind, 0), 500) << kind;
   }
   // THEN the result is that of the undisturbed run
@@ -62,21 +63,21 @@ TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
     EXPECT_GT(result["refused"][kind], 500) << result["refused"];
   }
   // AND of those who claimed to be of other runs a few are named
-  EXPECT_LE(result["strangers"].size(), 32U);
+  EXPECT_FALSE(result["strangers"].empty());
 }
 
-/// Floods of the two kinds that cost most: what must be answered, and what LCM's parser takes
-/// amiss.
+/// Floods of the kinds that cost most: what must be answered, what LCM's parser takes amiss, and
+/// what was true a moment ago.
 class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(FloodTest, ChangesNoResult) {
   const double seconds = Seconds(1.5);
   const auto [result, sent] = RunUnder({"--only", GetParam()}, seconds);
-  EXPECT_GT(sent.value(GetParam(), 0), kRateHz / 2 * seconds) << sent;
+  EXPECT_GT(sent.value(GetParam(), 0), 0.9 * kRateHz * seconds) << sent;
   EXPECT_EQ(result["digest"], Undisturbed());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, FloodTest, testing::Values("request", "fragment"),
+INSTANTIATE_TEST_SUITE_P(Of, FloodTest, testing::Values("request", "fragment", "replayed"),
                          [](const auto& kind) { return kind.param; });
 
 }  // namespace

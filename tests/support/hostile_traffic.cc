@@ -307,6 +307,7 @@ const std::vector<Attacker::Kind> Attacker::kKinds{
     {"oversized", true, &Attacker::Oversized},
     {"fragment", false, &Attacker::Fragment},
     {"request", true, &Attacker::Request},
+    {"replayed", true, &Attacker::Wrap},
 };
 
 Attacker::Attacker(std::uint64_t seed, const std::string& only) : random_(seed) {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,22 @@ TEST(ChannelFilterTest, TakesOfAChannelWhatHasAWantedTextAtItsPlace) {
   }
   socket.Send(Datagram("RUN", "any"));
   EXPECT_EQ(socket.Receive(), Datagram("RUN", "any"));
+}
+
+TEST(ChannelFilterTest, TakesAShareOfAChannelAtRandom) {
+  const FilteredSocket socket({{.channel = "RESEND", .share = 0.25}, {.channel = "RUN"}});
+  constexpr int kSent = 400;
+  int taken = 0;
+  for (int i = 0; i < kSent; ++i) {
+    socket.Send(Datagram("RESEND"));
+    socket.Send(Datagram("RUN"));
+    if (socket.Receive() == Datagram("RESEND")) {
+      ++taken;
+      EXPECT_EQ(socket.Receive(), Datagram("RUN"));
+    }
+  }
+  // Five standard deviations of a binomial distribution.
+  EXPECT_NEAR(taken, 0.25 * kSent, 5 * std::sqrt(kSent * 0.25 * 0.75));
 }
 
 TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
