@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <iterator>
 #include <mutex>
 #include <stdexcept>
@@ -52,6 +54,8 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     fd_ = tcpq_->fd();
     return;
   }
+  // LCM would take a default of its own, which nothing here has looked at.
+  if (url_.empty()) throw InputError("error: the LCM URL is empty");
   if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
     throw InputError(fmt::format("error: {}", why));
   }
@@ -65,18 +69,41 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({{"LCM_SELF_TEST"}}));
     lcm_ = lcm_create(url_.c_str());
     if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
-    if (filter) sockets_ = filter->sockets();
+    if (filter) {
+      sockets_ = filter->sockets();
+      filtered_ = filter->on_all();
+    }
   }
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
   // LCM has tested itself by now. What has not been subscribed to need not reach its parser.
-  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter({}));
+  Filter(ChannelFilter({}));
+  static bool warned = false;
+  if (!filtered_ && !std::exchange(warned, true)) {
+    fmt::print(stderr,
+               "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
+               "parser (`fogline doctor` says more)\n",
+               url_);
+  }
 }
 
 Bus::~Bus() {
   if (lcm_ != nullptr) lcm_destroy(lcm_);
+}
+
+void Bus::Secure(const Seal& seal) {
+  if (url_.starts_with("mpudpm://")) {
+    throw InputError(
+        "error: --key: with mpudpm nothing filters what reaches LCM's parser; use udpm");
+  }
+  if (!filtered_) {
+    throw InputError(
+        "error: --key: the kernel takes no socket filter, so strangers reach LCM's parser before "
+        "the signature is looked at; `fogline doctor` says more");
+  }
+  seal_ = seal;
 }
 
 Bus::Topic& Bus::TopicOf(std::string_view channel) {
@@ -115,7 +142,16 @@ void Bus::FilterSockets() {
   for (const Topic& topic : topics_) {
     if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted, topic.share});
   }
-  for (const int socket : sockets_) AttachFilter(socket, ChannelFilter(wanted));
+  Filter(ChannelFilter(wanted));
+}
+
+void Bus::Filter(const std::vector<sock_filter>& program) {
+  if (!filtered_) return;
+  for (const int socket : sockets_) {
+    if (AttachFilter(socket, program)) continue;
+    throw std::runtime_error(fmt::format("the kernel refuses a filter of {} instructions: {}",
+                                         program.size(), std::strerror(errno)));
+  }
 }
 
 void Bus::SubscribeAll(Watcher watcher) {
@@ -127,7 +163,7 @@ void Bus::SubscribeAll(Watcher watcher) {
   lcm_subscription_t* handle = lcm_subscribe(lcm_, ".*", &Bus::OnAnything, this);
   if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
   lcm_subscription_set_queue_capacity(handle, 0);
-  for (const int socket : sockets_) DetachFilter(socket);
+  Filter(AnyChannelFilter());
 }
 
 void Bus::Publish(const Topic& topic, Bytes bytes) {

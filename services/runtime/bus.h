@@ -44,7 +44,9 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
 
   /// From now on signs what it sends, and refuses what is not signed well.
-  void Secure(const Seal& seal) { seal_ = seal; }
+  /// @throws InputError where the kernel keeps nothing from LCM's parser, which comes before the
+  ///     signature: with mpudpm, or if it takes no filter
+  void Secure(const Seal& seal);
   bool secured() const { return seal_.has_value(); }
   /// From now on receives as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
@@ -58,8 +60,8 @@ class Bus {
   /// Takes a share of a channel only, in [0, 1], as far as the kernel can choose. 1: all of it.
   void Thin(std::string_view channel, double share);
 
-  /// Calls `watcher` from Wait() for every message on any channel, and lets the kernel drop none of
-  /// them. Once at most.
+  /// Calls `watcher` from Wait() for every message on any channel that is no larger than ours may
+  /// be. Once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
@@ -103,6 +105,8 @@ class Bus {
   std::optional<Bytes> Verified(const Topic& topic, Bytes bytes);
   void CallHandlers(Topic& topic, Bytes bytes);
   void FilterSockets();
+  /// @throws std::runtime_error where the kernel has filtered until now and will not go on
+  void Filter(const std::vector<sock_filter>& program);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
   static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
@@ -113,6 +117,7 @@ class Bus {
   std::unique_ptr<tcpq::Client> tcpq_;  // instead of LCM's own
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
+  bool filtered_ = true;      // the kernel filters what reaches LCM's parser
   // Of memq, which nobody but this object publishes on: messages that wait to be handled.
   bool in_memory_;
   std::int64_t waiting_ = 0;

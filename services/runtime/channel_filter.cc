@@ -9,7 +9,11 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <stdexcept>
 #include <string_view>
+
+#include <fmt/core.h>
 
 #include "services/runtime/seal.h"
 
@@ -33,9 +37,22 @@ sock_filter Load(std::size_t size, std::size_t offset) {
                   static_cast<std::uint32_t>(offset));
 }
 
+/// A jump is one byte wide.
+std::uint8_t Jump(std::size_t instructions) {
+  if (instructions > std::numeric_limits<std::uint8_t>::max()) {
+    throw std::logic_error(fmt::format("a filter would jump over {} instructions", instructions));
+  }
+  return static_cast<std::uint8_t>(instructions);
+}
+
 /// Skips `skip` instructions unless the value loaded last is this one.
 sock_filter SkipUnless(std::uint32_t value, std::size_t skip) {
-  return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, static_cast<std::uint8_t>(skip));
+  return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, Jump(skip));
+}
+
+/// Skips `skip` instructions if the value loaded last is this one.
+sock_filter SkipIf(std::uint32_t value, std::size_t skip) {
+  return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, Jump(skip), 0);
 }
 
 sock_filter Take(std::uint32_t bytes) { return BPF_STMT(BPF_RET | BPF_K, bytes); }
@@ -88,6 +105,17 @@ void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   program.insert(program.end(), contents.begin(), contents.end());
 }
 
+/// What every filter begins with: drops what is no message in one datagram, or is too large.
+std::vector<sock_filter> WholeMessages() {
+  return {
+      BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
+      BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // to Take(kNothing)
+      Load(4, kMagicOffset),
+      SkipIf(kSmallMessage, 1),  // goes on with the channels
+      Take(kNothing),
+  };
+}
+
 thread_local FilterFromTheStart* at_bind = nullptr;
 
 }  // namespace
@@ -99,18 +127,12 @@ FilterFromTheStart::FilterFromTheStart(std::vector<sock_filter> program)
 FilterFromTheStart::~FilterFromTheStart() { at_bind = nullptr; }
 
 void FilterFromTheStart::Take(int socket) {
-  AttachFilter(socket, program_);
+  refused_ = !AttachFilter(socket, program_) || refused_;
   sockets_.push_back(socket);
 }
 
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
-  std::vector<sock_filter> program{
-      BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
-      BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // to Take(kNothing)
-      Load(4, kMagicOffset),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kSmallMessage, 1, 0),  // goes on with the channels
-      Take(kNothing),
-  };
+  std::vector<sock_filter> program = WholeMessages();
   // A program that looks beyond the end of a datagram drops it. From short names to long ones, none
   // looks further than the name that matches, and then what is wanted of it.
   std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
@@ -119,15 +141,26 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   return program;
 }
 
-void AttachFilter(int socket, std::vector<sock_filter> program) {
-  const sock_fprog filter{.len = static_cast<unsigned short>(program.size()),
-                          .filter = program.data()};
-  setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter));
+std::vector<sock_filter> AnyChannelFilter() {
+  std::vector<sock_filter> program = WholeMessages();
+  // The 0 behind the name; beyond the end of the datagram there is none.
+  constexpr std::size_t kPlaces = kMaxChannel + 1;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    program.push_back(Load(1, kChannelOffset + i));
+    program.push_back(SkipIf(0, 2 * (kPlaces - 1 - i) + 1));
+  }
+  program.push_back(Take(kNothing));
+  program.push_back(Take(kWholeDatagram));
+  return program;
 }
 
-void DetachFilter(int socket) {
-  constexpr int kIgnored = 0;
-  setsockopt(socket, SOL_SOCKET, SO_DETACH_FILTER, &kIgnored, sizeof(kIgnored));
+bool AttachFilter(int socket, std::vector<sock_filter> program) {
+  if (program.size() > BPF_MAXINSNS) {
+    throw std::logic_error(fmt::format("a filter of {} instructions", program.size()));
+  }
+  const sock_fprog filter{.len = static_cast<unsigned short>(program.size()),
+                          .filter = program.data()};
+  return setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) == 0;
 }
 
 }  // namespace fogline

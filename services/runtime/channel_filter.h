@@ -29,12 +29,14 @@ class FilterFromTheStart {
 
   /// Called for each.
   void Take(int socket);
-  /// Those that have it.
   const std::vector<int>& sockets() const { return sockets_; }
+  /// Whether there are sockets, and the kernel has taken the filter for every one.
+  bool on_all() const { return !sockets_.empty() && !refused_; }
 
  private:
   std::vector<sock_filter> program_;
   std::vector<int> sockets_;
+  bool refused_ = false;
 };
 
 /// What of a channel's data is wanted: that which has one of these texts at a place of its own.
@@ -54,13 +56,15 @@ struct Wanted {
 /// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on
 /// these channels, of up to kMaxMessageBytes of data and a signature, and nothing else. Fragments
 /// of large messages ("LC03") are not taken.
+/// @throws std::logic_error if more is wanted of a channel than the kernel can jump over
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
-/// Filters what the socket receives from now on, instead of by an earlier filter. Where the kernel
-/// will not, the socket goes on receiving everything.
-void AttachFilter(int socket, std::vector<sock_filter> program);
+/// The same for all channels: whatever is a whole LCM message of that size, with a name that ends.
+std::vector<sock_filter> AnyChannelFilter();
 
-/// Lets the socket receive everything again.
-void DetachFilter(int socket);
+/// Filters what the socket receives from now on, instead of by an earlier filter.
+/// @return false where the kernel will not: the socket goes on as before
+/// @throws std::logic_error if the program is longer than the kernel takes any (BPF_MAXINSNS)
+[[nodiscard]] bool AttachFilter(int socket, std::vector<sock_filter> program);
 
 }  // namespace fogline

@@ -210,7 +210,8 @@ TEST(DoctorTest, ExaminesThisMachineWithoutFindingAProblemThatTheOtherTestsWould
                             "time_sync", "cpus", "governor", "disk"}) {
     EXPECT_FALSE(Levels(document, check).empty()) << check;
   }
-  for (const char* check : {"multicast_route", "multicast_loopback", "programs"}) {
+  for (const char* check :
+       {"multicast_route", "multicast_loopback", "socket_filter", "programs"}) {
     EXPECT_EQ(Levels(document, check), std::multiset<std::string>{"ok"}) << doctor.out;
   }
   for (const json& finding : document["findings"]) {

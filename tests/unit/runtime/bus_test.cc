@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "scenario/loader.h"
@@ -56,6 +60,35 @@ TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
   std::erase(watched, "LCM_SELF_TEST");
   EXPECT_EQ(watched, (std::vector<std::string>{"BEFORE", "OTHER", "AFTER", "LAST"}));
   EXPECT_EQ(subscribed, 2);
+}
+
+/// Sends bytes as they are to the group and port of a multicast URL.
+void SendRaw(const std::string& url, std::string_view bytes) {
+  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_addr.s_addr = inet_addr("239.255.76.67");
+  group.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
+  constexpr unsigned char kThisMachine = 0;
+  setsockopt(sender, IPPROTO_IP, IP_MULTICAST_TTL, &kThisMachine, sizeof(kThisMachine));
+  EXPECT_EQ(sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&group),
+                   sizeof(group)),
+            static_cast<ssize_t>(bytes.size()));
+  close(sender);
+}
+
+TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
+  using namespace std::string_literals;
+  const std::string url = FreshMulticastUrl();
+  Bus bus(url);
+  std::vector<std::string> watched;
+  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
+  // GIVEN a message of 4 bytes as one fragment, which LCM would put together
+  SendRaw(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
+  SendRaw(url, "LC02\0\0\0\2LAST\0abcd"s);
+  while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(watched, std::vector<std::string>{"LAST"});
 }
 
 TEST(BusTest, HandsAnExceptionOfAHandlerToTheCallerOfWait) {
@@ -116,6 +149,11 @@ TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
             "3 messages with a wrong signature were refused: do all processes have the same key?");
 }
 
+TEST(BusTest, TakesNoKeyWhereNothingFiltersWhatReachesLcmsParser) {
+  Bus bus("mpudpm://239.255.76.67:23457?ttl=0");
+  EXPECT_THROW(bus.Secure(Seal(KeyOf(1), Role::kFusion)), InputError);
+}
+
 TEST(BusTest, KnowsThatAKeyIsWanting) {
   const std::string url = FreshMulticastUrl();
   Bus keyless(url);
@@ -160,6 +198,7 @@ TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
 
 TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
   EXPECT_THROW(Bus("nonsense"), InputError);
+  EXPECT_THROW(Bus(""), InputError);
   EXPECT_THROW(Bus("nosuchprovider://"), InputError);
 }
 

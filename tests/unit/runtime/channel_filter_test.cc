@@ -26,7 +26,9 @@ std::string Datagram(const std::string& channel, const std::string& data = "1234
 /// A receiving socket behind a filter, and one that sends to it.
 class FilteredSocket {
  public:
-  explicit FilteredSocket(const std::vector<Wanted>& wanted) {
+  explicit FilteredSocket(const std::vector<Wanted>& wanted)
+      : FilteredSocket(ChannelFilter(wanted)) {}
+  explicit FilteredSocket(const std::vector<sock_filter>& filter) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -35,7 +37,7 @@ class FilteredSocket {
     EXPECT_EQ(bind(receiver_, where, size), 0);
     EXPECT_EQ(getsockname(receiver_, where, &size), 0);
     EXPECT_EQ(connect(sender_, where, size), 0);
-    AttachFilter(receiver_, ChannelFilter(wanted));
+    EXPECT_TRUE(AttachFilter(receiver_, filter));
   }
   ~FilteredSocket() {
     close(receiver_);
@@ -128,9 +130,9 @@ TEST(ChannelFilterTest, TakesAShareOfAChannelAtRandom) {
 }
 
 TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
-  const FilteredSocket socket({});
+  const FilteredSocket socket(ChannelFilter({}));
   socket.Send(Datagram("RADAR"));
-  AttachFilter(socket.receiver(), ChannelFilter({{"LIDAR"}}));
+  ASSERT_TRUE(AttachFilter(socket.receiver(), ChannelFilter({{"LIDAR"}})));
   socket.Send(Datagram("LIDAR"));
   EXPECT_EQ(socket.Receive(), Datagram("LIDAR"));
 }
@@ -142,6 +144,59 @@ TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
   socket.Send(Datagram("RADAR", std::string(60'000, 'x')));
   socket.Send(largest);
   EXPECT_EQ(socket.Receive(), largest);
+}
+
+TEST(ChannelFilterTest, RefusesToJumpFurtherThanTheKernelCan) {
+  std::vector<std::string> texts;
+  for (int i = 0; i < 200; ++i) texts.push_back(std::to_string(i));
+  EXPECT_THROW(ChannelFilter({{"RESEND", {.offset = 4, .texts = texts}}}), std::logic_error);
+}
+
+TEST(AnyChannelFilterTest, TakesEveryWholeMessageWithANameThatEnds) {
+  const FilteredSocket socket(AnyChannelFilter());
+  const std::string longest_name(63, 'N');
+  const std::vector<std::string> good{
+      Datagram("RADAR"), Datagram(""), Datagram("A", ""), Datagram(longest_name),
+      Datagram(longest_name, std::string(kMaxMessageBytes + kSealBytes, 'x'))};
+  for (const std::string& datagram : good) socket.Send(datagram);
+  for (const std::string& datagram : good) EXPECT_EQ(socket.Receive(), datagram);
+}
+
+TEST(AnyChannelFilterTest, DropsFragmentsAndWhateverIsNoMessageInOneDatagram) {
+  const FilteredSocket socket(AnyChannelFilter());
+  for (const std::string& noise :
+       {"LC03\0\0\0\7\0\0\0\x10\0\0\0\0\0\0\0\1RADAR\0 a fragment"s, "LC01\0\0\0\7RADAR\0"s, ""s,
+        "LC02"s, "LC02\0\0\0\7"s, "LC02\0\0\0\7no end"s, Datagram(std::string(64, 'N')),
+        Datagram("RADAR", std::string(2000, 'x')), Datagram("RADAR", std::string(60'000, 'x'))}) {
+    socket.Send(noise);
+  }
+  socket.Send(Datagram("RADAR"));
+  EXPECT_EQ(socket.Receive(), Datagram("RADAR"));
+}
+
+TEST(AttachFilterTest, SaysThatTheKernelWillNot) {
+  const FilteredSocket socket({{"RADAR"}});
+  const int locked = 1;
+  ASSERT_EQ(setsockopt(socket.receiver(), SOL_SOCKET, SO_LOCK_FILTER, &locked, sizeof(locked)), 0);
+  EXPECT_FALSE(AttachFilter(socket.receiver(), ChannelFilter({})));
+  EXPECT_FALSE(AttachFilter(-1, ChannelFilter({})));
+}
+
+TEST(AttachFilterTest, RefusesAProgramLongerThanTheKernelTakes) {
+  std::vector<Wanted> many;
+  for (int i = 0; i < 2000; ++i) many.push_back({std::to_string(i)});
+  EXPECT_THROW((void)AttachFilter(-1, ChannelFilter(many)), std::logic_error);
+}
+
+TEST(FilterFromTheStartTest, KnowsWhetherEverySocketHasIt) {
+  FilterFromTheStart filter(ChannelFilter({}));
+  EXPECT_FALSE(filter.on_all()) << "there is none";
+  const FilteredSocket good(ChannelFilter({}));
+  filter.Take(good.receiver());
+  EXPECT_TRUE(filter.on_all());
+  filter.Take(-1);
+  filter.Take(good.receiver());
+  EXPECT_FALSE(filter.on_all());
 }
 
 TEST(FilterFromTheStartTest, IsOnEverySocketThatLcmBindsInThisThread) {

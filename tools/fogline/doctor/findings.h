@@ -25,7 +25,7 @@ using Findings = std::vector<Finding>;
 /// "ok", "warning" or "problem".
 std::string_view NameOf(Finding::Level level);
 
-/// Route, multicast on this machine, receive buffer, or the relay of a tcpq:// URL.
+/// Route, multicast on this machine, socket filter, receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
 /// Who is heard on the network within a second.

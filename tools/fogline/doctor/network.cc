@@ -1,8 +1,10 @@
 // The network that LCM uses: route, multicast, buffers; who else is on it.
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <sstream>
@@ -12,6 +14,7 @@
 
 #include "scenario/loader.h"
 #include "services/runtime/bus.h"
+#include "services/runtime/channel_filter.h"
 #include "services/runtime/multicast_route.h"
 #include "services/runtime/tcpq_client.h"
 #include "tools/fogline/doctor/findings.h"
@@ -138,6 +141,48 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
                    wanted)});
 }
 
+/// What a socket receives first of a fragment and a message, if it filters as a Bus does: the first
+/// bytes of either, "" if nothing comes.
+std::string FilteredFirst() {
+  constexpr std::string_view kFragment("LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1A\0", 22);
+  constexpr std::string_view kMessage("LC02\0\0\0\1A\0", 10);
+  const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  auto* here = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, 4> magic{};
+  ssize_t received = 0;
+  if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
+      AttachFilter(receiver, AnyChannelFilter())) {
+    // To itself: on this machine what is sent is there at once.
+    sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
+    sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
+    received = recv(receiver, magic.data(), magic.size(), 0);
+  }
+  close(receiver);
+  return {magic.data(), static_cast<std::size_t>(std::max<ssize_t>(received, 0))};
+}
+
+void ExamineFilter(const std::string& url, Findings& findings) {
+  if (!url.starts_with("udpm://")) {
+    findings.push_back({"socket_filter", Level::kWarning,
+                        "with mpudpm nothing filters what reaches LCM's parser, whose bounds are "
+                        "wrong for fragments; there is no --key",
+                        "udpm:// in place of mpudpm://"});
+  } else if (FilteredFirst() == "LC02") {
+    findings.push_back({"socket_filter", Level::kOk,
+                        "the kernel keeps fragments and noise from LCM's parser", ""});
+  } else {
+    findings.push_back({"socket_filter", Level::kWarning,
+                        "the kernel takes no socket filter: fragments reach LCM's parser, whose "
+                        "bounds are wrong for them; there is no --key",
+                        "allow setsockopt(SO_ATTACH_FILTER) in the sandbox or container, or use "
+                        "--transport tcpq"});
+  }
+}
+
 void ExamineRelay(const std::string& url, Findings& findings) {
   try {
     const tcpq::Client client(url);
@@ -168,6 +213,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   if (group && ExamineRoute(*group, UrlOption(url, "ttl", 0), findings)) {
     ExamineLoopback(*group, findings);
   }
+  ExamineFilter(url, findings);
   ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);
 }
 
