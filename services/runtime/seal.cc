@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <stdexcept>
 
 #include <fmt/core.h>
 
@@ -62,49 +62,106 @@ InputError KeyError(const std::filesystem::path& file, const std::string& what) 
   return InputError(fmt::format("{}: error: {}", file.string(), what));
 }
 
+void StartSodium() {
+  static const bool started = sodium_init() >= 0;
+  if (!started) throw std::runtime_error("libsodium cannot be used here");
+}
+
+/// Bytes that nobody finds in memory afterwards, whatever happens.
+template <class T, std::size_t kSize>
+struct Wiped : std::array<T, kSize> {
+  Wiped() : std::array<T, kSize>{} {}
+  ~Wiped() { sodium_memzero(this->data(), sizeof(T) * kSize); }
+  Wiped(const Wiped&) = delete;
+  Wiped& operator=(const Wiped&) = delete;
+};
+
+constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SealKey::Secret>;
+// A key, its line end and one character more: a longer file is none.
+using KeyText = Wiped<char, kKeyDigits + 3>;
+
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file)
+      : fd_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (fd_ >= 0) close(fd_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+/// How many bytes there are, at most those of `text`. @return -1 and errno if it cannot be read
+ssize_t ReadAll(int fd, KeyText& text) {
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const ssize_t more = read(fd, text.data() + size, text.size() - size);
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) return -1;
+    if (more == 0) break;
+    size += static_cast<std::size_t>(more);
+  }
+  return static_cast<ssize_t>(size);
+}
+
+/// Why an open file is no secret of this user's, "" if it is one.
+std::string WhyNoSecret(int fd, const std::filesystem::path& file) {
+  struct stat info {};
+  if (fstat(fd, &info) != 0) return std::strerror(errno);
+  if (info.st_uid != geteuid() && info.st_uid != 0) {
+    return fmt::format(
+        "the key belongs to user {}, who can change it; copy it, or: chown {} {}; chmod 600 {}",
+        info.st_uid, geteuid(), file.string(), file.string());
+  }
+  if ((info.st_mode & (S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH)) != 0) {
+    return fmt::format("others can read or change this key (mode {:03o}); chmod 600 {}",
+                       info.st_mode & 0777U, file.string());
+  }
+  return "";
+}
+
 }  // namespace
 
 SealKey::~SealKey() { sodium_memzero(secret_.data(), secret_.size()); }
 
 SealKey SealKey::Load(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  // One character more than a key and its line end: a longer file is none.
-  std::array<char, 2 * std::tuple_size_v<Secret> + 3> text{};
-  in.read(text.data(), text.size());
-  if (in.bad() || (in.gcount() == 0 && in.fail() && !in.eof())) {
-    throw KeyError(file, fmt::format("cannot read the key: {}", std::strerror(errno)));
-  }
-  std::string_view digits(text.data(), static_cast<std::size_t>(in.gcount()));
+  StartSodium();
+  const OpenFile in(file);
+  KeyText text;
+  const ssize_t size = in.fd() < 0 ? -1 : ReadAll(in.fd(), text);
+  if (size < 0) throw KeyError(file, fmt::format("cannot read the key: {}", std::strerror(errno)));
+  std::string_view digits(text.data(), static_cast<std::size_t>(size));
   while (digits.ends_with('\n') || digits.ends_with('\r')) digits.remove_suffix(1);
-  Secret secret{};
-  const bool whole = digits.size() == 2 * secret.size() &&
-                     sodium_hex2bin(secret.data(), secret.size(), digits.data(), digits.size(),
-                                    nullptr, nullptr, nullptr) == 0;
-  sodium_memzero(text.data(), text.size());
+  SealKey key(Secret{});
+  const bool whole = digits.size() == kKeyDigits &&
+                     sodium_hex2bin(key.secret_.data(), key.secret_.size(), digits.data(),
+                                    digits.size(), nullptr, nullptr, nullptr) == 0;
   if (!whole) {
     throw KeyError(file,
                    "not a key, which is 64 hexadecimal digits and nothing else; `fogline keygen "
                    "FILE` makes one");
   }
-  const SealKey key(secret);
-  sodium_memzero(secret.data(), secret.size());
+  if (const std::string why = WhyNoSecret(in.fd(), file); !why.empty()) throw KeyError(file, why);
   return key;
 }
 
 void SealKey::Create(const std::filesystem::path& file) {
+  StartSodium();
   const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (fd < 0) {
     throw KeyError(file, errno == EEXIST ? "exists; a key is not replaced"
                                          : fmt::format("cannot write: {}", std::strerror(errno)));
   }
-  Secret secret{};
+  Wiped<std::uint8_t, std::tuple_size_v<Secret>> secret;
   randombytes_buf(secret.data(), secret.size());
-  std::array<char, 2 * std::tuple_size_v<Secret> + 1> text{};
+  Wiped<char, kKeyDigits + 1> text;
   sodium_bin2hex(text.data(), text.size(), secret.data(), secret.size());
   text.back() = '\n';
   const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  sodium_memzero(secret.data(), secret.size());
-  sodium_memzero(text.data(), text.size());
   if (close(fd) != 0 || !written) {
     const std::string why = std::strerror(errno);
     unlink(file.c_str());
@@ -112,14 +169,8 @@ void SealKey::Create(const std::filesystem::path& file) {
   }
 }
 
-std::string KeyFileWarning(const std::filesystem::path& file) {
-  struct stat info {};
-  if (stat(file.c_str(), &info) != 0 || (info.st_mode & (S_IRWXG | S_IRWXO)) == 0) return "";
-  return fmt::format("{}: warning: others can read this key; chmod 600 would keep it secret",
-                     file.string());
-}
-
 Seal::KeyId Seal::IdOf(const SealKey& key) {
+  StartSodium();
   std::array<std::uint8_t, crypto_generichash_BYTES> hash{};
   crypto_generichash(hash.data(), hash.size(), key.secret().data(), key.secret().size(), nullptr,
                      0);
@@ -138,6 +189,7 @@ Seal::Tag Seal::TagOf(std::string_view channel, const Sender& sender, Bytes payl
   crypto_generichash_update(&state, payload.data(), payload.size());
   Tag tag{};
   crypto_generichash_final(&state, tag.data(), tag.size());
+  sodium_memzero(&state, sizeof(state));  // it begins with the key
   return tag;
 }
 

@@ -33,7 +33,8 @@ class SealKey {
   SealKey(const SealKey&) = default;
   SealKey& operator=(const SealKey&) = default;
 
-  /// @throws InputError when the file cannot be read or holds no key
+  /// @throws InputError when the file cannot be read, holds no key, or is not its user's secret:
+  ///     of somebody else (but root), or open to others
   static SealKey Load(const std::filesystem::path& file);
   /// Draws a key into a new file that its owner alone can read.
   /// @throws InputError when the file exists or cannot be written
@@ -44,9 +45,6 @@ class SealKey {
  private:
   Secret secret_;
 };
-
-/// What is wrong with a key file that others may read, "" if nothing.
-std::string KeyFileWarning(const std::filesystem::path& file);
 
 /// Bytes of the trailer.
 inline constexpr std::size_t kSealBytes = 24;

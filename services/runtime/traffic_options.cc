@@ -1,6 +1,6 @@
 #include "services/runtime/traffic_options.h"
 
-#include <cstdio>
+#include <cstdlib>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,20 +9,35 @@
 
 namespace fogline {
 
+namespace {
+
+constexpr const char* kKeyVariable = "FOGLINE_KEY";
+
+}  // namespace
+
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
   app.add_option("--key", options.key_file,
                  "Sign with the key in this file; refuse what is not signed")
-      ->envname("FOGLINE_KEY");
+      ->envname(kKeyVariable)
+      ->check([](const std::string& file) {
+        return file.empty() ? "the name of the key's file is empty" : "";
+      });
   app.add_option("--faults", options.faults,
                  "Receive as over a bad network, such as loss=0.3,delay_ms=5");
 }
 
-void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
-  if (!options.key_file.empty()) {
-    bus.Secure(Seal(SealKey::Load(options.key_file), role));
-    const std::string warning = KeyFileWarning(options.key_file);
-    if (!warning.empty()) fmt::print(stderr, "{}\n", warning);
+std::optional<SealKey> KeyOf(const TrafficOptions& options) {
+  if (!options.key_file.empty()) return SealKey::Load(options.key_file);
+  // Whoever sets it to a file that a script has not found does not want to run unsigned.
+  if (const char* variable = std::getenv(kKeyVariable); variable != nullptr && *variable == '\0') {
+    throw InputError(fmt::format(
+        "error: {} is empty: name the key's file, or unset it to run unsigned", kKeyVariable));
   }
+  return std::nullopt;
+}
+
+void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
+  if (const auto key = KeyOf(options)) bus.Secure(Seal(*key, role));
   if (options.faults.empty()) return;
   const FaultRates rates = ParseFaults(options.faults);
   if (rates.Damage() && options.key_file.empty()) {

@@ -22,7 +22,11 @@ struct TrafficOptions {
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 
-/// Gives a bus what was asked for; warns on stderr of a key that others can read.
+/// The key, if one was asked for.
+/// @throws InputError when its file is wrong, or FOGLINE_KEY is there and empty
+std::optional<SealKey> KeyOf(const TrafficOptions& options);
+
+/// Gives a bus what was asked for.
 /// @param role of this process; nothing when it is every role
 /// @throws InputError when the options, or the key's file, are wrong
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus);

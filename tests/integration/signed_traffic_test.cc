@@ -275,7 +275,7 @@ TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
   EXPECT_TRUE(signed_steps);
 }
 
-TEST_F(SignedTrafficTest, RefusesAFileThatIsNoKeyAndWarnsOfOneThatOthersCanRead) {
+TEST_F(SignedTrafficTest, RefusesAFileThatIsNoKeyOrThatOthersCanRead) {
   const Outcome none = RunCommand(Run({"--key", "scenario/paper.json"}));
   EXPECT_EQ(none.code, 2);
   EXPECT_EQ(none.err,
@@ -286,8 +286,35 @@ TEST_F(SignedTrafficTest, RefusesAFileThatIsNoKeyAndWarnsOfOneThatOthersCanRead)
   std::filesystem::permissions(key_, std::filesystem::perms::others_read,
                                std::filesystem::perm_options::add);
   const Outcome open = RunCommand(Run({"--key", key_, "--set", "/steps=5"}));
-  EXPECT_EQ(open.code, 0);
-  EXPECT_THAT(open.err, HasSubstr(key_ + ": warning: others can read this key"));
+  EXPECT_EQ(open.code, 2);
+  EXPECT_EQ(open.err, key_ + ": error: others can read or change this key (mode 604); chmod 600 " +
+                          key_ + "\n");
+}
+
+TEST_F(SignedTrafficTest, NeverRunsUnsignedOrLooksAwayWhenAKeyWasAskedFor) {
+  for (const char* transport : {"direct", "memq"}) {
+    const std::vector<std::string> run{Program("fogline"), "run",     "scenario/paper.json",
+                                       "--transport",      transport, "--log",
+                                       folder_.File("no"), "--set",   "/steps=5"};
+    const auto with = [&run](const std::vector<std::string>& more) {
+      std::vector<std::string> command = run;
+      command.insert(command.end(), more.begin(), more.end());
+      return command;
+    };
+    const Outcome empty = RunCommand(with({"--key", ""}));
+    EXPECT_EQ(empty.code, 2);
+    EXPECT_THAT(empty.err, HasSubstr("--key: the name of the key's file is empty"));
+    const Outcome missing = RunCommand(with({"--key", "no/such/file"}));
+    EXPECT_EQ(missing.code, 2);
+    EXPECT_EQ(missing.err, "no/such/file: error: cannot read the key: No such file or directory\n");
+    std::vector<std::string> command = with({});
+    command.insert(command.begin(), {"env", "FOGLINE_KEY="});
+    const Outcome variable = RunCommand(command);
+    EXPECT_EQ(variable.code, 2);
+    EXPECT_THAT(variable.err, HasSubstr("error: FOGLINE_KEY is empty"));
+  }
+  EXPECT_EQ(RunCommand({Program("fogline-acc"), "--key", ""}).code, 2);
+  EXPECT_EQ(RunCommand({"env", "FOGLINE_KEY=", Program("fogline-acc")}).code, 2);
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
 void TransportArguments::Apply(ExperimentOptions& options) const {
   options.transport = url_.empty() ? transport_ : url_;
   options.traffic = traffic_;
+  // Wrong is wrong, also for a run without messages to sign.
+  KeyOf(traffic_);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
+#include <fmt/core.h>
+
 #include "scenario/loader.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 
 namespace fogline {
 namespace {
@@ -16,6 +20,9 @@ using test::ScratchFolder;
 using testing::HasSubstr;
 using Verdict = Seal::Verdict;
 using Message = std::vector<std::uint8_t>;
+
+constexpr auto kOwnerAlone =
+    std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
 
 SealKey KeyOf(std::uint8_t byte) {
   SealKey::Secret secret{};
@@ -158,6 +165,7 @@ TEST(SealKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
   const std::string digits(64, 'a');
   const auto load = [&](const std::string& content) {
     std::ofstream(file) << content;
+    std::filesystem::permissions(file, kOwnerAlone);
     return SealKey::Load(file).secret();
   };
   SealKey::Secret expected{};
@@ -174,15 +182,41 @@ TEST(SealKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
   EXPECT_THROW(SealKey::Load(folder.path()), InputError);
 }
 
-TEST(SealKeyTest, WarnsOfAFileThatOthersCanRead) {
+/// What is said of a key file, "" if it is taken.
+std::string Complaint(const std::string& file) {
+  try {
+    SealKey::Load(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SealKeyTest, IsRefusedIfGroupOrOthersCanReadOrChangeItsFile) {
   const ScratchFolder folder;
   const std::string file = folder.File("key");
   SealKey::Create(file);
-  EXPECT_EQ(KeyFileWarning(file), "");
-  for (const mode_t mode : {0640U, 0604U}) {
+  for (const mode_t mode : {0640U, 0620U, 0604U, 0602U, 0666U}) {
     ASSERT_EQ(chmod(file.c_str(), mode), 0);
-    EXPECT_THAT(KeyFileWarning(file), HasSubstr("warning: others can read this key"));
+    EXPECT_EQ(Complaint(file),
+              fmt::format("{0}: error: others can read or change this key (mode {1:o}); chmod 600 "
+                          "{0}",
+                          file, mode));
   }
+  for (const mode_t mode : {0600U, 0400U}) {
+    ASSERT_EQ(chmod(file.c_str(), mode), 0);
+    EXPECT_EQ(Complaint(file), "");
+  }
+}
+
+TEST(SealKeyTest, IsRefusedIfItsFileBelongsToSomebodyElse) {
+  if (geteuid() != 0) return test::MachineLacks("root, to give a file away");
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  SealKey::Create(file);
+  constexpr uid_t kNobody = 65534;
+  ASSERT_EQ(chown(file.c_str(), kNobody, kNobody), 0);
+  EXPECT_THAT(Complaint(file), HasSubstr("error: the key belongs to user 65534"));
 }
 
 }  // namespace
