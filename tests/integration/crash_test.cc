@@ -12,6 +12,7 @@
 
 #include "services/runtime/bus.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 
 namespace fogline::test {
 namespace {
@@ -267,9 +268,9 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesEndsTheRunByBothNames) {
 }
 
 TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root can mount a small file system";
-  if (RunCommand({"unshare", "--mount", "true"}).code != 0) {
-    GTEST_SKIP() << "no mount namespace here";
+  if (geteuid() != 0) return MachineLacks("root, to mount a small file system");
+  if (const Outcome own = RunCommand({"unshare", "--mount", "true"}); own.code != 0) {
+    return MachineLacks("mount namespaces: " + own.err);
   }
   const ScratchFolder folder;
   // 64 KiB are about fifty steps. It is mounted for these two commands alone.

@@ -12,6 +12,7 @@
 #include "services/runtime/bus.h"
 #include "services/runtime/multicast_route.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 #include "tests/support/network.h"
 
 namespace fogline::test {
@@ -210,8 +211,7 @@ TEST(DoctorTest, ExaminesThisMachineWithoutFindingAProblemThatTheOtherTestsWould
                             "time_sync", "cpus", "governor", "disk"}) {
     EXPECT_FALSE(Levels(document, check).empty()) << check;
   }
-  for (const char* check :
-       {"multicast_route", "multicast_loopback", "socket_filter", "programs"}) {
+  for (const char* check : {"multicast_route", "multicast_loopback", "socket_filter", "programs"}) {
     EXPECT_EQ(Levels(document, check), std::multiset<std::string>{"ok"}) << doctor.out;
   }
   for (const json& finding : document["findings"]) {
@@ -270,7 +270,7 @@ class DoctorOnMachineTest : public testing::Test {
  protected:
   void SetUp() override {
     if (const std::string why = WhyNoMachines(); !why.empty()) {
-      GTEST_SKIP() << "machines of their own need root and nftables: " << why;
+      return MachineLacks("root, network namespaces or nftables: " + why);
     }
   }
   static Outcome Doctor(const Machine& machine, const std::string& url) {

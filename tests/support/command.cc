@@ -26,6 +26,15 @@ std::string Content(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// A new folder below the build's, so that what a killed test leaves behind is found and removed.
+std::filesystem::path FreshFolder(const std::string& kind) {
+  const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
+  std::filesystem::create_directories(scratch);
+  std::string name = (scratch / (kind + "-XXXXXX")).string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+  return name;
+}
+
 }  // namespace
 
 std::filesystem::path ProgramDirectory() {
@@ -34,20 +43,13 @@ std::filesystem::path ProgramDirectory() {
 std::filesystem::path SourceDirectory() { return FOGLINE_SOURCE_DIR; }
 std::string Program(const std::string& name) { return (ProgramDirectory() / name).string(); }
 
-ScratchFolder::ScratchFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "fogline-test-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
-  path_ = name;
-}
+ScratchFolder::ScratchFolder() : path_(FreshFolder("test")) {}
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }
 
-Background::Background(const std::vector<std::string>& command) {
-  std::string name = (std::filesystem::temp_directory_path() / "fogline-out-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
-  directory_ = name;
+Background::Background(const std::vector<std::string>& command) : directory_(FreshFolder("out")) {
   std::vector<char*> argv;
   for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);

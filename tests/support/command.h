@@ -62,7 +62,8 @@ bool IsAlive(pid_t pid);
 /// Numbers after "NAME " in "processes: world 4711, radar 4712": 0 if it is not there.
 pid_t PidOf(const std::string& err, const std::string& role);
 
-/// An empty folder that is removed with this object.
+/// An empty folder below the build's Testing/tmp that is removed with this object (tools/test
+/// removes what killed tests leave behind).
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -7,16 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/machine.h"
 #include "tests/support/network.h"
 
 namespace fogline::test {
 
-/// Skipped, with the reason, where machines cannot be made.
+/// Not run, with the reason, where machines cannot be made.
 class NetworkTest : public testing::Test {
  protected:
   void SetUp() override {
-    const std::string why = WhyNoMachines();
-    if (!why.empty()) GTEST_SKIP() << "needs root for network namespaces: " << why;
+    if (const std::string why = WhyNoMachines(); !why.empty()) {
+      return MachineLacks("root, network namespaces or nftables: " + why);
+    }
   }
 
   /// The command line of a run of the paper's scenario with a log of its own.
