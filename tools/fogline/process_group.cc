@@ -18,9 +18,6 @@
 namespace fogline {
 namespace {
 
-// Lines kept of what each process prints.
-constexpr std::size_t kKeptLines = 10;
-
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, pid_t parent) {
   BecomeChild(parent, output);
   dup2(output, STDERR_FILENO);
@@ -69,7 +66,7 @@ pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
     close(ends[0]);
     throw std::runtime_error(fmt::format("cannot start {}: {}", path, std::strerror(errno)));
   }
-  processes_.push_back({.role = role, .pid = pid, .output = ends[0], .partial = {}, .lines = {}});
+  processes_.push_back({.role = role, .pid = pid, .output = ends[0], .printed = {}});
   return pid;
 }
 
@@ -83,13 +80,12 @@ std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
       continue;
     }
     ReadOutput(*process);
-    if (!process->partial.empty()) process->lines.push_back(process->partial);
     close(process->output);
     exits.push_back({.role = process->role,
                      .pid = process->pid,
                      .how = HowItEnded(status),
                      .killed = WIFSIGNALED(status),
-                     .lines = {process->lines.begin(), process->lines.end()}});
+                     .lines = process->printed.Take()});
     process = processes_.erase(process);
   }
   return exits;
@@ -108,17 +104,13 @@ void ProcessGroup::Signal(int signal) {
 }
 
 void ProcessGroup::ReadOutput(Process& process) {
+  // What a pipe holds (see pipe(7)); who prints without end must not keep us here.
+  constexpr int kReads = 16;
   std::array<char, 4096> buffer{};
-  while (true) {
+  for (int i = 0; i < kReads; ++i) {
     const ssize_t size = read(process.output, buffer.data(), buffer.size());
     if (size <= 0) return;
-    process.partial.append(buffer.data(), static_cast<std::size_t>(size));
-    std::size_t end = 0;
-    while ((end = process.partial.find('\n')) != std::string::npos) {
-      process.lines.push_back(process.partial.substr(0, end));
-      process.partial.erase(0, end + 1);
-      if (process.lines.size() > kKeptLines) process.lines.pop_front();
-    }
+    process.printed.Append({buffer.data(), static_cast<std::size_t>(size)});
   }
 }
 

@@ -4,13 +4,13 @@
 
 #include <sys/types.h>
 
-#include <deque>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "services/graph.h"
 #include "services/runtime/clock.h"
+#include "tools/fogline/last_lines.h"
 
 namespace fogline {
 
@@ -49,8 +49,7 @@ class ProcessGroup {
     Role role;
     pid_t pid;
     int output;  // read end of a pipe with its stdout and stderr
-    std::string partial;
-    std::deque<std::string> lines;
+    LastLines printed;
   };
   static void ReadOutput(Process& process);
 

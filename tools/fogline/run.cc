@@ -52,9 +52,11 @@ struct RunArguments {
                     "End the run when no step completes for so long, in s")
         ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
-    verb.add_option("--restarts", options.restarts,
-                    "Start a role that is killed, or says nothing for 2 s, again: at most so often "
-                    "in the run (0: its death ends the run)")
+    verb.add_option(
+            "--restarts", options.restarts,
+            "Start a role that is killed, or says nothing for 2 s (1 s with --realtime, never "
+            "more than half of --stall-timeout), again: at most so often in the run (0: its "
+            "death ends the run)")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");

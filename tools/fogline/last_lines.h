@@ -1,0 +1,48 @@
+// The last lines of what a program prints, however much that is.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace fogline {
+
+class LastLines {
+ public:
+  static constexpr std::size_t kKept = 10;
+  /// Of a longer line this is the beginning, where errors say what is wrong.
+  static constexpr std::size_t kMaxBytes = 4096;
+
+  /// Takes what was read, in pieces of any size.
+  void Append(std::string_view text) {
+    while (true) {
+      const std::size_t end = text.find('\n');
+      const std::string_view piece = text.substr(0, end);
+      begun_ += piece.substr(0, kMaxBytes - begun_.size());
+      if (end == std::string_view::npos) return;
+      Finish();
+      text.remove_prefix(end + 1);
+    }
+  }
+
+  /// The lines, and what has been begun of one more.
+  std::vector<std::string> Take() {
+    if (!begun_.empty()) Finish();
+    return {lines_.begin(), lines_.end()};
+  }
+
+ private:
+  void Finish() {
+    lines_.push_back(std::move(begun_));
+    begun_.clear();
+    if (lines_.size() > kKept) lines_.pop_front();
+  }
+
+  std::deque<std::string> lines_;
+  std::string begun_;
+};
+
+}  // namespace fogline
