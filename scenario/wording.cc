@@ -62,6 +62,13 @@ std::string EscapeControls(std::string_view text) {
   return out;
 }
 
+std::string Printable(std::string_view text) {
+  std::string printable(text);
+  std::ranges::replace_if(
+      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return printable;
+}
+
 std::string Quote(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size());

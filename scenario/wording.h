@@ -17,6 +17,10 @@ std::string NumberText(double value);
 /// Control characters (C0, DEL, C1) escaped: as any terminal may be shown the text.
 std::string EscapeControls(std::string_view text);
 
+/// `text` with '?' for everything but ASCII letters, digits, signs and spaces: for what comes from
+/// the network, of which not even the encoding is known.
+std::string Printable(std::string_view text);
+
 /// As a JSON string: in double quotes, control characters escaped.
 std::string Quote(std::string_view text);
 

@@ -1,9 +1,11 @@
 #include "services/runtime/strangers.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
 #include "services/graph.h"
 
 namespace fogline {
@@ -12,13 +14,8 @@ namespace {
 // Of a host name (POSIX HOST_NAME_MAX on Linux).
 constexpr std::size_t kMaxHost = 64;
 
-/// A name from the network, as it may be printed.
-std::string Printable(std::string name) {
-  name.resize(std::min(name.size(), kMaxHost));
-  std::ranges::replace_if(
-      name, [](char c) { return c <= ' ' || c > '~'; }, '?');
-  return name;
-}
+/// A host's name from the network, as it may be printed.
+std::string HostName(const std::string& name) { return Printable(name.substr(0, kMaxHost)); }
 
 }  // namespace
 
@@ -28,27 +25,43 @@ std::string Describe(const Stranger& stranger) {
 }
 
 void Strangers::Hear(const status_t& status) {
-  const bool known = std::ranges::any_of(known_, [&status](const Stranger& stranger) {
-    return stranger.run_id == status.header.run_id && stranger.pid == status.pid &&
-           stranger.role == status.role && stranger.host == Printable(status.host);
+  if (std::ranges::find(kRoles, status.role, &RoleInfo::name) == kRoles.end()) return;
+  const auto known = std::ranges::find_if(watched_, [&status](const Watched& one) {
+    return one.stranger.run_id == status.header.run_id && one.stranger.pid == status.pid &&
+           one.stranger.role == status.role && one.stranger.host == HostName(status.host);
   });
-  if (known || std::ranges::find(kRoles, status.role, &RoleInfo::name) == kRoles.end()) return;
-  if (known_.size() == kMax) {
-    more_ = true;
+  if (known != watched_.end()) {
+    ++known->heard;
     return;
   }
-  known_.push_back({.role = status.role,
-                    .pid = status.pid,
-                    .host = Printable(status.host),
-                    .run_id = status.header.run_id});
+  if (watched_.size() == kMaxWatched) {
+    watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));  // the oldest of them
+    forgotten_ = true;
+  }
+  watched_.push_back({.stranger = {.role = status.role,
+                                   .pid = status.pid,
+                                   .host = HostName(status.host),
+                                   .run_id = status.header.run_id},
+                      .heard = 1});
+}
+
+std::vector<Stranger> Strangers::known() const {
+  std::vector<const Watched*> told;
+  for (const Watched& one : watched_) told.push_back(&one);
+  std::ranges::stable_sort(told, std::greater{}, &Watched::heard);
+  told.resize(std::min(told.size(), kMax));
+  std::ranges::sort(told);  // by their places in watched_
+  std::vector<Stranger> known;
+  for (const Watched* one : told) known.push_back(one->stranger);
+  return known;
 }
 
 std::string Strangers::Text() const {
   std::string text;
-  for (const Stranger& stranger : known_) {
+  for (const Stranger& stranger : known()) {
     text += fmt::format("{}ignored: {}", text.empty() ? "" : "\n", Describe(stranger));
   }
-  if (more_) text += "\nignored: more processes of other runs";
+  if (watched_.size() > kMax || forgotten_) text += "\nignored: more processes of other runs";
   return text;
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
+
 namespace fogline::tcpq {
 namespace {
 
@@ -17,15 +19,6 @@ std::size_t WordAt(Bytes bytes, std::size_t offset) {
 
 void AppendWord(std::size_t word, std::vector<std::uint8_t>& out) {
   for (const int shift : {24, 16, 8, 0}) out.push_back(static_cast<std::uint8_t>(word >> shift));
-}
-
-/// Bytes from a stranger, fit for a terminal.
-std::string Printable(std::string_view name) {
-  std::string text(name);
-  for (char& c : text) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return text;
 }
 
 }  // namespace

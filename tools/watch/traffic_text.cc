@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
+
 namespace fogline {
 namespace {
 
@@ -146,13 +148,6 @@ std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
                                  view.forgotten)});
   }
   return lines;
-}
-
-std::string Printable(std::string_view text) {
-  std::string printable(text);
-  std::ranges::replace_if(
-      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
-  return printable;
 }
 
 std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows) {

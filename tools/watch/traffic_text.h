@@ -22,9 +22,6 @@ struct Line {
 /// letters, digits, signs and spaces: nobody on it can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
-/// `text` with '?' for everything but ASCII letters, digits, signs and spaces.
-std::string Printable(std::string_view text);
-
 /// The lines that a window has room for; the last one says how many it has not.
 std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows);
 

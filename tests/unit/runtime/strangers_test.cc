@@ -49,5 +49,23 @@ TEST(StrangersTest, AreManyOnlyUpToALimit) {
   EXPECT_THAT(strangers.Text(), testing::EndsWith("\nignored: more processes of other runs"));
 }
 
+TEST(StrangersTest, AreNotHiddenByAFloodOfInventedOnes) {
+  // GIVEN a flood of names, each of them new, and then a stale process among it
+  Strangers strangers;
+  int invented = 0;
+  const auto flood = [&] {
+    for (int i = 0; i < 1000; ++i) strangers.Hear(Status(++invented, "radar", 1, "nowhere"));
+  };
+  flood();
+  flood();
+  for (int second = 0; second < 3; ++second) {
+    strangers.Hear(Status(7, "fusion", 4711, "lab2"));
+    flood();
+  }
+  // THEN it is told of, and nothing grows
+  EXPECT_THAT(strangers.Text(), testing::HasSubstr("ignored: fusion (pid 4711 on lab2) of run 7"));
+  EXPECT_EQ(strangers.known().size(), Strangers::kMax);
+}
+
 }  // namespace
 }  // namespace fogline

@@ -45,6 +45,11 @@ TEST(WordingTest, CountsEachKindOfEditOnce) {
   EXPECT_EQ(EditDistance("fog", ""), 3U);
 }
 
+TEST(WordingTest, PrintsOnlyAsciiOfWhatComesFromStrangers) {
+  EXPECT_EQ(Printable("lab2 (a~b)"), "lab2 (a~b)");
+  EXPECT_EQ(Printable("\x1b[31m\n\xff\x7f"), "?[31m???");
+}
+
 TEST(WordingTest, SuggestsTheNearestNameOrNone) {
   EXPECT_EQ(Nearest("treshold", kNames), "threshold");
   EXPECT_EQ(Nearest("speed", kNames), "speed_mps");

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/channel_filter.h"
 #include "services/runtime/multicast_route.h"
