@@ -22,7 +22,7 @@ bool IsPlain(std::string_view pattern) {
 /// The answer, or nothing if it would take too long.
 std::optional<bool> Ask(Subscriptions& subscriptions, std::string_view channel) {
   try {
-    return subscriptions.Match(channel);
+    return subscriptions.Match(channel, TimePoint{});
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }

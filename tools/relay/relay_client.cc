@@ -76,9 +76,9 @@ void RelayClient::Offer(const tcpq::Frame& message) {
 
 bool RelayClient::Wants(std::string_view channel) {
   try {
-    return subscriptions_.Match(channel);
+    return subscriptions_.Match(channel, Clock::now());
   } catch (const std::exception&) {
-    Drop("a subscription that takes too long to match");
+    Drop("its subscriptions take too long to match");
     return false;
   }
 }

@@ -18,9 +18,14 @@ constexpr std::size_t kMaxKnown = 1000;
 // Boost takes up to 320 bytes of memory for one.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
-// Processor time that one channel may cost. An expression that Boost does not give up takes up to a
-// fifth of a second, and a client may have many.
-constexpr double kMatchLimitS = 0.1;
+// Processor time that looking for new names may cost: at once, and then again every ten seconds. An
+// expression that Boost does not give up takes up to a fifth of a second, and a client may have
+// many.
+constexpr double kBudgetS = 0.1;
+constexpr double kRefillPerS = kBudgetS / 10;
+// One name costs nothing up to here: tens of simple expressions take no longer, and no flood of
+// names shall cut off a client that has them. Receiving the name cost about as much.
+constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {
   timespec time{};
@@ -29,6 +34,8 @@ double ProcessorTimeS() {
 }
 
 }  // namespace
+
+Subscriptions::Subscriptions(std::size_t limit) : limit_(limit), budget_s_(kBudgetS) {}
 
 std::string Subscriptions::Add(std::string_view pattern) {
   if (entries_.size() >= limit_) return fmt::format("more than {} subscriptions", limit_);
@@ -57,15 +64,31 @@ void Subscriptions::Remove(std::string_view pattern) {
   known_.clear();
 }
 
-bool Subscriptions::Match(std::string_view channel) {
+bool Subscriptions::Match(std::string_view channel, TimePoint now) {
   if (const auto known = known_.find(channel); known != known_.end()) return known->second;
-  const double end = ProcessorTimeS() + kMatchLimitS;
-  const bool match = std::ranges::any_of(entries_, [&](const Entry& entry) {
-    if (ProcessorTimeS() > end) throw std::runtime_error("its expressions take too long");
-    return boost::regex_match(channel.begin(), channel.end(), entry.expression);
-  });
+  const std::chrono::duration<double> passed = now - filled_;
+  budget_s_ = std::min(kBudgetS, budget_s_ + kRefillPerS * std::max(0.0, passed.count()));
+  filled_ = now;
+  const bool match = Search(channel);
   if (known_.size() >= kMaxKnown) known_.clear();
   known_.emplace(channel, match);
+  return match;
+}
+
+bool Subscriptions::Search(std::string_view channel) {
+  const double begin = ProcessorTimeS();
+  const double end = begin + kFreeS + budget_s_;
+  const auto check = [this, end] {
+    if (ProcessorTimeS() <= end) return;
+    budget_s_ = 0;
+    throw std::runtime_error("its expressions take too long");
+  };
+  const bool match = std::ranges::any_of(entries_, [&](const Entry& entry) {
+    check();
+    return boost::regex_match(channel.begin(), channel.end(), entry.expression);
+  });
+  check();
+  budget_s_ -= std::max(0.0, ProcessorTimeS() - begin - kFreeS);
   return match;
 }
 
