@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
+#include <thread>
 
 #include "services/graph.h"
 #include "tests/support/command.h"
@@ -28,6 +29,7 @@ class PacedRun {
     // Under way: so many steps are on disk.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
+      std::this_thread::sleep_for(kLookEvery);
     }
     EXPECT_GE(StepsOnDisk(), kUnderWay);
   }
@@ -126,8 +128,7 @@ TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
   EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
   const auto end = SteadyClock::now() + std::chrono::seconds(5);
   for (const pid_t pid : pids) {
-    while (IsAlive(pid) && SteadyClock::now() < end) {
-    }
+    while (IsAlive(pid) && SteadyClock::now() < end) std::this_thread::sleep_for(kLookEvery);
     EXPECT_FALSE(IsAlive(pid)) << pid;
   }
   EXPECT_GE(paced.StepsOnDisk(), kUnderWay);

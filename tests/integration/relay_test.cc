@@ -1,142 +1,26 @@
-// fogline-relay with real programs: ours, Debian's, and clients that misbehave.
-#include <arpa/inet.h>
+// fogline-relay with real programs: ours and Debian's. (Clients that misbehave:
+// relay_clients_test.cc.)
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <sstream>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "services/recorder/event_log.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/tcpq_client.h"
-#include "services/runtime/tcpq_frame.h"
-#include "tests/support/command.h"
+#include "tests/integration/relay_fixture.h"
 
 namespace fogline::test {
 namespace {
 
 using std::chrono::seconds;
 using testing::HasSubstr;
-
-constexpr seconds kPatience(20);
-using Payload = std::vector<std::uint8_t>;
-
-/// A relay on a free port.
-class Relay {
- public:
-  explicit Relay(const std::vector<std::string>& more = {}) : process_(Command(more)) {
-    EXPECT_TRUE(process_.WaitForOut("\n")) << process_.Err();
-    url_ = process_.Out().substr(0, process_.Out().find('\n'));
-  }
-  const std::string& url() const { return url_; }
-  std::uint16_t port() const { return tcpq::ResolveUrl(url_).port; }
-  Background& process() { return process_; }
-  /// Ends it as a person does. @return its exit code
-  int End() {
-    process_.Signal(SIGINT);
-    return process_.Wait();
-  }
-
- private:
-  static std::vector<std::string> Command(const std::vector<std::string>& more) {
-    std::vector<std::string> command{Program("fogline-relay"), "--listen", "127.0.0.1:0"};
-    command.insert(command.end(), more.begin(), more.end());
-    return command;
-  }
-  Background process_;
-  std::string url_;
-};
-
-/// A bare connection that says what it likes.
-class RawSocket {
- public:
-  explicit RawSocket(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    // What blocks for so long counts as blocked for ever.
-    const timeval limit{.tv_sec = kPatience.count(), .tv_usec = 0};
-    setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
-    setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-  }
-  ~RawSocket() { close(fd_); }
-  RawSocket(const RawSocket&) = delete;
-  RawSocket& operator=(const RawSocket&) = delete;
-
-  /// False when the other side is gone. @pre it is not blocked
-  bool Send(Bytes bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (size < 0) {
-        EXPECT_NE(errno, EAGAIN) << "blocked";
-        return false;
-      }
-      bytes = bytes.subspan(static_cast<std::size_t>(size));
-    }
-    return true;
-  }
-  /// Reads until the other side closes; false if it does not.
-  bool WaitForClose() const {
-    Payload bytes(4096);
-    ssize_t size = 0;
-    while ((size = recv(fd_, bytes.data(), bytes.size(), 0)) > 0) {
-    }
-    return size == 0 || errno == ECONNRESET;
-  }
-  /// "127.0.0.1:PORT", as the relay sees it.
-  std::string Name() const {
-    sockaddr_in address{};
-    socklen_t size = sizeof(address);
-    getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
-    return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-  }
-
- private:
-  int fd_;
-};
-
-Payload Greeting() {
-  Payload bytes;
-  tcpq::AppendHello(tcpq::kClientMagic, bytes);
-  return bytes;
-}
-
-Payload SubscriptionTo(std::string_view pattern) {
-  Payload bytes = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, bytes);
-  return bytes;
-}
-
-Payload Message(std::string_view channel, const Payload& payload) {
-  Payload bytes;
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, channel, payload, bytes);
-  return bytes;
-}
-
-/// Publishes on a channel that this bus hears itself: what it hears has gone through the relay, and
-/// so has what it sent before.
-[[nodiscard]] bool RoundTrip(Bus& bus) {
-  static int trips = 0;
-  const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);
-  bool back = false;
-  bus.Subscribe(channel, [&back](Bytes) { back = true; });
-  bus.Publish(channel, Payload(1));
-  const TimePoint end = Clock::now() + kPatience;
-  while (!back && Clock::now() < end) bus.Wait(milliseconds(100));
-  return back;
-}
 
 std::vector<std::string> RunCommandLine(const std::string& transport, const std::string& log) {
   return {Program("fogline"),
@@ -219,92 +103,6 @@ TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
   // THEN nobody blocks, and all of it comes back
   ASSERT_TRUE(RoundTrip(bus));
   EXPECT_EQ(heard, kMessages);
-}
-
-// ---- clients that misbehave --------------------------------------------------------------------
-
-TEST(RelayTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTheOthers) {
-  Relay relay({"--max-queue", "4"});
-  const RawSocket sleeper(relay.port());
-  ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  Bus bus(relay.url());
-  int heard = 0;
-  bus.Subscribe("DATA", [&heard](Bytes) { ++heard; });
-  // WHEN more is published than a socket and its queue hold
-  const Payload payload(kMaxMessageBytes, 1);
-  constexpr int kMessages = 17'000;
-  for (int i = 0; i < kMessages; ++i) {
-    bus.Publish("DATA", payload);
-    bus.Drain();
-  }
-  // THEN the others have everything, and the line says who does not read
-  ASSERT_TRUE(RoundTrip(bus));
-  EXPECT_EQ(heard, kMessages);
-  EXPECT_TRUE(relay.process().WaitForErr("disconnected: does not read: "));
-  EXPECT_THAT(relay.process().Err(), HasSubstr(sleeper.Name() + " disconnected"));
-}
-
-TEST(RelayTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessages) {
-  Relay relay({"--max-queue", "4"});
-  const RawSocket publisher(relay.port());
-  ASSERT_TRUE(publisher.Send(SubscriptionTo(".*")));
-  // WHEN it sends up to 100 MB and reads nothing; Send() fails the test if it blocks
-  const Payload message = Message("ECHO", Payload(100'000));
-  int sent = 0;
-  while (sent < 1000 && publisher.Send(message)) ++sent;
-  // THEN it is disconnected before
-  EXPECT_LT(sent, 1000);
-  EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read: "));
-}
-
-TEST(RelayTest, DisconnectsWhoSendsGarbageByNameAndReason) {
-  Relay relay({"--max-subscriptions", "2", "--max-message", "1"});
-  Bus bus(relay.url());
-  const std::string http = "GET / HTTP/1.1\r\n\r\n";
-  Payload subscriptions = Greeting();
-  for (const char* pattern : {"A", "B", "C"}) {
-    tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, subscriptions);
-  }
-  Payload oversized = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, "BIG", Payload((1 << 20) + 1), oversized);
-  Payload unknown = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType{9}, "A", {}, unknown);
-  const std::vector<std::pair<Payload, std::string>> cases{
-      {Payload(http.begin(), http.end()), "begins with 0x47455420"},
-      {unknown, "frame of unknown type 9"},
-      {oversized, "message of 1048577 bytes on \"BIG\"; at most 1048576"},
-      {SubscriptionTo(std::string(2000, 'a')), "pattern of 2000 bytes; at most 256"},
-      {SubscriptionTo("("), "a subscription that is no regular expression"},
-      {subscriptions, "more than 2 subscriptions"},
-  };
-  for (const auto& [bytes, reason] : cases) {
-    const RawSocket client(relay.port());
-    client.Send(bytes);
-    EXPECT_TRUE(client.WaitForClose()) << reason;
-    EXPECT_TRUE(relay.process().WaitForErr(client.Name() + " disconnected: " + reason))
-        << reason << "\n"
-        << relay.process().Err();
-  }
-  // The others did not notice.
-  EXPECT_TRUE(RoundTrip(bus));
-  ASSERT_EQ(relay.End(), 0);
-  EXPECT_THAT(relay.process().Err(), HasSubstr("6 disconnected; "));
-}
-
-TEST(RelayTest, DisconnectsWhoNeverSaysThatItIsAClient) {
-  Relay relay;
-  const RawSocket silent(relay.port());
-  EXPECT_TRUE(silent.WaitForClose());
-  EXPECT_TRUE(relay.process().WaitForErr(silent.Name() + " disconnected: has not said in 5 s"));
-}
-
-TEST(RelayTest, TakesNoMoreClientsThanItMay) {
-  Relay relay({"--max-clients", "1"});
-  Bus bus(relay.url());
-  const RawSocket second(relay.port());
-  EXPECT_TRUE(second.WaitForClose());
-  EXPECT_TRUE(relay.process().WaitForErr(second.Name() + " disconnected: 1 clients are here"));
-  EXPECT_TRUE(RoundTrip(bus));
 }
 
 TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
@@ -394,8 +192,7 @@ TEST(RelayTest, EndsARunWithOneClearLineWhenItIsKilled) {
     return ignored ? 0 : bytes;
   };
   const TimePoint end = Clock::now() + kPatience;
-  while (size() < 20'000 && Clock::now() < end) {
-  }
+  while (size() < 20'000 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   ASSERT_GE(size(), 20'000U);
   // WHEN its relay is killed
   relay.process().Signal(SIGKILL);

@@ -16,8 +16,6 @@ namespace fogline::test {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
-// How often a condition outside this process is looked at.
-constexpr std::chrono::milliseconds kLookEvery(5);
 
 std::string Content(const std::filesystem::path& file) {
   std::ifstream in(file);

@@ -10,6 +10,9 @@
 
 namespace fogline::test {
 
+/// How often a condition outside this process is looked at.
+inline constexpr std::chrono::milliseconds kLookEvery(5);
+
 /// Folder of the built programs, and of the sources.
 std::filesystem::path ProgramDirectory();
 std::filesystem::path SourceDirectory();
