@@ -134,8 +134,8 @@ TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
 }
 
-/// Slow enough that some tens of names like SlowName() cost a tenth of a second. Of a long expression
-/// Boost lets a search visit more before it gives it up.
+/// Slow enough that some tens of names like SlowName() cost a tenth of a second. Of a long
+/// expression Boost lets a search visit more before it gives it up.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
