@@ -13,8 +13,8 @@ void AddKeygen(CLI::App& app, Action& action) {
   const auto file = std::make_shared<std::string>();
   verb->add_option("FILE", *file, "Where to write it; an existing file is refused")->required();
   verb->footer(
-      "The file has mode 0600; one that others can read or change is refused. Every process of a run\n"
-      "needs the same key, on every machine.\n\n"
+      "The file has mode 0600; one that others can read or change is refused. Every process\n"
+      "of a run needs the same key, on every machine.\n\n"
       "Examples:\n"
       "  fogline keygen lab.key\n"
       "  fogline run scenario/paper.json --key lab.key\n"
