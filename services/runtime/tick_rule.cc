@@ -29,12 +29,22 @@ void TickRule::OnGo(const run_t& run, TimePoint now) {
   phase_ = progress() < 0 ? Phase::kTicking : Phase::kResuming;
 }
 
+StepRing::Verdict TickRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
+  const StepRing::Verdict verdict = RealtimeRule::Classify(input, step, bytes);
+  if (verdict == StepRing::Verdict::kLate) TakeLatency(input, step, Clock::now());
+  return verdict;
+}
+
 void TickRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   RealtimeRule::OnInput(input, step, time);
-  const bool from_host = inputs()[input].channel == IndexOf<arbitration_t>();
-  if (from_host && step + lead() == next() && sent_[RingSlot(step)] != TimePoint{}) {
-    statistics().Latency(time - sent_[RingSlot(step)]);
-  }
+  TakeLatency(input, step, time);
+}
+
+void TickRule::TakeLatency(std::size_t input, std::int64_t step, TimePoint time) {
+  Sent& sent = sent_[RingSlot(step)];
+  if (inputs()[input].channel != IndexOf<arbitration_t>() || sent.step != step) return;
+  statistics().Latency(time - sent.time);
+  sent.step = -1;
 }
 
 void TickRule::SetFinal(std::int64_t step) {
@@ -85,7 +95,7 @@ TimePoint TickRule::Tick(TimePoint now) {
   clock().Tick(step, now);
   ++tick_;
   ComputeDue(step, due, now);
-  sent_[RingSlot(step)] = Clock::now();
+  sent_[RingSlot(step)] = {.step = step, .time = Clock::now()};
   return phase_ == Phase::kTicking ? Due(tick_) : now;
 }
 
