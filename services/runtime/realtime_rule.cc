@@ -56,6 +56,7 @@ void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time)
 TimePoint RealtimeRule::Poll(TimePoint now) {
   bus().Drain();  // the newest step is wanted, and not those that a backlog begins with
   if (!Running()) return now;
+  now = std::max(now, Clock::now());  // a backlog takes its time
   const TimePoint health_at = UpdateHealth(now);
   const TimePoint fire_at = Fire(now);
   return std::min({now + kHeartbeat, health_at, fire_at});
