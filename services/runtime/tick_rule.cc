@@ -77,14 +77,11 @@ TimePoint TickRule::Due(std::int64_t n) const {
 }
 
 TimePoint TickRule::Tick(TimePoint now) {
+  if (now < Due(tick_)) return Due(tick_);
+  const std::int64_t missed = (now - Due(tick_)) / period();
+  ticks_missed_ += missed;
+  tick_ += missed;
   const TimePoint due = Due(tick_);
-  if (now < due) return due;
-  if (now - due >= period()) {
-    const std::int64_t missed = (now - due) / period() + 1;
-    ticks_missed_ += missed;
-    tick_ += missed;
-    return Due(tick_);
-  }
   const std::int64_t step = next();
   for (const Input& input : inputs()) {
     if (step >= lead() && !input.ring.Has(step - lead())) {

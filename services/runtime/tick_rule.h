@@ -2,9 +2,9 @@
 // clock, whoever has answered.
 //
 // Step k is due k periods after the start, on a grid that does not drift. A tick at which the
-// process did not run (it was stopped, or the machine was) is not made up for: the next step
-// follows at the next tick of the grid. Simulated time is the number of steps, so it stands still
-// with the world's process, and no step is ever left out; what was missed is counted.
+// process did not run (it was stopped, or the machine was) is not made up for: of those that are
+// over only the last one is begun, at once. Simulated time is the number of steps, so it stands
+// still with the world's process, and no step is ever left out; what was missed is counted.
 //
 // A world that is started again goes on behind the last TRUTH that the recorder has.
 #pragma once
