@@ -47,7 +47,6 @@ class RecordRule final : public RealtimeRule {
   std::int64_t run_id_;
   std::array<Open, kRingSteps> open_{};
   std::deque<Heard> heard_;
-  std::int64_t newest_ = -1;
   std::int64_t final_ = -1;
   TimePoint ask_at_{};
   bool listening_ = false;

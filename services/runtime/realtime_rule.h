@@ -50,6 +50,8 @@ class RealtimeRule : public FireRule {
   void CountLate(std::size_t input) { ++late_[input]; }
 
   Duration period() const { return period_; }
+  /// Newest step that is known to be under way, -1 if none.
+  std::int64_t newest() const { return newest_; }
   RunClock& clock() { return clock_; }
   RealtimeStatistics& statistics() { return statistics_; }
   /// The input that brings the world's ticks; inputs().size() if there is none.
@@ -72,8 +74,8 @@ class RealtimeRule : public FireRule {
   std::vector<InputHealth> health_;
   std::vector<std::int64_t> late_;
   RealtimeStatistics statistics_;
-  std::int64_t newest_ = -1;  // newest step that is known to be under way
-  std::string fallback_;      // as last published
+  std::int64_t newest_ = -1;
+  std::string fallback_;  // as last published
 };
 
 }  // namespace fogline
