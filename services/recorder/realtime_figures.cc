@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "services/runtime/possible_status.h"
+
 namespace fogline {
 
 void RealtimeAccumulator::Add(const status_t& status) {
+  if (!IsPossible(status)) return;  // a file may say anything
   status_t& last = last_[{status.role, status.instance}];
   if (status.sequence <= last.sequence) return;  // overtaken on its way
   last = status;
