@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
+
 namespace fogline {
 namespace {
 
@@ -66,7 +68,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   }
   std::string does;
   if (status.fallback != known.does) {
-    does = status.fallback.empty() ? "as usual again" : status.fallback;
+    does = status.fallback.empty() ? "as usual again" : EscapeControls(status.fallback);
     known.does = status.fallback;
   }
   std::string inputs;

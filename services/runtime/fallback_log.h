@@ -27,7 +27,7 @@ struct Fallback {
   std::string Text() const;
 
   std::string inputs;  // "TRACK, ACC_COMMAND lost"
-  std::string does;    // "the human drives"
+  std::string does;    // "the human drives", as it may be printed
 };
 
 class FallbackLog {

@@ -101,6 +101,12 @@ TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfStrangers) {
   EXPECT_EQ(Add(Said("fusion", 12, {{"NO_CHANNEL", kLost}})), "");
 }
 
+TEST_F(FallbackLogTest, ShowsNoTerminalWhatItWouldObey) {
+  const std::string said = Add(Said("world", 3, {}, "\x1b[2J\rall is well\n"));
+  EXPECT_EQ(said.find_first_of("\x1b\r\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("all is well"), std::string::npos);
+}
+
 TEST_F(FallbackLogTest, KeepsTheFirstChangesAndCountsTheRest) {
   constexpr std::int64_t kMore = 5;
   const auto changes = static_cast<std::int64_t>(FallbackLog::kMaxKept) + kMore;
