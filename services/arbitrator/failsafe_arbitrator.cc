@@ -24,7 +24,10 @@ FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
 
 const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
                                               const ArbitratorInputs& inputs) {
+  const std::int64_t known = pairs_.newest();
   const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
+  // A pair counts once, however often it is the newest.
+  if (pairs_.newest() > known) arbitrator_.Observe(pairs_.radar(), pairs_.lidar());
   if (pairs_.has_pair()) Regular(header, inputs);
   decision_ = Judge(inputs, pairs);
   const double applied_mps2 =
@@ -51,20 +54,16 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision on the newest pair. Offers that are not there are not used for it, only
-// passed on; Judge() sees to it that none of those is.
+// The regular decision on the pairs that have been. Offers that are not there are not used for it,
+// only passed on; Judge() sees to it that none of those is.
 void FailsafeArbitrator::Regular(const header_t& header, const ArbitratorInputs& inputs) {
-  ego_t ego{};
-  ego.header = header;
-  static const track_t kNoTrack{};
   static const accel_command_t kNoAutomation{};
   static const driver_command_t kNoDriver{};
   const auto or_none = [](const auto* message, const auto& none) -> const auto& {
     return message != nullptr ? *message : none;
   };
-  out_ = arbitrator_.Step(
-      ego, pairs_.radar(), pairs_.lidar(), or_none(inputs.track.newest, kNoTrack),
-      or_none(inputs.automation.newest, kNoAutomation), or_none(inputs.driver.newest, kNoDriver));
+  out_ = arbitrator_.Choose(header, or_none(inputs.automation.newest, kNoAutomation),
+                            or_none(inputs.driver.newest, kNoDriver));
 }
 
 Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {

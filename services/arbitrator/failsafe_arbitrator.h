@@ -30,7 +30,7 @@ class FailsafeArbitrator {
 
   /// The host's command for the step of `header`. Once per decision; steps may be left out. Valid
   /// until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK and both authorities
-  /// are 0; the conflict is that of the newest pair of sensor values, whatever its age.
+  /// are 0; the conflict is that of the last pairs of sensor values, whatever their age.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
   /// The manoeuvre begins at the next step whatever the inputs: the vehicle is in one already, or

@@ -183,6 +183,26 @@ TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
   ExpectHuman(Step());
 }
 
+TEST_F(FailsafeArbitratorTest, CountsThePairOfAStepOnce) {
+  Scenario scenario = SomeScenario();
+  scenario.arbitrator.window_steps = 4;
+  arbitrator_ = FailsafeArbitrator(scenario);
+  // GIVEN differences of 0, 0 and 2 m
+  Step();
+  Step();
+  radar_.range_m = lidar_.range_m + 2;
+  const double conflict_m = Step().conflict_m;
+  EXPECT_NEAR(conflict_m, 2.0 / 3, 1e-12);
+  // WHEN the LiDAR says nothing more
+  inputs_.lidar.state = InputState::kStale;
+  // THEN the last difference gains no weight by that
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(Step().conflict_m, conflict_m);
+  // AND the next pair takes its place in turn
+  inputs_.lidar.state = InputState::kOk;
+  radar_.range_m = lidar_.range_m;
+  EXPECT_NEAR(Step().conflict_m, 2.0 / 4, 1e-12);
+}
+
 TEST_F(FailsafeArbitratorTest, StopsWhenTheHumanIsLostAndTheConflictAsksForHim) {
   inputs_.driver.state = InputState::kLost;
   ExpectAutomation(Step());
