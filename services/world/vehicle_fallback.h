@@ -2,6 +2,7 @@
 // a moment, then the car stops. No process but the world itself is needed for it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "fogline/arbitration_t.hpp"
@@ -74,14 +75,22 @@ class VehicleFallback {
   /// The vehicle itself does it: the arbitrator is to be told.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   bool follower_in_minimal_risk() const { return follower_.in_minimal_risk(); }
+  /// How the follower's command is; a message without one does not count.
+  InputState follower_state() const { return follower_state_; }
 
  private:
   void StepHost(const truth_t& now, const Heard<arbitration_t>& host);
   void StepFollower(const truth_t& now, const Heard<follower_command_t>& followers);
 
+  /// How an input is whose last so many messages said nothing, by the limits of any other.
+  InputState StateAfter(std::int64_t steps) const;
+
+  HealthSection health_;
   CarFallback host_;
   CarFallback follower_;
-  bool commanded_ = false;  // by the arbitrator, at least once
+  InputState follower_state_ = InputState::kAwaited;
+  std::int64_t empty_steps_ = 0;  // without an acceleration for the following car
+  bool commanded_ = false;        // by the arbitrator, at least once
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };
