@@ -14,7 +14,8 @@
 
 namespace fogline {
 
-/// Everything that the arbitrator reads, as far as it has come.
+/// Everything that the arbitrator reads, as far as it has come. The odometry brings the step: there
+/// is no decision without it.
 struct ArbitratorInputs {
   Heard<ego_t> ego;
   Heard<radar_t> radar;
@@ -45,14 +46,12 @@ class FailsafeArbitrator {
   }
   /// Which row of the table the last step took.
   Decision decision() const { return decision_; }
-  /// The host stands in the minimal risk manoeuvre.
-  bool standing() const { return minimal_risk_.standing(); }
 
  private:
   void Regular(const header_t& header, const ArbitratorInputs& inputs);
   Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
-  void Stop(const Heard<ego_t>& ego);
+  void Stop(const ego_t& ego);
 
   Arbitrator arbitrator_;
   SensorPairs pairs_;

@@ -6,7 +6,7 @@ namespace fogline {
 
 double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
                          double applied_mps2) {
-  if (state == InputState::kLost) minimal_risk_.Begin(speed_mps, applied_mps2);
+  if (state == InputState::kLost) minimal_risk_.Begin(applied_mps2);
   if (minimal_risk_.begun()) return minimal_risk_.Step(speed_mps);
   if (Usable(state) && command_mps2) last_mps2_ = command_mps2;
   if (!last_mps2_) last_mps2_ = applied_mps2;
@@ -32,7 +32,7 @@ void VehicleFallback::Step(const truth_t& now, const Heard<arbitration_t>& host,
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
   if (Usable(host.state)) {
     if (commanded_ && host.newest->mode != arbitration_t::MINIMAL_RISK) {
-      host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
+      host_.BeginMinimalRisk(now.host_acceleration_mps2);
     }
     if (host.newest->mode == arbitration_t::MINIMAL_RISK) commanded_ = true;
     host_out_ = *host.newest;

@@ -32,11 +32,8 @@ class CarFallback {
               double applied_mps2);
 
   /// The manoeuvre begins, unless it has begun already.
-  void BeginMinimalRisk(double speed_mps, double applied_mps2) {
-    minimal_risk_.Begin(speed_mps, applied_mps2);
-  }
+  void BeginMinimalRisk(double applied_mps2) { minimal_risk_.Begin(applied_mps2); }
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
-  bool standing() const { return minimal_risk_.standing(); }
 
  private:
   MinimalRisk minimal_risk_;
@@ -57,12 +54,10 @@ class VehicleFallback {
             const Heard<follower_command_t>& followers);
 
   /// A process before this one was in the manoeuvre: so is this one, from now on.
-  void ResumeHost(const truth_t& now) {
-    host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
-  }
+  void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
   void ResumeFollower(const truth_t& now) {
     if (now.num_followers < 1) return;
-    follower_.BeginMinimalRisk(now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+    follower_.BeginMinimalRisk(now.follower_acceleration_mps2[0]);
   }
 
   /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
