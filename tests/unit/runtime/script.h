@@ -39,7 +39,7 @@ class Script {
     std::vector<std::uint8_t> bytes;
     Encode(message, bytes);
     bus_.Publish(ChannelOf<M>().name, bytes);
-    bus_.Drain();
+    if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() looks at the clock
   }
 
   /// A message of a step, all zero but for the header.
@@ -51,11 +51,14 @@ class Script {
   }
 
   /// The runner announces the run, all parts of the scenario.
-  void SayRun(std::int8_t phase, std::int64_t progress) {
+  /// @param speed of a run in real time, 0 for one in lockstep
+  void SayRun(std::int8_t phase, std::int64_t progress, double speed = 0) {
     const std::vector<std::string> parts = SplitScenario(text_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       run_t run = MakeRunPart(kRunId, phase, 0, HashOf(text_), parts, i);
       run.progress = progress;
+      run.realtime = speed > 0 ? 1 : 0;
+      run.pace = speed;
       Say(run);
     }
   }
@@ -77,7 +80,7 @@ class Script {
  private:
   std::string text_;
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
-             std::vector<driver_command_t>>
+             std::vector<driver_command_t>, std::vector<track_t>, std::vector<arbitration_t>>
       heard_;
   Bus bus_{"memq://"};
 };
