@@ -26,7 +26,8 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
           std::ranges::find(inputs(), Role::kWorld,
                             [](const Input& input) { return kChannels[input.channel].from; }) -
           inputs().begin())),
-      late_(inputs().size()) {
+      late_(inputs().size()),
+      late_at_(inputs().size()) {
   const TimePoint began = clock_.At(Clock::now());
   health_.assign(inputs().size(), InputHealth(limits_, period_, began));
 }
@@ -42,6 +43,11 @@ StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, B
   }
   return step < std::max(next(), progress() + 1) + kRingSteps ? StepRing::Verdict::kNew
                                                               : StepRing::Verdict::kOutOfWindow;
+}
+
+void RealtimeRule::CountLate(std::size_t input) {
+  ++late_[input];
+  late_at_[input] = Clock::now();
 }
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {

@@ -27,6 +27,8 @@ constexpr Duration kPeriod = milliseconds(1000);
 
 class RealtimeRulesTest : public testing::Test {
  protected:
+  explicit RealtimeRulesTest(const Scenario& scenario = {}) : script_(scenario) {}
+
   void Go() {
     script_.SayRun(run_t::GO, -1, kSpeed);
     go_ = Clock::now();
@@ -115,9 +117,17 @@ TEST_F(RealtimeRuleTest, BlamesTheWorldAloneForItsPause) {
 
 // ---- DeadlineRule: the arbitrator decides in every step ----------------------------------------
 
+// What has never come is lost while the run's clock still goes: 1.25 periods after the last tick.
+Scenario Impatient() {
+  Scenario scenario;
+  scenario.health.stale_periods = 1.1;
+  scenario.health.lost_periods = 1.15;
+  return scenario;
+}
+
 class DeadlineRuleTest : public RealtimeRulesTest {
  protected:
-  DeadlineRuleTest() { Go(); }
+  DeadlineRuleTest() : RealtimeRulesTest(Impatient()) { Go(); }
   std::vector<arbitration_t>& commands_ = script_.Listen<arbitration_t>();
   StepNode<Arbitrator, FailsafeArbitrator> node_{script_.bus(), Script::kRunId};
 };
@@ -151,6 +161,25 @@ TEST_F(DeadlineRuleTest, DecidesTheNewestStepOnly) {
   Say<ego_t>(2);
   script_.Poll(node_, At(0.55));
   EXPECT_THAT(StepsOf(commands_), ElementsAre(2));
+}
+
+TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
+  // GIVEN a human who is lost
+  Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
+  script_.Poll(node_, At(1.22));
+  // THEN the next step is decided at once
+  Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
+  script_.Poll(node_);
+  EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
+  // WHEN he speaks again, which is too late for that step
+  Say<driver_command_t>(1);
+  // THEN the one after it waits for him
+  Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(2);
+  script_.Poll(node_);
+  EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
+  Say<driver_command_t>(2);
+  script_.Poll(node_);
+  EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1, 2));
 }
 
 // ---- TickRule: the world begins the steps ------------------------------------------------------

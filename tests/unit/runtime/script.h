@@ -18,7 +18,7 @@ class Script {
  public:
   static constexpr std::int64_t kRunId = 7;
 
-  Script() : text_(PrintScenario(Scenario{})) {}
+  explicit Script(const Scenario& scenario = {}) : text_(PrintScenario(scenario)) {}
 
   Bus& bus() { return bus_; }
   const std::string& text() const { return text_; }
