@@ -52,7 +52,6 @@ struct HealthSection {
 struct MinimalRiskSection {
   double deceleration_mps2 = 1.0;
   double jerk_mps3 = 1.0;
-  double standstill_mps = 0.01;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
@@ -70,13 +69,6 @@ struct MinimalRiskSection {
                   .doc = "Fastest change of the acceleration, at the end as at the beginning.",
                   .source = "between Autoware's comfortable stop (0.3) and its emergency stop "
                             "(1.5)"});
-    visit.Number(
-        "standstill_mps", self.standstill_mps,
-        {.min = 0,
-         .max = 1,
-         .unit = "m/s",
-         .doc = "At this speed or below, the car is said to stand; the braking itself ends "
-                "at 0."});
   }
 };
 

@@ -11,8 +11,17 @@ Arbitrator::Arbitrator(const Scenario& scenario)
 const arbitration_t& Arbitrator::Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar,
                                       const track_t& /*track*/, const accel_command_t& automation,
                                       const driver_command_t& driver) {
+  Observe(radar, lidar);
+  return Choose(ego.header, automation, driver);
+}
+
+void Arbitrator::Observe(const radar_t& radar, const lidar_t& lidar) {
   window_.Push(Difference(radar, lidar));
-  out_.header = ego.header;
+}
+
+const arbitration_t& Arbitrator::Choose(const header_t& header, const accel_command_t& automation,
+                                        const driver_command_t& driver) {
+  out_.header = header;
   out_.conflict_m = window_.Conflict(section_.conflict);
   out_.doc = DegreeOfConflict(out_.conflict_m, section_.doc_slope_per_m, section_.doc_centre_m);
   const bool human = section_.policy == Policy::kTraded && !(out_.doc < section_.threshold);

@@ -28,6 +28,13 @@ class Arbitrator {
                             const track_t& track, const accel_command_t& automation,
                             const driver_command_t& driver);
 
+  /// The two halves of a Step: the sensors' values take their place in the window, ...
+  void Observe(const radar_t& radar, const lidar_t& lidar);
+  /// ... and what the window holds decides between the offers. In real time a step may be decided
+  /// without new values of the sensors.
+  const arbitration_t& Choose(const header_t& header, const accel_command_t& automation,
+                              const driver_command_t& driver);
+
  private:
   std::optional<double> Difference(const radar_t& radar, const lidar_t& lidar);
 

@@ -24,11 +24,12 @@ FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
 
 const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
                                               const ArbitratorInputs& inputs) {
+  const std::int64_t known = pairs_.newest();
   const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
+  // A pair counts once, however often it is the newest.
+  if (pairs_.newest() > known) arbitrator_.Observe(pairs_.radar(), pairs_.lidar());
   if (pairs_.has_pair()) Regular(header, inputs);
   decision_ = Judge(inputs, pairs);
-  const double applied_mps2 =
-      inputs.ego.newest != nullptr ? inputs.ego.newest->acceleration_mps2 : 0;
   switch (decision_) {
     case Decision::kRegular:
       break;
@@ -39,10 +40,10 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
       Drive(arbitration_t::HUMAN, inputs.driver.newest->acceleration_mps2);
       break;
     case Decision::kHold:
-      Drive(last_mode_, last_mps2_.value_or(applied_mps2));
+      Drive(last_mode_, last_mps2_.value_or(inputs.ego.newest->acceleration_mps2));
       break;
     case Decision::kMinimalRisk:
-      Stop(inputs.ego);
+      Stop(*inputs.ego.newest);
       break;
   }
   out_.header = header;
@@ -51,27 +52,23 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision on the newest pair. Offers that are not there are not used for it, only
-// passed on; Judge() sees to it that none of those is.
+// The regular decision on the pairs that have been. Offers that are not there are not used for it,
+// only passed on; Judge() sees to it that none of those is.
 void FailsafeArbitrator::Regular(const header_t& header, const ArbitratorInputs& inputs) {
-  ego_t ego{};
-  ego.header = header;
-  static const track_t kNoTrack{};
   static const accel_command_t kNoAutomation{};
   static const driver_command_t kNoDriver{};
   const auto or_none = [](const auto* message, const auto& none) -> const auto& {
     return message != nullptr ? *message : none;
   };
-  out_ = arbitrator_.Step(
-      ego, pairs_.radar(), pairs_.lidar(), or_none(inputs.track.newest, kNoTrack),
-      or_none(inputs.automation.newest, kNoAutomation), or_none(inputs.driver.newest, kNoDriver));
+  out_ = arbitrator_.Choose(header, or_none(inputs.automation.newest, kNoAutomation),
+                            or_none(inputs.driver.newest, kNoDriver));
 }
 
 Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
   if (minimal_risk_.begun() || demanded_) return Decision::kMinimalRisk;
   const bool disputed = pairs_.has_pair() && out_.mode == arbitration_t::HUMAN;
-  return Decide(OfferOf(inputs.ego.state), AutomationOffer(inputs, pairs),
-                OfferOf(inputs.driver.state), disputed ? kDisputed : kCalm);
+  return Decide(AutomationOffer(inputs, pairs), OfferOf(inputs.driver.state),
+                disputed ? kDisputed : kCalm);
 }
 
 void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
@@ -81,21 +78,12 @@ void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
   out_.acceleration_mps2 = acceleration_mps2;
 }
 
-// From what is applied now as long as the odometry says so, otherwise from the last command.
-void FailsafeArbitrator::Stop(const Heard<ego_t>& ego) {
-  const ego_t* measured = Usable(ego.state) ? ego.newest : nullptr;
-  if (!minimal_risk_.begun()) {
-    const ego_t* known = ego.newest;
-    const double speed_mps = known != nullptr ? known->speed_mps : 0;
-    const double applied_mps2 = known != nullptr ? known->acceleration_mps2 : 0;
-    minimal_risk_.Begin(speed_mps,
-                        measured != nullptr ? applied_mps2 : last_mps2_.value_or(applied_mps2));
-  }
+void FailsafeArbitrator::Stop(const ego_t& ego) {
+  minimal_risk_.Begin(ego.acceleration_mps2);
   out_.mode = arbitration_t::MINIMAL_RISK;
   out_.lambda_automation = 0;
   out_.lambda_human = 0;
-  out_.acceleration_mps2 =
-      minimal_risk_.Step(measured != nullptr ? std::optional(measured->speed_mps) : std::nullopt);
+  out_.acceleration_mps2 = minimal_risk_.Step(ego.speed_mps);
 }
 
 }  // namespace fogline

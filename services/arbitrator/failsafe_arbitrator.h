@@ -14,7 +14,8 @@
 
 namespace fogline {
 
-/// Everything that the arbitrator reads, as far as it has come.
+/// Everything that the arbitrator reads, as far as it has come. The odometry brings the step: there
+/// is no decision without it.
 struct ArbitratorInputs {
   Heard<ego_t> ego;
   Heard<radar_t> radar;
@@ -30,7 +31,7 @@ class FailsafeArbitrator {
 
   /// The host's command for the step of `header`. Once per decision; steps may be left out. Valid
   /// until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK and both authorities
-  /// are 0; the conflict is that of the newest pair of sensor values, whatever its age.
+  /// are 0; the conflict is that of the last pairs of sensor values, whatever their age.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
   /// The manoeuvre begins at the next step whatever the inputs: the vehicle is in one already, or
@@ -45,14 +46,12 @@ class FailsafeArbitrator {
   }
   /// Which row of the table the last step took.
   Decision decision() const { return decision_; }
-  /// The host stands in the minimal risk manoeuvre.
-  bool standing() const { return minimal_risk_.standing(); }
 
  private:
   void Regular(const header_t& header, const ArbitratorInputs& inputs);
   Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
-  void Stop(const Heard<ego_t>& ego);
+  void Stop(const ego_t& ego);
 
   Arbitrator arbitrator_;
   SensorPairs pairs_;

@@ -16,7 +16,6 @@ enum Offer : std::uint8_t {
   kThere = 1,   // may be used; while it is STALE its last value holds
   kNotYet = 2,  // has never come, and is not overdue
   kGone = 4,    // LOST
-  kAnyOffer = kThere | kNotYet | kGone,
 };
 
 constexpr Offer OfferOf(InputState state) {
@@ -36,7 +35,6 @@ enum class Decision : std::uint8_t {
 };
 
 struct FailsafeRow {
-  std::uint8_t ego;  // the host's own odometry
   std::uint8_t automation;
   std::uint8_t human;
   std::uint8_t conflict;
@@ -45,49 +43,44 @@ struct FailsafeRow {
 
 // clang-format off
 inline constexpr std::array kFailsafeTable{
-    //          ego      automation  human      conflict      decision
-    FailsafeRow{kThere,  kThere,     kThere,    kAnyConflict, Decision::kRegular},
-    FailsafeRow{kThere,  kThere,     kNotYet,   kCalm,        Decision::kAutomation},
-    FailsafeRow{kThere,  kThere,     kNotYet,   kDisputed,    Decision::kHold},
-    FailsafeRow{kThere,  kThere,     kGone,     kCalm,        Decision::kAutomation},
-    FailsafeRow{kThere,  kThere,     kGone,     kDisputed,    Decision::kMinimalRisk},
-    FailsafeRow{kThere,  kNotYet,    kThere,    kAnyConflict, Decision::kHuman},
-    FailsafeRow{kThere,  kNotYet,    kNotYet,   kAnyConflict, Decision::kHold},
-    FailsafeRow{kThere,  kNotYet,    kGone,     kAnyConflict, Decision::kHold},
-    FailsafeRow{kThere,  kGone,      kThere,    kAnyConflict, Decision::kHuman},
-    FailsafeRow{kThere,  kGone,      kNotYet,   kAnyConflict, Decision::kHold},
-    FailsafeRow{kThere,  kGone,      kGone,     kAnyConflict, Decision::kMinimalRisk},
-    FailsafeRow{kNotYet, kAnyOffer,  kAnyOffer, kAnyConflict, Decision::kHold},
-    FailsafeRow{kGone,   kAnyOffer,  kAnyOffer, kAnyConflict, Decision::kMinimalRisk},
+    //          automation  human    conflict      decision
+    FailsafeRow{kThere,     kThere,  kAnyConflict, Decision::kRegular},
+    FailsafeRow{kThere,     kNotYet, kCalm,        Decision::kAutomation},
+    FailsafeRow{kThere,     kNotYet, kDisputed,    Decision::kHold},
+    FailsafeRow{kThere,     kGone,   kCalm,        Decision::kAutomation},
+    FailsafeRow{kThere,     kGone,   kDisputed,    Decision::kMinimalRisk},
+    FailsafeRow{kNotYet,    kThere,  kAnyConflict, Decision::kHuman},
+    FailsafeRow{kNotYet,    kNotYet, kAnyConflict, Decision::kHold},
+    FailsafeRow{kNotYet,    kGone,   kAnyConflict, Decision::kHold},
+    FailsafeRow{kGone,      kThere,  kAnyConflict, Decision::kHuman},
+    FailsafeRow{kGone,      kNotYet, kAnyConflict, Decision::kHold},
+    FailsafeRow{kGone,      kGone,   kAnyConflict, Decision::kMinimalRisk},
 };
 // clang-format on
 
 /// Whether a row is for this case.
-constexpr bool Applies(const FailsafeRow& row, Offer ego, Offer automation, Offer human,
-                       Conflict conflict) {
-  return (row.ego & ego) != 0 && (row.automation & automation) != 0 && (row.human & human) != 0 &&
+constexpr bool Applies(const FailsafeRow& row, Offer automation, Offer human, Conflict conflict) {
+  return (row.automation & automation) != 0 && (row.human & human) != 0 &&
          (row.conflict & conflict) != 0;
 }
 
 /// The decision of the row that applies: there is exactly one.
-constexpr Decision Decide(Offer ego, Offer automation, Offer human, Conflict conflict) {
+constexpr Decision Decide(Offer automation, Offer human, Conflict conflict) {
   return std::ranges::find_if(
              kFailsafeTable,
-             [&](const FailsafeRow& row) { return Applies(row, ego, automation, human, conflict); })
+             [&](const FailsafeRow& row) { return Applies(row, automation, human, conflict); })
       ->decision;
 }
 
 static_assert(
     [] {
-      for (const Offer ego : {kThere, kNotYet, kGone}) {
-        for (const Offer automation : {kThere, kNotYet, kGone}) {
-          for (const Offer human : {kThere, kNotYet, kGone}) {
-            for (const Conflict conflict : {kCalm, kDisputed}) {
-              if (std::ranges::count_if(kFailsafeTable, [&](const FailsafeRow& row) {
-                    return Applies(row, ego, automation, human, conflict);
-                  }) != 1) {
-                return false;
-              }
+      for (const Offer automation : {kThere, kNotYet, kGone}) {
+        for (const Offer human : {kThere, kNotYet, kGone}) {
+          for (const Conflict conflict : {kCalm, kDisputed}) {
+            if (std::ranges::count_if(kFailsafeTable, [&](const FailsafeRow& row) {
+                  return Applies(row, automation, human, conflict);
+                }) != 1) {
+              return false;
             }
           }
         }

@@ -25,6 +25,8 @@ class SensorPairs {
   InputState Update(std::int64_t step, const radar_t* radar, const lidar_t* lidar);
 
   bool has_pair() const { return pair_step_ >= 0; }
+  /// The step of the newest pair, -1 if there is none.
+  std::int64_t newest() const { return pair_step_; }
   /// The newest pair. @pre has_pair()
   const radar_t& radar() const { return radar_; }
   const lidar_t& lidar() const { return lidar_; }

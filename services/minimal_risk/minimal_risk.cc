@@ -14,26 +14,19 @@ constexpr double kToRest = 1.0 + 1e-12;
 MinimalRisk::MinimalRisk(const MinimalRiskSection& limits, double step_s)
     : limits_(limits), step_s_(step_s) {}
 
-void MinimalRisk::Begin(double speed_mps, double acceleration_mps2) {
+void MinimalRisk::Begin(double acceleration_mps2) {
   if (begun_) return;
   begun_ = true;
-  speed_mps_ = speed_mps;
   acceleration_mps2_ = acceleration_mps2;
 }
 
-double MinimalRisk::Step(std::optional<double> speed_mps) {
-  if (speed_mps) {
-    speed_mps_ = *speed_mps;
-  } else if (!first_) {
-    speed_mps_ = std::max(0.0, speed_mps_ + acceleration_mps2_ * step_s_);
-  }
-  first_ = false;
+double MinimalRisk::Step(double speed_mps) {
   const double change = limits_.jerk_mps3 * step_s_;
-  if (speed_mps_ == 0.0 && acceleration_mps2_ <= change) {
+  if (speed_mps == 0.0 && acceleration_mps2_ <= change) {
     acceleration_mps2_ = 0.0;  // stands, and is not about to drive off
     return acceleration_mps2_;
   }
-  const double strongest = -std::min(limits_.deceleration_mps2, Releasable(speed_mps_));
+  const double strongest = -std::min(limits_.deceleration_mps2, Releasable(speed_mps));
   acceleration_mps2_ =
       std::clamp(strongest, acceleration_mps2_ - change, acceleration_mps2_ + change);
   return acceleration_mps2_;

@@ -2,8 +2,6 @@
 // lane. It looks at nothing but the car itself, for whatever else it would need may be what failed.
 #pragma once
 
-#include <optional>
-
 #include "scenario/scenario.h"
 
 namespace fogline {
@@ -29,16 +27,13 @@ class MinimalRisk {
   /// @param step_s h, above 0
   MinimalRisk(const MinimalRiskSection& limits, double step_s);
 
-  /// Begins at this speed (at least 0) and applied acceleration. Nothing begins it a second time.
-  void Begin(double speed_mps, double acceleration_mps2);
+  /// Begins at this applied acceleration. Nothing begins it a second time.
+  void Begin(double acceleration_mps2);
   bool begun() const { return begun_; }
 
   /// The acceleration for the step that begins here. Once per step. @pre begun()
-  /// @param speed_mps measured now, at least 0; without it, the one that the last command leads to
-  double Step(std::optional<double> speed_mps);
-
-  /// Whether the car was at standstill at the last step.
-  bool standing() const { return begun_ && speed_mps_ <= limits_.standstill_mps; }
+  /// @param speed_mps measured now, at least 0
+  double Step(double speed_mps);
 
  private:
   /// r(v).
@@ -47,9 +42,7 @@ class MinimalRisk {
   MinimalRiskSection limits_;
   double step_s_;
   bool begun_ = false;
-  double speed_mps_ = 0;          // at the last step
-  double acceleration_mps2_ = 0;  // commanded then
-  bool first_ = true;
+  double acceleration_mps2_ = 0;  // applied when it began, then as last commanded
 };
 
 }  // namespace fogline

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "services/runtime/possible_status.h"
+
 namespace fogline {
 
 void RealtimeAccumulator::Add(const status_t& status) {
+  if (!IsPossible(status)) return;  // a file may say anything
   status_t& last = last_[{status.role, status.instance}];
   if (status.sequence <= last.sequence) return;  // overtaken on its way
   last = status;
@@ -12,8 +15,10 @@ void RealtimeAccumulator::Add(const status_t& status) {
 }
 
 RealtimeFigures RealtimeAccumulator::Result() const {
-  RealtimeFigures figures{
-      .speed = speed_, .missed_messages = missed_, .fallbacks = fallbacks_.all()};
+  RealtimeFigures figures{.speed = speed_,
+                          .missed_messages = missed_,
+                          .fallbacks = fallbacks_.all(),
+                          .fallbacks_left_out = fallbacks_.left_out()};
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(Role::kRecorder)) continue;  // nobody depends on it
     figures.deadline_misses += status.deadline_misses;

@@ -29,7 +29,9 @@ struct RealtimeFigures {
   // Messages that came too late to be used, and messages that are not in the log.
   std::int64_t late_messages = 0;
   std::int64_t missed_messages = 0;
+  // The first ones, and how many there were after these.
   std::vector<Fallback> fallbacks;
+  std::int64_t fallbacks_left_out = 0;
 };
 
 /// Calls `visit(name, value, unit, description)` for every figure that is a number, in order.
@@ -50,7 +52,8 @@ void VisitFigures(const RealtimeFigures& f, Visitor&& visit) {
 
 class RealtimeAccumulator {
  public:
-  RealtimeAccumulator(double speed, std::int64_t step_us) : speed_(speed), fallbacks_(step_us) {}
+  RealtimeAccumulator(double speed, std::int64_t step_us)
+      : speed_(speed), fallbacks_(step_us, speed) {}
 
   /// The next STATUS of the log.
   void Add(const status_t& status);

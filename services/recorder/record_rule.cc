@@ -26,7 +26,7 @@ void RecordRule::ListenToStatus() {
     if (status == nullptr || status->header.run_id != run_id_ || heard_.size() >= kMaxHeard) return;
     const Bytes bytes = arrival.bytes();
     heard_.push_back(
-        {.step = std::max<std::int64_t>(newest_, 0), .bytes = {bytes.begin(), bytes.end()}});
+        {.step = std::max<std::int64_t>(newest(), 0), .bytes = {bytes.begin(), bytes.end()}});
   });
 }
 
@@ -37,11 +37,10 @@ void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>&
 }
 
 void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
-  RealtimeRule::OnInput(input, step, time);
   // Steps before it that nothing has come of, too, are late from now on.
-  const std::int64_t known = std::max({next(), newest_ + 1, step - kRingSteps + 1});
+  const std::int64_t known = std::max({next(), newest() + 1, step - kRingSteps + 1});
   for (std::int64_t k = std::min(step, known); k <= step; ++k) OpenAt(k, time);
-  newest_ = std::max(newest_, step);
+  RealtimeRule::OnInput(input, step, time);
 }
 
 RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
@@ -52,11 +51,11 @@ RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
 
 TimePoint RecordRule::Fire(TimePoint now) {
   if (!listening_) ListenToStatus();
-  while (Running() && next() <= newest_ && (Complete(next()) || GivenUp(next(), now))) {
+  while (Running() && next() <= newest() && (Complete(next()) || GivenUp(next(), now))) {
     const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
     ComputeDue(next(), due, now);
   }
-  if (!Running() || next() > newest_) return now + kHeartbeat;
+  if (!Running() || next() > newest()) return now + kHeartbeat;
   if (now >= ask_at_) AskForHoles(now);
   return ask_at_;
 }
@@ -67,7 +66,8 @@ bool RecordRule::Complete(std::int64_t step) const {
 
 bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
   const Open& open = OpenAt(step, now);
-  return step <= newest_ - kMaxOpen || (open.asked >= kAsks && now > open.asked_at + 2 * kAskEvery);
+  return step <= newest() - kMaxOpen ||
+         (open.asked >= kAsks && now > open.asked_at + 2 * kAskEvery);
 }
 
 void RecordRule::AskForHoles(TimePoint now) {
@@ -75,7 +75,7 @@ void RecordRule::AskForHoles(TimePoint now) {
   const auto patience =
       duration_cast<Duration>(kPatience * std::chrono::duration<double>(period()));
   std::int64_t end = next();  // of the steps to be asked for
-  while (end <= newest_ && now >= OpenAt(end, now).seen + patience) ++end;
+  while (end <= newest() && now >= OpenAt(end, now).seen + patience) ++end;
   std::int64_t first = next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;
   for (const Input& input : inputs()) {

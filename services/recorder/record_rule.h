@@ -18,7 +18,6 @@ class RecordRule final : public RealtimeRule {
   RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
 
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
-  void SetFinal(std::int64_t step) override { final_ = step; }
 
   /// Hands out what came in this step or before, once.
   void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
@@ -47,8 +46,6 @@ class RecordRule final : public RealtimeRule {
   std::int64_t run_id_;
   std::array<Open, kRingSteps> open_{};
   std::deque<Heard> heard_;
-  std::int64_t newest_ = -1;
-  std::int64_t final_ = -1;
   TimePoint ask_at_{};
   bool listening_ = false;
 };

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "scenario/wording.h"
-#include "services/runtime/step_ring.h"
+#include "services/runtime/possible_status.h"
 #include "services/runtime/this_process.h"
 
 namespace fogline {
@@ -30,17 +30,6 @@ std::optional<Role> RoleNamed(std::string_view name) {
     if (info.name == name) return info.role;
   }
   return std::nullopt;
-}
-
-/// Whether a process can have counted so far, in a run of so many steps. Sums of such numbers, and
-/// times, do not overflow.
-bool IsPossible(const status_t& status, std::int64_t steps) {
-  const auto counted = [](std::int64_t number) { return number >= 0 && number <= kMaxStep; };
-  return status.header.step >= -1 && status.header.step <= steps && counted(status.last_heard_ms) &&
-         counted(status.repairs_asked) && counted(status.repairs_served) &&
-         counted(status.duplicates) && std::ranges::all_of(kRefusals, [&](const RefusalKind& kind) {
-           return counted(status.*kind.counter);
-         });
 }
 
 const ChannelInfo* ChannelNamed(std::string_view name) {
@@ -156,7 +145,8 @@ void Conductor::OnStatus(const status_t& heard) {
     strangers_.Hear(heard);
     return Refuse(&status_t::foreign);
   }
-  if (!IsPossible(heard, options_.steps)) return Refuse(&status_t::out_of_window);
+  if (!IsPossible(heard) || heard.header.step > options_.steps)
+    return Refuse(&status_t::out_of_window);
   status_t status = heard;  // with texts as they may be printed
   status.host = EscapeControls(heard.host);
   status.error = EscapeControls(heard.error);

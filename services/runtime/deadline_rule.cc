@@ -17,8 +17,9 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   TimePoint due = tick.heard;
   for (std::size_t i = 0; i < inputs().size(); ++i) {
     const bool there = inputs()[i].ring.Has(step);
-    // Nobody waits for what is lost.
-    if (!there && StateOf(i) != InputState::kLost) complete = false;
+    // Nobody waits for what is lost, but for what comes again: decided without it at once, it would
+    // be late in every step, and lost for good.
+    if (!there && (StateOf(i) != InputState::kLost || Speaks(i, now))) complete = false;
     if (there) due = std::max(due, inputs()[i].heard);
   }
   const TimePoint deadline = tick.heard + patience_;

@@ -1,6 +1,6 @@
 // Real time for the role that must decide in every step (the arbitrator): it does so as soon as all
-// inputs are there that are not lost, and at the latest so long after the world's tick that the
-// decision can still be on time; then with what there is.
+// inputs are there that are not lost (or that come again), and at the latest so long after the
+// world's tick that the decision can still be on time; then with what there is.
 #pragma once
 
 #include <optional>

@@ -30,12 +30,6 @@ void DurationHistogram::Add(Duration duration) {
   max_us_ = std::max(max_us_, us);
 }
 
-void DurationHistogram::Add(const DurationHistogram& other) {
-  for (std::size_t i = 0; i < kNumCells; ++i) cells_[i] += other.cells_[i];
-  count_ += other.count_;
-  max_us_ = std::max(max_us_, other.max_us_);
-}
-
 std::int64_t DurationHistogram::QuantileUs(double q) const {
   if (count_ == 0) return 0;
   const auto wanted = std::max<std::int64_t>(

@@ -13,16 +13,15 @@ namespace fogline {
 /// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
 /// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
 /// therefore too large by at most 1/64 (1.6 %) and never too small; minimum, maximum and count are
-/// exact. 14 kB, no allocation, constant time to add, and two of them can be added.
+/// exact. 14 kB, no allocation, constant time to add.
 ///
-/// (Boost.Accumulators has the P2 estimator, without a bound on its error in the tail and without a
-/// sum of two; HdrHistogram in C is no Debian package.)
+/// (Boost.Accumulators has the P2 estimator, without a bound on its error in the tail; HdrHistogram
+/// in C is no Debian package.)
 class DurationHistogram {
  public:
   /// Counts a duration, in whole microseconds, rounded up; a negative one counts as 0, one above
   /// kMax as kMax.
   void Add(Duration duration);
-  void Add(const DurationHistogram& other);
 
   /// The smallest duration, in microseconds, that at least a share `q` of all does not exceed; 0 if
   /// there are none. q in [0, 1].

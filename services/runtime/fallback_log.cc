@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
+
 namespace fogline {
 namespace {
 
@@ -16,6 +18,9 @@ std::size_t PlaceOf(std::string_view role) {
   return static_cast<std::size_t>(std::ranges::find(kRoles, role, &RoleInfo::name) -
                                   kRoles.begin());
 }
+
+// Wall clock: a process that lives says how it is five times a second.
+constexpr double kSilent_us = 600e3;
 
 void Append(std::string& list, std::string_view separator, std::string_view text) {
   if (text.empty()) return;
@@ -35,11 +40,16 @@ std::string Fallback::Text() const {
   return text;
 }
 
+FallbackLog::FallbackLog(std::int64_t step_us, double speed)
+    : step_us_(step_us), silent_us_(kSilent_us * speed) {}
+
 const Fallback* FallbackLog::Add(const status_t& status) {
   const std::size_t role = PlaceOf(status.role);
   // Of the recorder's inputs each has somebody else who works on it.
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
   Known& known = roles_[role];
+  known.lost.reset();  // whatever it said before, or its predecessor
+  known.utime = status.header.utime;
   std::string lost;
   std::string back;
   std::string stale;  // news only if something is done about it
@@ -49,6 +59,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
     const std::string_view name = kChannels[channel].name;
     InputState& known_state = known.inputs[channel];
     const auto state = static_cast<InputState>(status.input_state[i]);
+    if (state == InputState::kLost) known.lost.set(channel);
     if (state == InputState::kStale) Append(stale, ", ", name);
     if (state == InputState::kLost && known_state != InputState::kLost) Append(lost, ", ", name);
     if (state == InputState::kOk && known_state == InputState::kLost) Append(back, ", ", name);
@@ -57,7 +68,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   }
   std::string does;
   if (status.fallback != known.does) {
-    does = status.fallback.empty() ? "as usual again" : status.fallback;
+    does = status.fallback.empty() ? "as usual again" : EscapeControls(status.fallback);
     known.does = status.fallback;
   }
   std::string inputs;
@@ -65,16 +76,25 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   if (!back.empty()) Append(inputs, ", ", back + " ok again");
   if (inputs.empty() && does.empty()) return nullptr;
   if (inputs.empty() && !status.fallback.empty() && !stale.empty()) inputs = stale + " stale";
-  Fallback& change = all_.emplace_back();
-  change.step = status.header.utime / step_us_;
-  change.role = status.role;
-  change.inputs = inputs;
-  change.does = does;
-  change.what = inputs;
-  Append(change.what, ": ", does);
-  if (!lost.empty() || !status.fallback.empty()) change.culprit = Culprit(status);
-  change.age_s = static_cast<double>(status.last_heard_ms) * 1e-3;
-  return &change;
+  newest_ = {};
+  newest_.step = status.header.utime / step_us_;
+  newest_.role = status.role;
+  newest_.inputs = inputs;
+  newest_.does = does;
+  newest_.what = inputs;
+  Append(newest_.what, ": ", does);
+  if (!lost.empty() || !status.fallback.empty()) newest_.culprit = Culprit(status);
+  newest_.age_s = static_cast<double>(status.last_heard_ms) * 1e-3;
+  if (all_.size() < kMaxKept) {
+    all_.push_back(newest_);
+  } else {
+    ++left_out_;
+  }
+  return &newest_;
+}
+
+bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
+  return static_cast<double>(utime) - static_cast<double>(known.utime) > silent_us_;
 }
 
 // The role knows which of its own inputs comes first; the others say what silences them. The world
@@ -86,10 +106,11 @@ std::string FallbackLog::Culprit(const status_t& status) const {
   missing.set(channel);
   LostByRole reported;
   for (std::size_t role = 0; role < kRoles.size(); ++role) {
-    if (kRoles[role].role == Role::kWorld) continue;
+    const Known& known = roles_[role];
+    if (kRoles[role].role == Role::kWorld || IsSilent(known, status.header.utime)) continue;
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       if (kRoles[role].role == Role::kArbitrator && kChannels[i].from != Role::kWorld) continue;
-      if (roles_[role].inputs[i] == InputState::kLost) reported[role].set(i);
+      if (known.lost[i]) reported[role].set(i);
     }
   }
   const auto culprit = FindCulprit(missing, reported);

@@ -27,31 +27,46 @@ struct Fallback {
   std::string Text() const;
 
   std::string inputs;  // "TRACK, ACC_COMMAND lost"
-  std::string does;    // "the human drives"
+  std::string does;    // "the human drives", as it may be printed
 };
 
 class FallbackLog {
  public:
+  /// Changes that are kept: what follows adds little for a reader, and must not fill the memory.
+  static constexpr std::size_t kMaxKept = 1000;
+
   /// @param step_us simulated time of a step
-  explicit FallbackLog(std::int64_t step_us) : step_us_(step_us) {}
+  /// @param speed simulated seconds per second
+  FallbackLog(std::int64_t step_us, double speed);
 
   /// Takes the next STATUS of a role. @return the change since its last one, nullptr if there is
-  /// none
+  /// none; valid until the next call
   const Fallback* Add(const status_t& status);
 
+  /// The first changes, kMaxKept at most.
   const std::vector<Fallback>& all() const { return all_; }
+  /// How many changes came after these.
+  std::int64_t left_out() const { return left_out_; }
 
  private:
   struct Known {
-    std::array<InputState, kNumChannels> inputs{};
+    std::array<InputState, kNumChannels> inputs{};  // LOST until it is OK again
     std::string does;
+    // What its last STATUS says is lost, and how far the run was then.
+    ChannelSet lost;
+    std::int64_t utime = 0;
   };
 
   std::string Culprit(const status_t& status) const;
+  /// The role has said nothing for so long that it does not count any more what it said.
+  bool IsSilent(const Known& known, std::int64_t utime) const;
 
   std::int64_t step_us_;
+  double silent_us_;  // simulated
   std::array<Known, kRoles.size()> roles_;
+  Fallback newest_;
   std::vector<Fallback> all_;
+  std::int64_t left_out_ = 0;
 };
 
 }  // namespace fogline

@@ -24,10 +24,10 @@ InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoin
       heard_(began),
       streak_began_(began) {}
 
-bool InputHealth::Arrived(std::int64_t step, TimePoint now) {
+void InputHealth::Arrived(std::int64_t step, TimePoint now) {
   if (step <= newest_) {
     if (step < newest_) ++late_;
-    return false;
+    return;
   }
   const bool first = newest_ < 0;
   const bool in_time = Age(now) <= stale_;
@@ -48,7 +48,6 @@ bool InputHealth::Arrived(std::int64_t step, TimePoint now) {
   } else {
     Recover(now);
   }
-  return true;
 }
 
 void InputHealth::Recover(TimePoint now) {

@@ -32,10 +32,9 @@ class InputHealth {
   /// @param began when the input may be expected from
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
-  /// A message of step `step` has arrived.
-  /// @return whether it is new and may be used: false for the step that is there already, and for
-  /// an older one, which is late and counted
-  bool Arrived(std::int64_t step, TimePoint now);
+  /// A message of step `step` has arrived. The step that is there already changes nothing; an older
+  /// one is late and counted.
+  void Arrived(std::int64_t step, TimePoint now);
 
   /// Takes the time into account. @return the state now
   InputState Update(TimePoint now);

@@ -34,7 +34,6 @@ class LeadGate {
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
   /// When Open() or WantsRecorded() may answer differently without a message.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;
-  std::int64_t recorded() const { return recorded_; }
 
  private:
   /// The step that must be on disk before `next` can begin (or, at the end, before the run is

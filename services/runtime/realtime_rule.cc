@@ -26,7 +26,8 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
           std::ranges::find(inputs(), Role::kWorld,
                             [](const Input& input) { return kChannels[input.channel].from; }) -
           inputs().begin())),
-      late_(inputs().size()) {
+      late_(inputs().size()),
+      late_at_(inputs().size()) {
   const TimePoint began = clock_.At(Clock::now());
   health_.assign(inputs().size(), InputHealth(limits_, period_, began));
 }
@@ -46,6 +47,11 @@ StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, B
   return step <= newest ? StepRing::Verdict::kNew : StepRing::Verdict::kOutOfWindow;
 }
 
+void RealtimeRule::CountLate(std::size_t input) {
+  ++late_[input];
+  late_at_[input] = Clock::now();
+}
+
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   newest_ = std::max(newest_, step);
   if (input == tick_input_) {
@@ -58,6 +64,7 @@ void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time)
 TimePoint RealtimeRule::Poll(TimePoint now) {
   bus().Drain();  // the newest step is wanted, and not those that a backlog begins with
   if (!Running()) return now;
+  now = std::max(now, Clock::now());  // a backlog takes its time
   const TimePoint health_at = UpdateHealth(now);
   const TimePoint fire_at = Fire(now);
   return std::min({now + kHeartbeat, health_at, fire_at});

@@ -7,6 +7,7 @@
 // and how well it keeps its time, and says it at once when that changes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,16 +47,26 @@ class RealtimeRule : public FireRule {
 
   /// Computes a step that was due then; steps between the last one and it are missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
-  /// A message that is too late to be used.
-  void CountLate(std::size_t input) { ++late_[input]; }
+  /// Something of the input has come lately, in time or too late to be used.
+  bool Speaks(std::size_t input, TimePoint now) const {
+    return now - std::max(late_at_[input], inputs()[input].heard) <= kSpeaks * period_;
+  }
 
   Duration period() const { return period_; }
+  /// Newest step that is known to be under way, -1 if none.
+  std::int64_t newest() const { return newest_; }
   RunClock& clock() { return clock_; }
   RealtimeStatistics& statistics() { return statistics_; }
   /// The input that brings the world's ticks; inputs().size() if there is none.
   std::size_t tick_input() const { return tick_input_; }
 
  private:
+  /// Periods between two steps of an input that comes again; an input that is lost by default has
+  /// been silent for longer.
+  static constexpr int kSpeaks = 2;
+
+  /// A message that is too late to be used.
+  void CountLate(std::size_t input);
   /// Takes the time into account. @return when that may change a state
   TimePoint UpdateHealth(TimePoint now);
   /// The world's ticks are judged on the wall clock, everything else on that of the run.
@@ -71,9 +82,10 @@ class RealtimeRule : public FireRule {
   std::size_t tick_input_;
   std::vector<InputHealth> health_;
   std::vector<std::int64_t> late_;
+  std::vector<TimePoint> late_at_;  // the last one
   RealtimeStatistics statistics_;
-  std::int64_t newest_ = -1;  // newest step that is known to be under way
-  std::string fallback_;      // as last published
+  std::int64_t newest_ = -1;
+  std::string fallback_;  // as last published
 };
 
 }  // namespace fogline

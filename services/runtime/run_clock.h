@@ -42,8 +42,6 @@ class RunClock {
   std::int64_t NewestPossible(TimePoint now) const { return step_ + (now - heard_) / period_ + 2; }
 
   bool started() const { return step_ >= 0; }
-  /// Newest step that the world has begun.
-  std::int64_t step() const { return step_; }
 
  private:
   /// Part of a period by which a tick may be late: well above what it varies by, well below what
@@ -56,9 +54,9 @@ class RunClock {
   }
 
   Duration period_;
-  std::int64_t step_ = -1;
-  TimePoint heard_;  // the last tick, on the wall clock
-  TimePoint limit_;  // when the next one is overdue
+  std::int64_t step_ = -1;  // newest that the world has begun
+  TimePoint heard_;         // the last tick, on the wall clock
+  TimePoint limit_;         // when the next one is overdue
   Duration paused_{};
 };
 

@@ -32,12 +32,22 @@ void TickRule::OnGo(const run_t& run, TimePoint now) {
   phase_ = progress() < 0 ? Phase::kTicking : Phase::kResuming;
 }
 
+StepRing::Verdict TickRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
+  const StepRing::Verdict verdict = RealtimeRule::Classify(input, step, bytes);
+  if (verdict == StepRing::Verdict::kLate) TakeLatency(input, step, Clock::now());
+  return verdict;
+}
+
 void TickRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   RealtimeRule::OnInput(input, step, time);
-  const bool from_host = inputs()[input].channel == IndexOf<arbitration_t>();
-  if (from_host && step + lead() == next() && sent_[RingSlot(step)] != TimePoint{}) {
-    statistics().Latency(time - sent_[RingSlot(step)]);
-  }
+  TakeLatency(input, step, time);
+}
+
+void TickRule::TakeLatency(std::size_t input, std::int64_t step, TimePoint time) {
+  Sent& sent = sent_[RingSlot(step)];
+  if (inputs()[input].channel != IndexOf<arbitration_t>() || sent.step != step) return;
+  statistics().Latency(time - sent.time);
+  sent.step = -1;
 }
 
 void TickRule::SetFinal(std::int64_t step) {
@@ -70,14 +80,11 @@ TimePoint TickRule::Due(std::int64_t n) const {
 }
 
 TimePoint TickRule::Tick(TimePoint now) {
+  if (now < Due(tick_)) return Due(tick_);
+  const std::int64_t missed = (now - Due(tick_)) / period();
+  ticks_missed_ += missed;
+  tick_ += missed;
   const TimePoint due = Due(tick_);
-  if (now < due) return due;
-  if (now - due >= period()) {
-    const std::int64_t missed = (now - due) / period() + 1;
-    ticks_missed_ += missed;
-    tick_ += missed;
-    return Due(tick_);
-  }
   const std::int64_t step = next();
   for (const Input& input : inputs()) {
     if (step >= lead() && !input.ring.Has(step - lead())) {
@@ -88,7 +95,7 @@ TimePoint TickRule::Tick(TimePoint now) {
   clock().Tick(step, now);
   ++tick_;
   ComputeDue(step, due, now);
-  sent_[RingSlot(step)] = Clock::now();
+  sent_[RingSlot(step)] = {.step = step, .time = Clock::now()};
   return phase_ == Phase::kTicking ? Due(tick_) : now;
 }
 

@@ -2,9 +2,9 @@
 // clock, whoever has answered.
 //
 // Step k is due k periods after the start, on a grid that does not drift. A tick at which the
-// process did not run (it was stopped, or the machine was) is not made up for: the next step
-// follows at the next tick of the grid. Simulated time is the number of steps, so it stands still
-// with the world's process, and no step is ever left out; what was missed is counted.
+// process did not run (it was stopped, or the machine was) is not made up for: of those that are
+// over only the last one is begun, at once. Simulated time is the number of steps, so it stands
+// still with the world's process, and no step is ever left out; what was missed is counted.
 //
 // A world that is started again goes on behind the last TRUTH that the recorder has.
 #pragma once
@@ -26,6 +26,7 @@ class TickRule final : public RealtimeRule {
   TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate, TakeOver take_over);
 
   void OnGo(const run_t& run, TimePoint now) override;
+  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   void SetFinal(std::int64_t step) override;
   void WriteStatus(TimePoint now) override;
@@ -42,6 +43,8 @@ class TickRule final : public RealtimeRule {
   TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
+  /// A step's command has come, in time or not: takes its latency, once.
+  void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
 
@@ -53,8 +56,13 @@ class TickRule final : public RealtimeRule {
   TimePoint start_{};
   std::int64_t tick_ = 0;  // next one on the grid
   std::int64_t ticks_missed_ = 0;
-  std::array<TimePoint, kRingSteps> sent_{};  // steps, for the latency of their commands
-  std::optional<TimePoint> give_up_at_{};     // waiting for the recorder at the end
+  /// A step that is out, until its command has come.
+  struct Sent {
+    std::int64_t step = -1;
+    TimePoint time{};
+  };
+  std::array<Sent, kRingSteps> sent_{};
+  std::optional<TimePoint> give_up_at_{};  // waiting for the recorder at the end
 
   std::optional<truth_t> truth_;  // newest one that the recorder has sent
   TimePoint truth_at_{};          // when the first one came

@@ -36,7 +36,7 @@ void FailsafeWorld::Describe(const WorldInputs& inputs) {
   }
   if (vehicles_.follower_in_minimal_risk()) {
     add("minimal risk manoeuvre of the follower");
-  } else if (inputs.followers.state == InputState::kStale) {
+  } else if (vehicles_.follower_state() == InputState::kStale) {
     add("the follower's last command holds");
   }
 }

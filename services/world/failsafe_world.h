@@ -40,7 +40,6 @@ class FailsafeWorld {
 
   World world_;
   VehicleFallback vehicles_;
-  truth_t now_{};
   std::string fallback_;
 };
 

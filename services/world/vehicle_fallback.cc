@@ -1,10 +1,12 @@
 #include "services/world/vehicle_fallback.h"
 
+#include <algorithm>
+
 namespace fogline {
 
 double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
                          double applied_mps2) {
-  if (state == InputState::kLost) minimal_risk_.Begin(speed_mps, applied_mps2);
+  if (state == InputState::kLost) minimal_risk_.Begin(applied_mps2);
   if (minimal_risk_.begun()) return minimal_risk_.Step(speed_mps);
   if (Usable(state) && command_mps2) last_mps2_ = command_mps2;
   if (!last_mps2_) last_mps2_ = applied_mps2;
@@ -12,7 +14,8 @@ double CarFallback::Step(InputState state, std::optional<double> command_mps2, d
 }
 
 VehicleFallback::VehicleFallback(const Scenario& scenario)
-    : host_(scenario.minimal_risk, scenario.step_s),
+    : health_(scenario.health),
+      host_(scenario.minimal_risk, scenario.step_s),
       follower_(scenario.minimal_risk, scenario.step_s) {
   host_out_.lambda_automation = 1;
   followers_out_.num_followers = 1;
@@ -29,7 +32,7 @@ void VehicleFallback::Step(const truth_t& now, const Heard<arbitration_t>& host,
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
   if (Usable(host.state)) {
     if (commanded_ && host.newest->mode != arbitration_t::MINIMAL_RISK) {
-      host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
+      host_.BeginMinimalRisk(now.host_acceleration_mps2);
     }
     if (host.newest->mode == arbitration_t::MINIMAL_RISK) commanded_ = true;
     host_out_ = *host.newest;
@@ -45,17 +48,31 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   }
 }
 
-// A message without an acceleration for the car is as good as none.
+// A message without an acceleration for the car is as good as none: it must not keep the input OK.
 void VehicleFallback::StepFollower(const truth_t& now, const Heard<follower_command_t>& followers) {
   if (now.num_followers < 1) return;
   followers_out_.header = now.header;
+  follower_state_ = followers.state;
   std::optional<double> command_mps2;
-  if (Usable(followers.state) && followers.newest->num_followers > 0) {
-    command_mps2 = followers.newest->acceleration_mps2[0];
-    followers_out_.safe_distance_m[0] = followers.newest->safe_distance_m[0];
+  if (Usable(followers.state)) {
+    const bool empty = followers.newest->num_followers < 1;
+    empty_steps_ = empty ? empty_steps_ + 1 : 0;
+    if (empty) {
+      follower_state_ = std::max(follower_state_, StateAfter(empty_steps_));
+    } else {
+      command_mps2 = followers.newest->acceleration_mps2[0];
+      followers_out_.safe_distance_m[0] = followers.newest->safe_distance_m[0];
+    }
   }
   followers_out_.acceleration_mps2[0] = follower_.Step(
-      followers.state, command_mps2, now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+      follower_state_, command_mps2, now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+}
+
+// At the first step without one, the last command came two periods ago.
+InputState VehicleFallback::StateAfter(std::int64_t steps) const {
+  const double age = static_cast<double>(steps) + 1;
+  if (age > std::max(health_.stale_periods, health_.lost_periods)) return InputState::kLost;
+  return age > health_.stale_periods ? InputState::kStale : InputState::kOk;
 }
 
 }  // namespace fogline

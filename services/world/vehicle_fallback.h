@@ -2,6 +2,7 @@
 // a moment, then the car stops. No process but the world itself is needed for it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "fogline/arbitration_t.hpp"
@@ -31,11 +32,8 @@ class CarFallback {
               double applied_mps2);
 
   /// The manoeuvre begins, unless it has begun already.
-  void BeginMinimalRisk(double speed_mps, double applied_mps2) {
-    minimal_risk_.Begin(speed_mps, applied_mps2);
-  }
+  void BeginMinimalRisk(double applied_mps2) { minimal_risk_.Begin(applied_mps2); }
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
-  bool standing() const { return minimal_risk_.standing(); }
 
  private:
   MinimalRisk minimal_risk_;
@@ -56,12 +54,10 @@ class VehicleFallback {
             const Heard<follower_command_t>& followers);
 
   /// A process before this one was in the manoeuvre: so is this one, from now on.
-  void ResumeHost(const truth_t& now) {
-    host_.BeginMinimalRisk(now.host_speed_mps, now.host_acceleration_mps2);
-  }
+  void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
   void ResumeFollower(const truth_t& now) {
     if (now.num_followers < 1) return;
-    follower_.BeginMinimalRisk(now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+    follower_.BeginMinimalRisk(now.follower_acceleration_mps2[0]);
   }
 
   /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
@@ -74,14 +70,22 @@ class VehicleFallback {
   /// The vehicle itself does it: the arbitrator is to be told.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   bool follower_in_minimal_risk() const { return follower_.in_minimal_risk(); }
+  /// How the follower's command is; a message without one does not count.
+  InputState follower_state() const { return follower_state_; }
 
  private:
   void StepHost(const truth_t& now, const Heard<arbitration_t>& host);
   void StepFollower(const truth_t& now, const Heard<follower_command_t>& followers);
 
+  /// How an input is whose last so many messages said nothing, by the limits of any other.
+  InputState StateAfter(std::int64_t steps) const;
+
+  HealthSection health_;
   CarFallback host_;
   CarFallback follower_;
-  bool commanded_ = false;  // by the arbitrator, at least once
+  InputState follower_state_ = InputState::kAwaited;
+  std::int64_t empty_steps_ = 0;  // without an acceleration for the following car
+  bool commanded_ = false;        // by the arbitrator, at least once
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };

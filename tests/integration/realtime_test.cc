@@ -1,51 +1,48 @@
 // Runs in real time: roles are killed or stopped while the automation drives, and what counts is
 // what the cars do. Everything is judged from the log.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <map>
 #include <optional>
-#include <tuple>
+#include <string>
+#include <vector>
 
-#include "services/recorder/event_log.h"
 #include "services/runtime/bus.h"
-#include "services/runtime/input_state.h"
-#include "services/runtime/wire.h"
+#include "tests/integration/realtime_log.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
 namespace {
 
-using testing::HasSubstr;
-
-constexpr double kStepS = 0.1;
 constexpr double kSpeed = 5;
 constexpr double kPeriodS = kStepS / kSpeed;
-// A step at which the automation drives in both scenarios, and in which nothing else goes on.
-constexpr int kFaultStep = 60;
-// Defaults of section minimal_risk.
-constexpr double kDecelerationMps2 = 1;
-constexpr double kJerkMps3 = 1;
-// Rounding of numbers near 100 m.
-constexpr double kRounding = 1e-9;
+// From a role's last message until somebody calls it lost; then until something is done about it.
+constexpr std::int64_t kDetection = 3;  // periods
+constexpr std::int64_t kInForce = 1;
+// The runner's word reaches a role within 100 ms.
+constexpr std::int64_t kNews = 5;
+// So long a manoeuvre takes from 20 m/s.
+constexpr int kManoeuvre = 230;
 
 /// A run in real time whose processes this test can stop.
 class RealtimeRun {
  public:
-  RealtimeRun(const std::string& scenario, int steps, double speed = kSpeed)
+  RealtimeRun(const std::string& scenario, int steps, double speed = kSpeed,
+              const std::vector<std::string>& settings = {})
       : bus_(FreshMulticastUrl()),
         log_(folder_.File("run.lcm")),
-        run_(Command(scenario, steps, speed)) {
+        run_(Command(scenario, steps, speed, settings)) {
     bus_.Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
-      if (const auto* truth = arrival.As<truth_t>()) step_ = std::max(step_, truth->header.step);
+      const auto* truth = arrival.As<truth_t>();
+      if (truth == nullptr || truth->header.step <= step_) return;
+      step_ = truth->header.step;
+      truth_at_ = arrival.time();
     });
     bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
-      if (const auto* status = arrival.As<status_t>()) pids_[status->role] = status->pid;
+      if (const auto* status = arrival.As<status_t>()) Heard(*status, arrival.time());
     });
   }
 
@@ -58,7 +55,21 @@ class RealtimeRun {
       }
     }
   }
-  void Signal(const std::string& role, int signal) { kill(pids_.at(role), signal); }
+  /// @return the step that was under way
+  std::int64_t Signal(const std::string& role, int signal) {
+    kill(pids_.at(role), signal);
+    return step_;
+  }
+  /// Between the world's last TRUTH and the first word that it is missed, on this process's clock;
+  /// nothing if it is back before.
+  std::optional<Duration> WaitForTheWorldToBeMissed() {
+    const std::int64_t silent_since = step_;
+    const TimePoint end = Clock::now() + std::chrono::seconds(5);
+    while (!missed_after_ && step_ <= silent_since + 1 && Clock::now() < end) {
+      bus_.Wait(milliseconds(5));
+    }
+    return missed_after_;
+  }
 
   /// Waits for the end. @return the result
   nlohmann::json Finish() {
@@ -70,20 +81,34 @@ class RealtimeRun {
   Background& run() { return run_; }
 
  private:
-  std::vector<std::string> Command(const std::string& scenario, int steps, double speed) const {
-    return {Program("fogline"),
-            "run",
-            scenario,
-            "--json",
-            "--realtime",
-            "--speed",
-            std::to_string(speed),
-            "--set",
-            "/steps=" + std::to_string(steps),
-            "--lcm-url",
-            bus_.url(),
-            "--log",
-            log_};
+  std::vector<std::string> Command(const std::string& scenario, int steps, double speed,
+                                   const std::vector<std::string>& settings) const {
+    std::vector<std::string> command{Program("fogline"),
+                                     "run",
+                                     scenario,
+                                     "--json",
+                                     "--realtime",
+                                     "--speed",
+                                     std::to_string(speed),
+                                     "--set",
+                                     "/steps=" + std::to_string(steps),
+                                     "--lcm-url",
+                                     bus_.url(),
+                                     "--log",
+                                     log_};
+    for (const std::string& setting : settings) {
+      command.insert(command.end(), {"--set", setting});
+    }
+    return command;
+  }
+  void Heard(const status_t& status, TimePoint now) {
+    pids_[status.role] = status.pid;
+    if (missed_after_ || status.role == NameOf(Role::kRecorder)) return;
+    for (std::size_t i = 0; i < status.input.size(); ++i) {
+      const bool world = status.input[i] == ChannelOf<truth_t>().name ||
+                         status.input[i] == ChannelOf<ego_t>().name;
+      if (world && status.input_state[i] == status_t::INPUT_LOST) missed_after_ = now - truth_at_;
+    }
   }
 
   ScratchFolder folder_;
@@ -91,100 +116,10 @@ class RealtimeRun {
   std::string log_;
   Background run_;
   std::int64_t step_ = -1;
+  TimePoint truth_at_{};
+  std::optional<Duration> missed_after_;
   std::map<std::string, pid_t> pids_;
 };
-
-/// A log in real time, by step.
-struct Log {
-  explicit Log(const std::string& file) {
-    EventLogReader reader(file);
-    while (const auto event = reader.Next()) {
-      Take(event->channel, event->data, truth);
-      Take(event->channel, event->data, command);
-      Take(event->channel, event->data, driver);
-      Take(event->channel, event->data, automation);
-      status_t heard{};
-      if (event->channel == ChannelOf<status_t>().name && Decode(event->data, heard)) {
-        status.push_back(heard);
-      }
-    }
-  }
-
-  template <class M>
-  static void Take(std::string_view channel, Bytes data, std::map<std::int64_t, M>& messages) {
-    M message{};
-    if (channel == ChannelOf<M>().name && Decode(data, message)) {
-      messages[message.header.step] = message;
-    }
-  }
-
-  /// The first STATUS in which somebody has lost a channel, and how long it had been silent then.
-  struct Loss {
-    std::int64_t step;
-    double age_s;
-    std::string reporter;
-    std::string culprit_channel;
-  };
-  std::optional<Loss> FirstLossOf(const std::string& channel) const {
-    for (const status_t& said : status) {
-      if (said.role == NameOf(Role::kRecorder)) continue;
-      for (std::size_t i = 0; i < said.input.size(); ++i) {
-        if (said.input[i] != channel || said.input_state[i] != status_t::INPUT_LOST) continue;
-        return Loss{.step = said.header.utime / 100'000,
-                    .age_s = static_cast<double>(said.input_age_us[i]) * 1e-6,
-                    .reporter = said.role,
-                    .culprit_channel = said.waiting_for};
-      }
-    }
-    return std::nullopt;
-  }
-
-  std::map<std::int64_t, truth_t> truth;
-  std::map<std::int64_t, arbitration_t> command;
-  std::map<std::int64_t, driver_command_t> driver;
-  std::map<std::int64_t, accel_command_t> automation;
-  std::vector<status_t> status;
-};
-
-/// What the host's acceleration in the step after `step` may be, given what the log says of it.
-void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
-  for (std::int64_t step = from; step < to; ++step) {
-    ASSERT_TRUE(log.truth.contains(step + 1)) << step;
-    const double applied = log.truth.at(step + 1).host_acceleration_mps2;
-    if (!log.command.contains(step)) {
-      EXPECT_NEAR(applied, log.truth.at(step).host_acceleration_mps2, kRounding)
-          << "held at step " << step;
-      continue;
-    }
-    const arbitration_t& command = log.command.at(step);
-    EXPECT_NEAR(applied, command.acceleration_mps2, kRounding) << "at step " << step;
-    if (command.mode == arbitration_t::HUMAN && log.driver.contains(step)) {
-      EXPECT_NEAR(command.acceleration_mps2, log.driver.at(step).acceleration_mps2, kRounding);
-    }
-  }
-}
-
-/// From `step` on the host brakes to standstill within the limits, and stays there.
-void ExpectStandstillWithinLimits(const Log& log, std::int64_t step) {
-  const truth_t& last = log.truth.rbegin()->second;
-  EXPECT_EQ(last.host_speed_mps, 0) << "does not stand at the end";
-  bool stood = false;
-  for (std::int64_t k = step; k < last.header.step; ++k) {
-    const truth_t& before = log.truth.at(k);
-    const truth_t& after = log.truth.at(k + 1);
-    const double jerk = (after.host_acceleration_mps2 - before.host_acceleration_mps2) / kStepS;
-    EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
-    EXPECT_GE(after.host_acceleration_mps2, -kDecelerationMps2 - kRounding) << "step " << k;
-    EXPECT_TRUE(!stood || after.host_speed_mps == 0) << "drives off at step " << k;
-    stood = stood || after.host_speed_mps == 0;
-  }
-}
-
-void ExpectNoCollision(const Log& log) {
-  for (const auto& [step, truth] : log.truth) {
-    ASSERT_EQ(truth.collision, truth_t::COLLISION_NONE) << "step " << step;
-  }
-}
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   RealtimeRun run("scenario/paper.json", 60);
@@ -193,11 +128,13 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   EXPECT_EQ(realtime["missed_messages"], 0) << realtime.dump(2);
   EXPECT_EQ(realtime["ticks"], 60);
   EXPECT_GT(realtime["latency_p50_us"], 0);
-  if (realtime["deadline_misses"] == 0) {
-    const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
-                                         "--set", "/steps=60", "--transport", "direct"});
-    EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
+  if (realtime["deadline_misses"] != 0) {
+    GTEST_SKIP() << "this machine was too busy: " << realtime["deadline_misses"]
+                 << " steps had to do without an input, so their results differ";
   }
+  const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
+                                       "--set", "/steps=60", "--transport", "direct"});
+  EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
 }
 
 /// How a role fails, in which scenario.
@@ -225,48 +162,131 @@ std::string ChannelOfRole(const std::string& role) {
   return name;
 }
 
-void Judge(const Log& log, const Fault& fault, const nlohmann::json& result) {
-  SCOPED_TRACE(result["realtime"].dump());
-  ExpectNoCollision(log);
-  const std::int64_t last = log.truth.rbegin()->first;
-  EXPECT_EQ(log.truth.size(), static_cast<std::size_t>(last + 1)) << "steps are left out";
-  if (fault.role == "recorder") return ExpectCommandsAreCarriedOut(log, 1, last);
-  const auto loss = log.FirstLossOf(ChannelOfRole(fault.role));
-  // Who is killed may be back before anybody misses it.
-  if (!loss && fault.signal == SIGKILL) return ExpectCommandsAreCarriedOut(log, 1, last);
-  ASSERT_TRUE(loss);
-  EXPECT_LE(loss->age_s, 3 * kPeriodS);
-  EXPECT_EQ(loss->culprit_channel, ChannelOfRole(fault.role)) << loss->reporter;
-  const std::int64_t begin = loss->step;
-  if (fault.role == "arbitrator") {
-    // The vehicle stops by itself, from the next step on, whatever the next arbitrator says.
-    EXPECT_LT(log.truth.at(begin + 2).host_acceleration_mps2,
-              log.truth.at(begin).host_acceleration_mps2);
-    ExpectStandstillWithinLimits(log, begin);
-  } else if (fault.role == "world" || fault.role == "follower" || fault.role == "driver") {
-    // The host is none the worse for it.
-    ExpectCommandsAreCarriedOut(log, 1, last);
-  } else {
-    ASSERT_TRUE(log.command.contains(begin + 1));
-    EXPECT_EQ(log.command.at(begin + 1).mode, arbitration_t::HUMAN);
-    ExpectCommandsAreCarriedOut(log, 1, last);
+/// When a fault happens, in which run.
+struct Plan {
+  int fault_step = 60;  // the automation drives, and nothing else goes on
+  int steps = 140;
+  double speed = kSpeed;
+  std::vector<std::string> settings;
+};
+
+Plan PlanOf(const Fault& fault) {
+  Plan plan;
+  if (fault.role == "arbitrator" || fault.role == "follower") {
+    plan.steps = plan.fault_step + kManoeuvre;
+  } else if (fault.role == "driver") {
+    // He is wanted some 20 steps after the fault: 13 steps into the fog of the paper, 120 into the
+    // dense one. A process that is stopped is missing for 50.
+    const bool dense = fault.scenario == "dense_fog";
+    plan.fault_step = dense ? 100 : 60;
+    plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
+    plan.steps = plan.fault_step + 40 + kManoeuvre;
+  } else if (fault.role == "recorder") {
+    // Until its silence counts as a hang a second passes: not more periods than the others keep
+    // their messages for it.
+    plan.speed = 2;
   }
+  return plan;
+}
+
+// The vehicle stops by itself, and the next arbitrator takes part in that.
+void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
+  EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
+            log.truth.at(lost).host_acceleration_mps2);
+  ExpectStandstillWithinLimits(log, lost, Host);
+  const auto of_next = log.command.upper_bound(lost + kNews);
+  EXPECT_NE(of_next, log.command.end()) << "no arbitrator came back";
+  ExpectMode(
+      log, lost + kNews, log.last(),
+      [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
+}
+
+// The host goes on as it did; the following car stops.
+void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  ExpectFollowerObeys(log, 1, lost);
+  EXPECT_LT(Follower(log.truth.at(lost + 1 + kInForce)).acceleration_mps2,
+            Follower(log.truth.at(lost)).acceleration_mps2);
+  ExpectStandstillWithinLimits(log, lost, Follower);
+}
+
+// The automation drives alone, until the human is wanted and is not there.
+void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
+                        std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  const std::int64_t trusted = silence.back + kRecoverSteps - 1;
+  ExpectMode(
+      log, lost + kInForce, trusted, [](std::int8_t mode) { return mode != arbitration_t::HUMAN; },
+      "nobody but the automation can drive");
+  const auto wanted =
+      std::find_if(log.command.lower_bound(lost + kInForce), log.command.end(),
+                   [](const auto& at) { return at.second.doc >= at.second.threshold; });
+  const bool in_vain = wanted != log.command.end() && wanted->first < trusted;
+  if (fault.signal == SIGSTOP) {
+    ASSERT_TRUE(in_vain) << "he was not wanted in his absence";
+  }
+  if (!in_vain) return;
+  ExpectMode(
+      log, wanted->first, log.last(),
+      [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; },
+      "the human was wanted in vain");
+  ExpectStandstillWithinLimits(log, wanted->first, Host);
+}
+
+// The human drives until the automation has been there again for a while.
+void JudgeWithoutAutomation(const Log& log, const Log::Silence& silence, std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  ASSERT_TRUE(log.command.contains(lost + kInForce));
+  ExpectMode(
+      log, lost + kInForce, silence.back + kRecoverSteps - 1,
+      [](std::int8_t mode) { return mode == arbitration_t::HUMAN; }, "the automation is lost");
+  EXPECT_EQ(log.command.rbegin()->second.mode, arbitration_t::AUTOMATION) << "never again";
+}
+
+void Judge(const Log& log, const Fault& fault, std::int64_t fault_step) {
+  ExpectNoCollision(log);
+  EXPECT_EQ(log.truth.size(), static_cast<std::size_t>(log.last() + 1)) << "steps are left out";
+  ASSERT_EQ(log.command.at(fault_step - 1).mode, arbitration_t::AUTOMATION);
+  const std::string channel = ChannelOfRole(fault.role);
+  if (fault.role == "recorder") return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  const auto loss = log.FirstLossOf(channel, fault_step);
+  if (!loss) {
+    // Who is killed may be back before anybody misses it.
+    ASSERT_EQ(fault.signal, SIGKILL) << "nobody missed it";
+    EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "nobody missed it";
+    ExpectFollowerObeys(log, 1, log.last());
+    return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  }
+  const Log::Silence silence = log.SilenceAt(channel, loss->step);
+  EXPECT_LE(loss->step - silence.before, kDetection);
+  EXPECT_EQ(loss->culprit_channel, channel) << loss->reporter;
+  if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
+  if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
+  if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
+  // Time stands still without the world: nothing else changes.
+  if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  JudgeWithoutAutomation(log, silence, loss->step);
 }
 
 class FaultInRealtimeTest : public testing::TestWithParam<Fault> {};
 
 TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) {
   const Fault& fault = GetParam();
-  // From 20 m/s the manoeuvre takes 21 s.
-  const int steps = fault.role == "arbitrator" ? kFaultStep + 230 : kFaultStep + 80;
-  // Until the recorder's silence counts as a hang a second passes: not more periods than the others
-  // keep their messages for it.
-  const double speed = fault.role == "recorder" ? 2 : kSpeed;
-  RealtimeRun run("scenario/" + fault.scenario + ".json", steps, speed);
-  run.WaitForStep(kFaultStep);
-  run.Signal(fault.role, fault.signal);
+  const Plan plan = PlanOf(fault);
+  RealtimeRun run("scenario/" + fault.scenario + ".json", plan.steps, plan.speed, plan.settings);
+  run.WaitForStep(plan.fault_step);
+  const std::int64_t step = run.Signal(fault.role, fault.signal);
+  if (fault.role == "world") {
+    // Steps cannot tell how long it was silent. One period more for this process to hear of it.
+    const auto missed = run.WaitForTheWorldToBeMissed();
+    EXPECT_TRUE(missed || fault.signal == SIGKILL) << "nobody missed it";
+    if (missed) {
+      EXPECT_LE(std::chrono::duration<double>(*missed).count(), (kDetection + 1) * kPeriodS);
+    }
+  }
   const auto result = run.Finish();
-  Judge(Log(run.log()), fault, result);
+  SCOPED_TRACE(result["realtime"].dump());
+  Judge(Log(run.log()), fault, step);
 }
 
 std::vector<Fault> EveryFault() {

@@ -123,6 +123,7 @@ nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {
     if (!fallback.culprit.empty()) entry["culprit"] = fallback.culprit;
     json["fallbacks"].push_back(std::move(entry));
   }
+  json["fallbacks_left_out"] = figures.fallbacks_left_out;
   return json;
 }
 
@@ -134,6 +135,9 @@ std::string RealtimeText(const RealtimeFigures& figures) {
   });
   for (const Fallback& fallback : figures.fallbacks) {
     text += fmt::format("  {}\n", fallback.Text());
+  }
+  if (figures.fallbacks_left_out > 0) {
+    text += fmt::format("  ... and {} more\n", figures.fallbacks_left_out);
   }
   return text;
 }

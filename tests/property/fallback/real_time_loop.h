@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "services/acc/acc.h"
 #include "services/arbitrator/failsafe_arbitrator.h"
@@ -29,7 +30,8 @@ class Line {
   Line(const HealthSection& section, Duration period) : health_(section, period, TimePoint()) {}
 
   void Send(const M& message, TimePoint now) {
-    if (health_.Arrived(message.header.step, now)) newest_ = message;
+    if (message.header.step > health_.newest()) newest_ = message;
+    health_.Arrived(message.header.step, now);
   }
   Heard<M> At(TimePoint now) { return {health_.Update(now), newest_ ? &*newest_ : nullptr}; }
   /// Something of this step may still come.
@@ -42,10 +44,12 @@ class Line {
   std::optional<M> newest_;
 };
 
-/// What is to be seen of a step: its truth, the arbitrator's command for it (nullptr if it is
-/// silent), and the command that the vehicle carries out in it.
+/// What is to be seen of a step: its truth, the offers and the arbitrator's command for it (nullptr
+/// from who is silent), and the command that the vehicle carries out in it.
 struct Moment {
   const truth_t& truth;
+  const accel_command_t* automation;
+  const driver_command_t* human;
   const arbitration_t* sent;
   const arbitration_t& carried_out;
   const FailsafeArbitrator& arbitrator;
@@ -89,11 +93,11 @@ class RealTimeLoop {
       const auto& [truth, ego] = *output;
       const std::int64_t step = truth.header.step;
       const TimePoint tick = TimePoint() + step * period_;
-      Offers(truth, ego, tick + kTravel);
+      const auto [automation, human] = Offers(truth, ego, tick + kTravel);
       const arbitration_t* sent = nullptr;
       if (Speaks(Role::kArbitrator, step)) sent = &Arbitrate(ego, tick + 2 * kTravel);
       vehicle_.Step(truth, hosts_.At(tick + period_), followers_.At(tick + period_));
-      visit(Moment{truth, sent, vehicle_.host(), arbitrator_, vehicle_});
+      visit(Moment{truth, automation, human, sent, vehicle_.host(), arbitrator_, vehicle_});
       if (truth.last) break;
       output = &world_.Step(vehicle_.host(), vehicle_.followers());
     }
@@ -106,7 +110,11 @@ class RealTimeLoop {
     return step < silent_from_[static_cast<std::size_t>(role)];
   }
 
-  void Offers(const truth_t& truth, const ego_t& ego, TimePoint now) {
+  std::pair<const accel_command_t*, const driver_command_t*> Offers(const truth_t& truth,
+                                                                    const ego_t& ego,
+                                                                    TimePoint now) {
+    const accel_command_t* automation = nullptr;
+    const driver_command_t* human = nullptr;
     const std::int64_t step = truth.header.step;
     const auto* radar = Speaks(Role::kRadar, step) ? &radar_.Step(truth) : nullptr;
     const auto* lidar = Speaks(Role::kLidar, step) ? &lidar_.Step(truth) : nullptr;
@@ -115,10 +123,13 @@ class RealTimeLoop {
     if (radar != nullptr && lidar != nullptr && Speaks(Role::kFusion, step)) {
       const track_t& track = fusion_.Step(ego, *radar, *lidar);
       tracks_.Send(track, now);
-      if (Speaks(Role::kAcc, step)) automation_.Send(acc_.Step(ego, track), now);
+      if (Speaks(Role::kAcc, step)) automation = &acc_.Step(ego, track);
     }
-    if (Speaks(Role::kDriver, step)) drivers_.Send(driver_.Step(truth), now);
+    if (Speaks(Role::kDriver, step)) human = &driver_.Step(truth);
+    if (automation != nullptr) automation_.Send(*automation, now);
+    if (human != nullptr) drivers_.Send(*human, now);
     if (Speaks(Role::kFollower, step)) followers_.Send(follower_.Step(truth), now);
+    return {automation, human};
   }
 
   // At once if nothing is missing that may still come, at the deadline otherwise.

@@ -27,6 +27,37 @@ Scenario Shipped(const std::string& name) {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/" + name, {});
 }
 
+// The longest manoeuvre from the speeds of these scenarios.
+constexpr std::int64_t kManoeuvre = 260;  // steps
+
+// Holds what a car does, moment by moment, against the limits of the manoeuvre.
+class Braking {
+ public:
+  explicit Braking(const Scenario& scenario)
+      : limits_(scenario.minimal_risk), step_s_(scenario.step_s) {}
+
+  /// @param in_force in the step that begins now
+  void Take(bool in_force, double speed_mps, double applied_mps2) {
+    if (in_force_) {
+      ASSERT_LE(std::abs(applied_mps2 - last_mps2_), limits_.jerk_mps3 * step_s_ + kRounding);
+      // One that braked harder before releases the brake.
+      ASSERT_GE(applied_mps2, std::min(-limits_.deceleration_mps2, last_mps2_) - kRounding);
+      ASSERT_TRUE(!stands_ || speed_mps == 0) << "drives off";
+      stands_ = speed_mps == 0;
+    }
+    in_force_ = in_force;
+    last_mps2_ = applied_mps2;
+  }
+  bool stands() const { return stands_; }
+
+ private:
+  MinimalRiskSection limits_;
+  double step_s_;
+  bool in_force_ = false;
+  bool stands_ = false;
+  double last_mps2_ = 0;
+};
+
 class SilentRolesTest : public testing::TestWithParam<const char*> {
  protected:
   // Runs with these roles silent, from every so many steps on: check(silent from, moment).
@@ -55,7 +86,28 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }
 
+  // From `death` on the host must come to a standstill.
+  void CheckHostStops(std::int64_t death, const Moment& m) {
+    CheckStops(death, m, m.truth.host_speed_mps, m.truth.host_acceleration_mps2);
+  }
+  void CheckFollowerStops(std::int64_t death, const Moment& m) {
+    CheckStops(death, m, m.truth.follower_speed_mps.at(0),
+               m.truth.follower_acceleration_mps2.at(0));
+  }
+
   Scenario scenario_ = Shipped(GetParam());
+
+ private:
+  void CheckStops(std::int64_t death, const Moment& m, double speed_mps, double applied_mps2) {
+    if (m.truth.header.step == 0) braking_ = Braking(scenario_);
+    ASSERT_NO_FATAL_FAILURE(braking_.Take(Due(death, m), speed_mps, applied_mps2))
+        << "at step " << m.truth.header.step;
+    if (m.truth.last && death + kManoeuvre < scenario_.steps) {
+      ASSERT_TRUE(braking_.stands());
+    }
+  }
+
+  Braking braking_{scenario_};
 };
 
 TEST_P(SilentRolesTest, NobodySilentIsTheLockstepRun) {
@@ -74,25 +126,35 @@ TEST_P(SilentRolesTest, TheHumanDrivesWithoutASensorTheTrackOrTheAutomation) {
   for (const Role role : {Role::kRadar, Role::kLidar, Role::kFusion, Role::kAcc}) {
     SCOPED_TRACE(NameOf(role));
     ForEachDeath({role}, [&](std::int64_t death, const Moment& m) {
-      if (Due(death, m)) {
-        ASSERT_EQ(m.carried_out.mode, arbitration_t::HUMAN);
-      }
+      if (!Due(death, m)) return;
+      ASSERT_EQ(m.carried_out.mode, arbitration_t::HUMAN);
+      ASSERT_EQ(m.carried_out.acceleration_mps2, m.human->acceleration_mps2);
     });
   }
 }
 
 TEST_P(SilentRolesTest, WithoutTheHumanTheAutomationDrivesUntilTheConflictAsksForHim) {
+  bool asked = false;
   ForEachDeath({Role::kDriver}, [&](std::int64_t death, const Moment& m) {
+    if (m.truth.header.step == 0) asked = false;
     if (!Due(death, m)) return;
-    ASSERT_NE(m.carried_out.mode, arbitration_t::HUMAN);
-    if (m.carried_out.doc >= m.carried_out.threshold) {
+    asked = asked || m.carried_out.doc >= m.carried_out.threshold ||
+            m.carried_out.mode == arbitration_t::MINIMAL_RISK;
+    if (asked) {
       ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+      ASSERT_GE(m.carried_out.acceleration_mps2, std::min(-scenario_.minimal_risk.deceleration_mps2,
+                                                          m.truth.host_acceleration_mps2) -
+                                                     kRounding);
+    } else {
+      ASSERT_EQ(m.carried_out.mode, arbitration_t::AUTOMATION);
+      ASSERT_EQ(m.carried_out.acceleration_mps2, m.automation->acceleration_mps2);
     }
   });
 }
 
 TEST_P(SilentRolesTest, TheHostStopsWithoutHumanAndAutomation) {
   ForEachDeath({Role::kDriver, Role::kAcc}, [&](std::int64_t death, const Moment& m) {
+    CheckHostStops(death, m);
     if (!Due(death, m)) return;
     ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
     ASSERT_FALSE(m.vehicle.host_stops_by_itself());
@@ -101,20 +163,20 @@ TEST_P(SilentRolesTest, TheHostStopsWithoutHumanAndAutomation) {
 
 TEST_P(SilentRolesTest, TheVehicleStopsByItselfWithoutTheArbitrator) {
   ForEachDeath({Role::kArbitrator}, [&](std::int64_t death, const Moment& m) {
+    CheckHostStops(death, m);
     if (!Due(death, m)) return;
-    ASSERT_TRUE(m.vehicle.host_stops_by_itself());
     ASSERT_EQ(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
-    ASSERT_GE(m.carried_out.acceleration_mps2,
-              std::min(-scenario_.minimal_risk.deceleration_mps2, m.truth.host_acceleration_mps2) -
-                  kRounding);
+    ASSERT_TRUE(m.vehicle.host_stops_by_itself());
   });
 }
 
 TEST_P(SilentRolesTest, TheFollowingCarStopsByItselfWithoutItsDriver) {
   ForEachDeath({Role::kFollower}, [&](std::int64_t death, const Moment& m) {
+    CheckFollowerStops(death, m);
     if (!Due(death, m)) return;
     ASSERT_TRUE(m.vehicle.follower_in_minimal_risk());
     ASSERT_NE(m.carried_out.mode, arbitration_t::MINIMAL_RISK);
+    ASSERT_EQ(m.carried_out.acceleration_mps2, m.sent->acceleration_mps2);
   });
 }
 

@@ -95,44 +95,41 @@ InputState StateOf(Offer offer) {
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const FailsafeRow& row : kFailsafeTable) {
-    for (const Offer ego : {kThere, kNotYet, kGone}) {
-      for (const Offer automation : {kThere, kNotYet, kGone}) {
-        for (const Offer human : {kThere, kNotYet, kGone}) {
-          for (const Conflict conflict : {kCalm, kDisputed}) {
-            if (!Applies(row, ego, automation, human, conflict)) continue;
-            ++cases;
-            SCOPED_TRACE("case " + std::to_string(cases));
-            arbitrator_ = FailsafeArbitrator(SomeScenario());
-            SetAll(InputState::kOk);
-            radar_.range_m = lidar_.range_m + (conflict == kDisputed ? 5 : 0);
-            Set(inputs_.ego, StateOf(ego), ego_);
-            Set(inputs_.automation, StateOf(automation), automation_);
-            Set(inputs_.driver, StateOf(human), driver_);
-            const arbitration_t& out = Step();
-            EXPECT_EQ(arbitrator_.decision(), row.decision);
-            switch (row.decision) {
-              case Decision::kRegular:
-                conflict == kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
-                break;
-              case Decision::kAutomation:
-                ExpectAutomation(out);
-                break;
-              case Decision::kHuman:
-                ExpectHuman(out);
-                break;
-              case Decision::kHold:
-                EXPECT_EQ(out.acceleration_mps2, ego == kThere ? kApplied_mps2 : 0);
-                break;
-              case Decision::kMinimalRisk:
-                ExpectMinimalRisk(out, kApplied_mps2 - 0.2);
-                break;
-            }
+    for (const Offer automation : {kThere, kNotYet, kGone}) {
+      for (const Offer human : {kThere, kNotYet, kGone}) {
+        for (const Conflict conflict : {kCalm, kDisputed}) {
+          if (!Applies(row, automation, human, conflict)) continue;
+          ++cases;
+          SCOPED_TRACE("case " + std::to_string(cases));
+          arbitrator_ = FailsafeArbitrator(SomeScenario());
+          SetAll(InputState::kOk);
+          radar_.range_m = lidar_.range_m + (conflict == kDisputed ? 5 : 0);
+          Set(inputs_.automation, StateOf(automation), automation_);
+          Set(inputs_.driver, StateOf(human), driver_);
+          const arbitration_t& out = Step();
+          EXPECT_EQ(arbitrator_.decision(), row.decision);
+          switch (row.decision) {
+            case Decision::kRegular:
+              conflict == kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
+              break;
+            case Decision::kAutomation:
+              ExpectAutomation(out);
+              break;
+            case Decision::kHuman:
+              ExpectHuman(out);
+              break;
+            case Decision::kHold:
+              EXPECT_EQ(out.acceleration_mps2, kApplied_mps2);
+              break;
+            case Decision::kMinimalRisk:
+              ExpectMinimalRisk(out, kApplied_mps2 - 0.2);
+              break;
           }
         }
       }
     }
   }
-  EXPECT_EQ(cases, 3 * 3 * 3 * 2);
+  EXPECT_EQ(cases, 3 * 3 * 2);
 }
 
 TEST_F(FailsafeArbitratorTest, CopiesTheHeaderOfItsStep) {
@@ -183,6 +180,26 @@ TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
   ExpectHuman(Step());
 }
 
+TEST_F(FailsafeArbitratorTest, CountsThePairOfAStepOnce) {
+  Scenario scenario = SomeScenario();
+  scenario.arbitrator.window_steps = 4;
+  arbitrator_ = FailsafeArbitrator(scenario);
+  // GIVEN differences of 0, 0 and 2 m
+  Step();
+  Step();
+  radar_.range_m = lidar_.range_m + 2;
+  const double conflict_m = Step().conflict_m;
+  EXPECT_NEAR(conflict_m, 2.0 / 3, 1e-12);
+  // WHEN the LiDAR says nothing more
+  inputs_.lidar.state = InputState::kStale;
+  // THEN the last difference gains no weight by that
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(Step().conflict_m, conflict_m);
+  // AND the next pair takes its place in turn
+  inputs_.lidar.state = InputState::kOk;
+  radar_.range_m = lidar_.range_m;
+  EXPECT_NEAR(Step().conflict_m, 2.0 / 4, 1e-12);
+}
+
 TEST_F(FailsafeArbitratorTest, StopsWhenTheHumanIsLostAndTheConflictAsksForHim) {
   inputs_.driver.state = InputState::kLost;
   ExpectAutomation(Step());
@@ -199,7 +216,6 @@ TEST_F(FailsafeArbitratorTest, NeverLeavesTheMinimalRiskManoeuvre) {
   ego_.speed_mps = 0;
   for (int k = 0; k < 100; ++k) Step();
   ExpectMinimalRisk(Step(), 0);
-  EXPECT_TRUE(arbitrator_.standing());
 }
 
 TEST_F(FailsafeArbitratorTest, StopsOnDemand) {
@@ -207,12 +223,6 @@ TEST_F(FailsafeArbitratorTest, StopsOnDemand) {
   arbitrator_.DemandMinimalRisk();
   ExpectMinimalRisk(Step(), kApplied_mps2 - 0.2);
   EXPECT_EQ(arbitrator_.decision(), Decision::kMinimalRisk);
-}
-
-TEST_F(FailsafeArbitratorTest, BeginsFromItsLastCommandWithoutOdometry) {
-  ExpectAutomation(Step());
-  inputs_.ego.state = InputState::kLost;
-  ExpectMinimalRisk(Step(), kAutomation_mps2 - 0.2);
 }
 
 TEST_F(FailsafeArbitratorTest, HandsBackOnceTheAutomationIsThereAgain) {

@@ -1,7 +1,6 @@
 #include "services/minimal_risk/minimal_risk.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -9,12 +8,11 @@ namespace fogline {
 namespace {
 
 constexpr double kStep_s = 0.1;
-constexpr MinimalRiskSection kLimits{
-    .deceleration_mps2 = 3, .jerk_mps3 = 2, .standstill_mps = 0.01};
+constexpr MinimalRiskSection kLimits{.deceleration_mps2 = 3, .jerk_mps3 = 2};
 
 TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(30, 0.5);
+  manoeuvre.Begin(0.5);
   double expected = 0.5;
   for (int k = 0; k < 30; ++k) {
     expected = std::max(-3.0, expected - 2 * kStep_s);
@@ -25,7 +23,7 @@ TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
 // r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, exactly released in 5 steps of 0.2.
 TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(0.3, -1.0);
+  manoeuvre.Begin(-1.0);
   double speed_mps = 0.3;
   for (const double expected : {-1.0, -0.8, -0.6, -0.4, -0.2}) {
     const double command = manoeuvre.Step(speed_mps);
@@ -37,7 +35,7 @@ TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
 
 TEST(MinimalRiskTest, ReleasesABrakeThatIsHarderThanItsLimitGently) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(30, -9);
+  manoeuvre.Begin(-9);
   EXPECT_NEAR(manoeuvre.Step(30), -8.8, 1e-12);
   for (int k = 0; k < 100; ++k) manoeuvre.Step(30);
   EXPECT_NEAR(manoeuvre.Step(30), -3, 1e-12);
@@ -46,51 +44,24 @@ TEST(MinimalRiskTest, ReleasesABrakeThatIsHarderThanItsLimitGently) {
 TEST(MinimalRiskTest, BeginsOnce) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
   EXPECT_FALSE(manoeuvre.begun());
-  manoeuvre.Begin(30, 0);
+  manoeuvre.Begin(0);
   manoeuvre.Step(30);
-  manoeuvre.Begin(30, 5);
+  manoeuvre.Begin(5);
   EXPECT_TRUE(manoeuvre.begun());
   EXPECT_NEAR(manoeuvre.Step(30), -0.4, 1e-12);
 }
 
 TEST(MinimalRiskTest, HoldsACarThatStands) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(0, 0);
-  for (int k = 0; k < 10; ++k) {
-    EXPECT_EQ(manoeuvre.Step(0), 0);
-    EXPECT_TRUE(manoeuvre.standing());
-  }
-}
-
-TEST(MinimalRiskTest, StandsAtTheSpeedThatTheScenarioCallsStandstill) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(0.011, 0);
-  manoeuvre.Step(0.011);
-  EXPECT_FALSE(manoeuvre.standing());
-  manoeuvre.Step(0.01);
-  EXPECT_TRUE(manoeuvre.standing());
+  manoeuvre.Begin(0);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(manoeuvre.Step(0), 0);
 }
 
 TEST(MinimalRiskTest, BrakesACarThatRollsAgain) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
-  manoeuvre.Begin(0, 0);
+  manoeuvre.Begin(0);
   manoeuvre.Step(0);
   EXPECT_LT(manoeuvre.Step(1), 0);
-  EXPECT_FALSE(manoeuvre.standing());
-}
-
-TEST(MinimalRiskTest, GoesOnFromItsOwnCommandsWithoutASpeed) {
-  MinimalRisk blind(kLimits, kStep_s);
-  MinimalRisk seeing(kLimits, kStep_s);
-  blind.Begin(5, 1);
-  seeing.Begin(5, 1);
-  double speed_mps = 5;
-  for (int k = 0; k < 100; ++k) {
-    const double command = seeing.Step(speed_mps);
-    EXPECT_EQ(blind.Step(std::nullopt), command) << k;
-    speed_mps = std::max(0.0, speed_mps + command * kStep_s);
-  }
-  EXPECT_TRUE(blind.standing());
 }
 
 }  // namespace

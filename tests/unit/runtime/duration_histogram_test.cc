@@ -80,19 +80,5 @@ TEST(DurationHistogramTest, AgreesWithSorting) {
   }
 }
 
-TEST(DurationHistogramTest, TheSumOfTwoIsThatOfAllTheirDurations) {
-  DurationHistogram both;
-  DurationHistogram a;
-  DurationHistogram b;
-  for (int us = 1; us < 3000; us += 7) {
-    (us % 2 == 0 ? a : b).Add(microseconds(us));
-    both.Add(microseconds(us));
-  }
-  a.Add(b);
-  EXPECT_EQ(a.count(), both.count());
-  EXPECT_EQ(a.MaxUs(), both.MaxUs());
-  for (const double q : {0.1, 0.5, 0.99}) EXPECT_EQ(a.QuantileUs(q), both.QuantileUs(q));
-}
-
 }  // namespace
 }  // namespace fogline

@@ -75,7 +75,8 @@ TEST_F(LeadGateTest, CountsWhatIsNoStatusOfItsRun) {
   script_.bus().Drain();
   EXPECT_EQ(own_.foreign, 1);
   EXPECT_EQ(own_.wrong_type, 1);
-  EXPECT_EQ(gate_.recorded(), -1);
+  Go(0, -1);
+  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
 }
 
 TEST_F(LeadGateTest, HoldsTheWorldToThePace) {

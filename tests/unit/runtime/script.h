@@ -18,7 +18,7 @@ class Script {
  public:
   static constexpr std::int64_t kRunId = 7;
 
-  Script() : text_(PrintScenario(Scenario{})) {}
+  explicit Script(const Scenario& scenario = {}) : text_(PrintScenario(scenario)) {}
 
   Bus& bus() { return bus_; }
   const std::string& text() const { return text_; }
@@ -42,7 +42,7 @@ class Script {
     std::vector<std::uint8_t> bytes;
     Encode(message, bytes);
     bus_.Publish(ChannelOf<M>().name, bytes);
-    bus_.Drain();
+    if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() looks at the clock
   }
 
   /// A message of a step, all zero but for the header.
@@ -54,11 +54,14 @@ class Script {
   }
 
   /// The runner announces the run, all parts of the scenario.
-  void SayRun(std::int8_t phase, std::int64_t progress) {
+  /// @param speed of a run in real time, 0 for one in lockstep
+  void SayRun(std::int8_t phase, std::int64_t progress, double speed = 0) {
     const std::vector<std::string> parts = SplitScenario(text_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       run_t run = MakeRunPart(kRunId, phase, 0, HashOf(text_), parts, i);
       run.progress = progress;
+      run.realtime = speed > 0 ? 1 : 0;
+      run.pace = speed;
       Say(run);
     }
   }
@@ -81,7 +84,7 @@ class Script {
   std::string text_;
   std::int64_t sequence_ = 0;  // of what the runner says
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
-             std::vector<driver_command_t>>
+             std::vector<driver_command_t>, std::vector<track_t>, std::vector<arbitration_t>>
       heard_;
   Bus bus_{"memq://"};
 };

@@ -101,10 +101,26 @@ TEST_F(VehicleFallbackTest, StopsTheFollowerWithoutTheHost) {
   EXPECT_EQ(fallback_.host().acceleration_mps2, 1.5);
 }
 
-TEST_F(VehicleFallbackTest, TakesACommandForNoCarAsNone) {
+TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   Follower(kOk, &follower_);
+  now_.follower_acceleration_mps2 = {-1.5};
+  // WHEN messages come in time, but none for the car
   const follower_command_t nobody{};
+  // THEN the last command holds as long as one that is stale, and then the car stops
   EXPECT_EQ(Follower(kOk, &nobody), -1.5);
+  EXPECT_EQ(fallback_.follower_state(), kStale);
+  EXPECT_NEAR(Follower(kOk, &nobody), -1.5 - 0.2, 1e-12);
+  EXPECT_TRUE(fallback_.follower_in_minimal_risk());
+}
+
+TEST_F(VehicleFallbackTest, ForgivesACommandForNoCarWhenTheNextOneIsForIt) {
+  const follower_command_t nobody{};
+  for (int k = 0; k < 20; ++k) {
+    Follower(kOk, &nobody);
+    EXPECT_EQ(Follower(kOk, &follower_), -1.5);
+  }
+  EXPECT_EQ(fallback_.follower_state(), kOk);
+  EXPECT_FALSE(fallback_.follower_in_minimal_risk());
 }
 
 TEST_F(VehicleFallbackTest, FollowsTheManoeuvreThatTheArbitratorCommands) {

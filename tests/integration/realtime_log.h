@@ -1,0 +1,185 @@
+// What the log of a run in real time says, and what must be true of the cars in it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/wire.h"
+
+namespace fogline::test {
+
+inline constexpr double kStepS = 0.1;
+inline constexpr std::int64_t kStepUs = 100'000;
+// Defaults of the sections health and minimal_risk.
+inline constexpr std::int64_t kRecoverSteps = 5;
+inline constexpr double kDecelerationMps2 = 1;
+inline constexpr double kJerkMps3 = 1;
+// Rounding of numbers near 100 m.
+inline constexpr double kRounding = 1e-9;
+
+/// A log in real time, by step.
+struct Log {
+  explicit Log(const std::string& file) {
+    EventLogReader reader(file);
+    while (const auto event = reader.Next()) {
+      Take(event->channel, event->data, truth);
+      Take(event->channel, event->data, command);
+      Take(event->channel, event->data, driver);
+      Take(event->channel, event->data, follower);
+      if (event->data.size() >= kHeaderEnd) {
+        steps[std::string(event->channel)].insert(ReadInt64(event->data, kStepOffset));
+      }
+      status_t heard{};
+      if (event->channel == ChannelOf<status_t>().name && Decode(event->data, heard)) {
+        status.push_back(heard);
+      }
+    }
+  }
+
+  template <class M>
+  static void Take(std::string_view channel, Bytes data, std::map<std::int64_t, M>& messages) {
+    M message{};
+    if (channel == ChannelOf<M>().name && Decode(data, message)) {
+      messages[message.header.step] = message;
+    }
+  }
+
+  std::int64_t last() const { return truth.rbegin()->first; }
+
+  /// The first STATUS from a step on in which somebody has lost a channel.
+  struct Loss {
+    std::int64_t step;  // that was under way
+    std::string reporter;
+    std::string culprit_channel;
+  };
+  std::optional<Loss> FirstLossOf(const std::string& channel, std::int64_t from) const {
+    for (const status_t& said : status) {
+      if (said.role == NameOf(Role::kRecorder) || said.header.utime < from * kStepUs) continue;
+      for (std::size_t i = 0; i < said.input.size(); ++i) {
+        if (said.input[i] != channel || said.input_state[i] != status_t::INPUT_LOST) continue;
+        return Loss{.step = said.header.utime / kStepUs,
+                    .reporter = said.role,
+                    .culprit_channel = said.waiting_for};
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// The silence of a channel that lasts at a step: its last step before, and the first one after
+  /// (last() + 1 if it does not come back).
+  struct Silence {
+    std::int64_t before;
+    std::int64_t back;
+  };
+  Silence SilenceAt(const std::string& channel, std::int64_t step) const {
+    const std::set<std::int64_t>& there = steps.at(channel);
+    const auto after = there.upper_bound(step);
+    return {.before = after == there.begin() ? -1 : *std::prev(after),
+            .back = after == there.end() ? last() + 1 : *after};
+  }
+
+  /// The most steps in succession that a channel lacks from a step on.
+  std::int64_t LongestSilence(const std::string& channel, std::int64_t from) const {
+    std::int64_t longest = 0;
+    std::int64_t silent = 0;
+    for (std::int64_t step = from; step <= last(); ++step) {
+      silent = steps.at(channel).contains(step) ? 0 : silent + 1;
+      longest = std::max(longest, silent);
+    }
+    return longest;
+  }
+
+  std::map<std::int64_t, truth_t> truth;
+  std::map<std::int64_t, arbitration_t> command;
+  std::map<std::int64_t, driver_command_t> driver;
+  std::map<std::int64_t, follower_command_t> follower;
+  std::map<std::string, std::set<std::int64_t>> steps;  // by channel
+  std::vector<status_t> status;
+};
+
+/// One of the cars in a TRUTH.
+struct Car {
+  double speed_mps;
+  double acceleration_mps2;
+};
+inline Car Host(const truth_t& truth) {
+  return {truth.host_speed_mps, truth.host_acceleration_mps2};
+}
+inline Car Follower(const truth_t& truth) {
+  return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
+}
+
+/// The host does in each step what the command for it says, and without one what it did before.
+inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
+  for (std::int64_t step = from; step < to; ++step) {
+    ASSERT_TRUE(log.truth.contains(step + 1)) << step;
+    const double applied = log.truth.at(step + 1).host_acceleration_mps2;
+    if (!log.command.contains(step)) {
+      EXPECT_NEAR(applied, log.truth.at(step).host_acceleration_mps2, kRounding)
+          << "held at step " << step;
+      continue;
+    }
+    const arbitration_t& command = log.command.at(step);
+    EXPECT_NEAR(applied, command.acceleration_mps2, kRounding) << "at step " << step;
+    if (command.mode == arbitration_t::HUMAN && log.driver.contains(step)) {
+      EXPECT_NEAR(command.acceleration_mps2, log.driver.at(step).acceleration_mps2, kRounding);
+    }
+  }
+}
+
+/// The same of the following car.
+inline void ExpectFollowerObeys(const Log& log, std::int64_t from, std::int64_t to) {
+  for (std::int64_t step = from; step < to; ++step) {
+    const double applied = Follower(log.truth.at(step + 1)).acceleration_mps2;
+    const double expected = log.follower.contains(step)
+                                ? log.follower.at(step).acceleration_mps2.at(0)
+                                : Follower(log.truth.at(step)).acceleration_mps2;
+    EXPECT_NEAR(applied, expected, kRounding) << "follower at step " << step;
+  }
+}
+
+/// From `step` on a car brakes to standstill within the limits, and stays there.
+inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
+                                         Car (*car)(const truth_t&)) {
+  EXPECT_EQ(car(log.truth.at(log.last())).speed_mps, 0) << "does not stand at the end";
+  bool stood = false;
+  for (std::int64_t k = step; k < log.last(); ++k) {
+    const Car before = car(log.truth.at(k));
+    const Car after = car(log.truth.at(k + 1));
+    const double jerk = (after.acceleration_mps2 - before.acceleration_mps2) / kStepS;
+    EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
+    // A car that braked harder when it began releases the brake.
+    EXPECT_GE(after.acceleration_mps2,
+              std::min(-kDecelerationMps2, before.acceleration_mps2) - kRounding)
+        << "step " << k;
+    EXPECT_TRUE(!stood || after.speed_mps == 0) << "drives off at step " << k;
+    stood = stood || after.speed_mps == 0;
+  }
+}
+
+inline void ExpectNoCollision(const Log& log) {
+  for (const auto& [step, truth] : log.truth) {
+    ASSERT_EQ(truth.collision, truth_t::COLLISION_NONE) << "step " << step;
+  }
+}
+
+/// Who drives the host in these steps, as far as there are commands.
+template <class Predicate>
+void ExpectMode(const Log& log, std::int64_t from, std::int64_t to, Predicate&& holds,
+                const char* what) {
+  for (auto at = log.command.lower_bound(from); at != log.command.lower_bound(to); ++at) {
+    EXPECT_TRUE(holds(at->second.mode)) << what << " at step " << at->first << ", but mode is "
+                                        << static_cast<int>(at->second.mode);
+  }
+}
+
+}  // namespace fogline::test

@@ -1,0 +1,62 @@
+#include "services/recorder/realtime_figures.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace fogline {
+namespace {
+
+constexpr std::int64_t kStep_us = 100'000;
+
+status_t Said(const std::string& role, std::int64_t instance, std::int64_t sequence) {
+  status_t status{};
+  status.role = role;
+  status.instance = instance;
+  status.sequence = sequence;
+  return status;
+}
+
+TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
+  RealtimeAccumulator figures(1, kStep_us);
+  for (const std::int64_t sequence : {1, 3, 2}) {  // the last one was overtaken
+    status_t world = Said("world", 1, sequence);
+    world.ticks = 10 * sequence;
+    figures.Add(world);
+  }
+  status_t second = Said("world", 2, 1);
+  second.ticks = 7;
+  figures.Add(second);
+  EXPECT_EQ(figures.Result().ticks, 37);
+}
+
+TEST(RealtimeFiguresTest, IgnoresNumbersThatNoProcessCanHaveCounted) {
+  constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
+  RealtimeAccumulator figures(1, kStep_us);
+  status_t world = Said("world", 1, 1);
+  world.ticks = 5;
+  world.deadline_misses = 2;
+  figures.Add(world);
+  for (std::int64_t instance = 2; instance < 5; ++instance) {
+    status_t absurd = Said("world", instance, 1);
+    absurd.deadline_misses = kHuge;
+    figures.Add(absurd);
+    absurd = Said("acc", instance, 1);
+    absurd.num_inputs = 1;
+    absurd.input = {"TRACK"};
+    absurd.input_state = {status_t::INPUT_OK};
+    absurd.input_age_us = {0};
+    absurd.input_rate_hz = {0};
+    absurd.input_late = {kHuge};
+    figures.Add(absurd);
+    absurd = Said("radar", instance, 1);
+    absurd.ticks = std::numeric_limits<std::int64_t>::min();
+    figures.Add(absurd);
+  }
+  EXPECT_EQ(figures.Result().ticks, 5);
+  EXPECT_EQ(figures.Result().deadline_misses, 2);
+  EXPECT_EQ(figures.Result().late_messages, 0);
+}
+
+}  // namespace
+}  // namespace fogline
