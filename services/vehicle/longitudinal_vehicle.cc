@@ -45,13 +45,14 @@ LongitudinalVehicle::LongitudinalVehicle(const VehicleParameters& vehicle, doubl
 }
 
 void LongitudinalVehicle::Begin(const Motion& now, double command_mps2) {
+  last_mps2_ = command_mps2;
   const PedalDemand demand = Demand(command_mps2, now);
   powertrain_.Settle(demand.traction_n);
   brake_.Settle(demand.brake_n);
 }
 
 double LongitudinalVehicle::Step(double command_mps2, const Motion& now) {
-  const PedalDemand demand = Demand(command_mps2, now);
+  const PedalDemand demand = Demand(command_mps2, Middle(now, last_mps2_));
   const double mean_traction_n = powertrain_.Step(demand.traction_n);
   brake_n_ = brake_.Step(demand.brake_n);
   const auto respond = [&](const Motion& at) {
@@ -61,10 +62,15 @@ double LongitudinalVehicle::Step(double command_mps2, const Motion& now) {
   };
   // With the limits and the slope of the beginning to the middle of the step, and with those there
   // through the whole of it.
+  last_mps2_ = respond(Middle(now, respond(now)));
+  return last_mps2_;
+}
+
+Motion LongitudinalVehicle::Middle(const Motion& now, double acceleration_mps2) const {
   const double half_s = 0.5 * step_s_;
-  const double middle_mps = std::max(0.0, now.speed_mps + respond(now) * half_s);
-  const double middle_m = now.position_m + 0.5 * (now.speed_mps + middle_mps) * half_s;
-  return respond({.position_m = middle_m, .speed_mps = middle_mps});
+  const double speed_mps = std::max(0.0, now.speed_mps + acceleration_mps2 * half_s);
+  return {.position_m = now.position_m + 0.5 * (now.speed_mps + speed_mps) * half_s,
+          .speed_mps = speed_mps};
 }
 
 LongitudinalVehicle::Slope LongitudinalVehicle::SlopeAt(double position_m) const {
@@ -73,15 +79,13 @@ LongitudinalVehicle::Slope LongitudinalVehicle::SlopeAt(double position_m) const
   return {.sine = grade * cosine, .cosine = cosine};
 }
 
-PedalDemand LongitudinalVehicle::Demand(double command_mps2, const Motion& now) {
-  const double middle_mps = std::max(0.0, now.speed_mps + 0.5 * step_s_ * command_mps2);
-  const double middle_m = now.position_m + 0.25 * step_s_ * (now.speed_mps + middle_mps);
-  const Slope slope = SlopeAt(middle_m);
+PedalDemand LongitudinalVehicle::Demand(double command_mps2, const Motion& at) {
+  const Slope slope = SlopeAt(at.position_m);
   const double weight_n = vehicle_.mass_kg * kGravity_mps2;
-  const double resistance_n = drag_nps2pm2_ * middle_mps * middle_mps +
+  const double resistance_n = drag_nps2pm2_ * at.speed_mps * at.speed_mps +
                               weight_n * (vehicle_.rolling_coefficient * slope.cosine + slope.sine);
   PedalDemand demand = pedals_.Split(effective_mass_kg_ * command_mps2 + resistance_n);
-  demand.traction_n = std::min(demand.traction_n, TractionLimit(middle_mps));
+  demand.traction_n = std::min(demand.traction_n, TractionLimit(at.speed_mps));
   demand.brake_n = std::min(demand.brake_n, vehicle_.mass_kg * vehicle_.max_brake_mps2);
   return demand;
 }

@@ -65,7 +65,10 @@ class LongitudinalVehicle {
     double brake_n = 0;
   };
   Slope SlopeAt(double position_m) const;
-  PedalDemand Demand(double command_mps2, const Motion& now);
+  // Where the car will be, and how fast, half a step on.
+  Motion Middle(const Motion& now, double acceleration_mps2) const;
+  // What the controller asks of the pedals for this command there.
+  PedalDemand Demand(double command_mps2, const Motion& at);
   double TractionLimit(double speed_mps) const;
   // The acceleration of a step that begins at this speed, under these forces on this slope.
   double Respond(const Forces& forces, const Slope& slope, double speed_mps) const;
@@ -83,6 +86,7 @@ class LongitudinalVehicle {
   Actuator brake_;
   double traction_n_ = 0;
   double brake_n_ = 0;
+  double last_mps2_ = 0;  // what the last step returned
 };
 
 }  // namespace fogline
