@@ -23,6 +23,9 @@ class Idm {
   /// @param speed_mps v, taken as 0 if negative.
   double Acceleration(double speed_mps, double preceding_speed_mps, double gap_m) const;
 
+  /// s* in m. @param speed_mps at least 0
+  double DesiredGap(double speed_mps, double preceding_speed_mps) const;
+
  private:
   DriverSection driver_;
   double twice_sqrt_ab_mps2_;  // 2 sqrt(a_max b)

@@ -17,6 +17,9 @@ enum class Stream : std::uint32_t {
   kLidar = 2,
   kLidarBeam = 3,
   kFaults = 4,
+  kHumanErrors = 5,
+  kTakeOver = 6,
+  kStyle = 7,
 };
 
 /// The random numbers of one stream under one seed.

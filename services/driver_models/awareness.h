@@ -1,0 +1,80 @@
+// How much of the road a driver has in mind, and how it fades and returns.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fogline {
+
+enum class DriverTask {
+  kMonitors,  // automation drives and has asked for nothing
+  kDrives,    // or has been asked to
+};
+
+struct AwarenessParameters {
+  /// A_mon, where awareness ends up if he only monitors, 0 to 1. Estimate: 0.3 to 0.7, by what else
+  /// he does; SUMO's ToC device begins a take-over with 0.5.
+  double monitoring = 0.5;
+
+  /// Time constant of the way there in s, above 0. Estimate: 30 to 120.
+  double fading_s = 60.0;
+
+  /// Growth in 1/s from a request on, above 0. SUMO's ToC device: 0.1.
+  double recovery_ps = 0.1;
+
+  /// T_r of an aware driver, and what a driver without awareness needs more, both in s, at least 0.
+  /// Estimate.
+  double reaction_time_s = 0.8;
+  double slow_reaction_time_s = 0.7;
+};
+
+/// Awareness A in [0, 1], from step to step exactly:
+///
+///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
+///
+/// and what follows from it: reaction time T_r0 + k (1 - A), and the size of his errors. SUMO's
+/// driver state has a relative error of the gap of 0.75 and an error of the closing speed of 0.15
+/// per second and gap, times a process of standard deviation 0.2 (1 - A).
+class Awareness {
+ public:
+  /// @throw std::invalid_argument for a parameter out of its range.
+  explicit Awareness(const AwarenessParameters& parameters, double awareness = 1.0)
+      : parameters_(parameters), awareness_(std::clamp(awareness, 0.0, 1.0)) {
+    const bool valid = parameters.monitoring >= 0.0 && parameters.monitoring <= 1.0 &&
+                       parameters.fading_s > 0.0 && parameters.recovery_ps > 0.0 &&
+                       parameters.reaction_time_s >= 0.0 && parameters.slow_reaction_time_s >= 0.0;
+    if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
+  }
+
+  /// A after this time of it.
+  double Step(DriverTask task, double duration_s) {
+    if (task == DriverTask::kDrives) {
+      awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);
+    } else {
+      awareness_ -=
+          (parameters_.monitoring - awareness_) * std::expm1(-duration_s / parameters_.fading_s);
+    }
+    return awareness_;
+  }
+
+  double awareness() const { return awareness_; }
+  double ReactionTime_s() const {
+    return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - awareness_);
+  }
+
+  /// V_s and r_c of human_driver.h as SUMO's driver state has them.
+  double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
+  double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
+
+ private:
+  // Defaults of MSDriverState.
+  static constexpr double kSumoDeviation = 0.2;
+  static constexpr double kSumoGap = 0.75;
+  static constexpr double kSumoApproach_ps = 0.15;
+
+  AwarenessParameters parameters_;
+  double awareness_;
+};
+
+}  // namespace fogline

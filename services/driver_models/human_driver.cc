@@ -1,0 +1,91 @@
+#include "services/driver_models/human_driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fogline {
+namespace {
+
+// A reaction time of 0.3 s is three steps of 0.1 s, although their quotient may not be 3.
+constexpr double kWholeSteps = 1e-9;
+
+const HumanParameters& Checked(const HumanParameters& human) {
+  const bool valid = human.reaction_time_s >= 0.0 && human.gap_error >= 0.0 &&
+                     human.approach_error_ps >= 0.0 && human.error_time_s > 0.0;
+  if (!valid) throw std::invalid_argument("human driver: a parameter is out of its range");
+  return human;
+}
+
+double Mix(double newer, double older, double share) { return newer + share * (older - newer); }
+
+}  // namespace
+
+HumanDriver::HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
+                         double step_s)
+    : human_(Checked(human)),
+      model_(model),
+      random_(random),
+      gap_error_(human.error_time_s, step_s),
+      approach_error_(human.error_time_s, step_s) {
+  const double steps = human.reaction_time_s / step_s;
+  const double whole = std::floor(steps + kWholeSteps);
+  if (whole > static_cast<double>(kMaxReactionSteps)) {
+    throw std::invalid_argument("human driver: the reaction time is longer than 254 steps");
+  }
+  reaction_steps_ = static_cast<std::size_t>(whole);
+  between_ = std::max(0.0, steps - whole);
+}
+
+double HumanDriver::Step(std::int64_t step, const Situation& seen, double error_scale) {
+  const Situation now = Misjudged(step, seen, error_scale);
+  if (!begun_) seen_.fill(now);
+  begun_ = true;
+  last_ = (last_ + 1) % seen_.size();
+  seen_[last_] = now;
+  Situation then = Remembered();
+  if (human_.anticipates) {
+    const double gained = human_.reaction_time_s * then.acceleration_mps2;
+    if (then.ahead) {
+      then.ahead->gap_m -= human_.reaction_time_s * (then.speed_mps - then.ahead->speed_mps);
+      then.ahead->speed_mps += gained;
+    }
+    then.speed_mps += gained;
+  }
+  return model_.Acceleration(then);
+}
+
+Situation HumanDriver::Misjudged(std::int64_t step, const Situation& seen, double error_scale) {
+  const auto [gap_normal, approach_normal] = random_.Normal2(step, 0);
+  const double gap_error = error_scale * human_.gap_error * gap_error_.Step(gap_normal);
+  const double approach_error_ps =
+      error_scale * human_.approach_error_ps * approach_error_.Step(approach_normal);
+  Situation misjudged = seen;
+  if (misjudged.ahead) {
+    CarAhead& ahead = *misjudged.ahead;
+    ahead.speed_mps -= ahead.gap_m * approach_error_ps;
+    ahead.gap_m *= std::exp(gap_error);
+  }
+  return misjudged;
+}
+
+Situation HumanDriver::Remembered() const {
+  const Situation& newer = SeenAgo(reaction_steps_);
+  const Situation& older = SeenAgo(reaction_steps_ + 1);
+  // A car that appeared or vanished between the two was there, or not, as at the nearer of them.
+  Situation then = between_ < 0.5 ? newer : older;
+  then.speed_mps = Mix(newer.speed_mps, older.speed_mps, between_);
+  then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, between_);
+  if (newer.ahead && older.ahead) {
+    then.ahead = {Mix(newer.ahead->gap_m, older.ahead->gap_m, between_),
+                  Mix(newer.ahead->speed_mps, older.ahead->speed_mps, between_),
+                  Mix(newer.ahead->acceleration_mps2, older.ahead->acceleration_mps2, between_)};
+  }
+  return then;
+}
+
+const Situation& HumanDriver::SeenAgo(std::size_t steps) const {
+  return seen_[(last_ + seen_.size() - steps) % seen_.size()];
+}
+
+}  // namespace fogline

@@ -1,0 +1,80 @@
+// A driver who misjudges, is late and knows it: around any car-following model.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "services/driver_models/following.h"
+#include "services/driver_models/ornstein_uhlenbeck.h"
+#include "services/driver_models/situation.h"
+#include "services/runtime/random.h"
+
+namespace fogline {
+
+struct HumanParameters {
+  /// T_r in s, at least 0. Treiber, Kesting & Helbing 2006 look at 0.5 to 1.1; 0.8 is in the
+  /// middle.
+  double reaction_time_s = 0.8;
+
+  /// V_s, relative standard deviation of the gap, 0 to 1. As in the paper: 0.05; the book has 0.10.
+  double gap_error = 0.05;
+
+  /// r_c in 1/s, standard deviation of the inverse time to collision, 0 to 1. As in the paper:
+  /// 0.01.
+  double approach_error_ps = 0.01;
+
+  /// tau of both errors in s, above 0. As in the paper: 20.
+  double error_time_s = 20.0;
+
+  /// Whether he makes up for his reaction time. In the paper he does.
+  bool anticipates = true;
+};
+
+/// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for the one car ahead:
+///
+///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
+///     v_l,est = v_l - s r_c w_l
+///
+/// He acts on what he saw T_r ago, between two steps in proportion. If he anticipates, he takes his
+/// own acceleration and the closing speed of then for constant since:
+///
+///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
+///     v_l' = v' - (v - v_l,est)                    all of t - T_r
+///
+/// The equations are the paper's as they are generally given; of its text only the abstract was
+/// checked. Without errors and reaction time this is the model within, bit by bit.
+class HumanDriver {
+ public:
+  /// Longest reaction time in steps.
+  static constexpr std::size_t kMaxReactionSteps = 254;
+
+  /// @param random whose errors they are: a stream of its own for each driver
+  /// @throw std::invalid_argument for a parameter out of its range or a reaction time too long.
+  HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
+              double step_s);
+
+  /// What he does in this step. Once per step, in order: his errors and what he has seen go with
+  /// him from step to step. Before T_r is over he goes by the first situation.
+  /// @param error_scale on V_s and r_c, at least 0: more than 1 for one who is not all there
+  double Step(std::int64_t step, const Situation& seen, double error_scale = 1.0);
+
+ private:
+  Situation Misjudged(std::int64_t step, const Situation& seen, double error_scale);
+  // What was seen T_r ago.
+  Situation Remembered() const;
+  const Situation& SeenAgo(std::size_t steps) const;
+
+  HumanParameters human_;
+  Following model_;
+  Random random_;
+  OrnsteinUhlenbeck gap_error_;
+  OrnsteinUhlenbeck approach_error_;
+  std::size_t reaction_steps_ = 0;                       // whole steps in T_r
+  double between_ = 0;                                   // and the rest of it, in steps
+  std::array<Situation, kMaxReactionSteps + 2> seen_{};  // a ring
+  std::size_t last_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace fogline

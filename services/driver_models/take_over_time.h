@@ -1,0 +1,58 @@
+// How long a driver takes from the request to take over until he does.
+#pragma once
+
+#include <cstdint>
+
+#include "services/runtime/random.h"
+
+namespace fogline {
+
+enum class TakeOverModel {
+  kLogNormal,        // of the given mean and standard deviation
+  kLogNormalByLead,  // of SUMO's mean for the lead time, and so wide that P(late) is as given
+  kSumo,             // SUMO's normal distribution
+};
+
+struct TakeOverParameters {
+  TakeOverModel model = TakeOverModel::kLogNormal;
+
+  /// Of kLogNormal, in s, above 0. Zhang, de Winter, Varotto, Happee & Martens (Transportation
+  /// Research F 64:285, 2019), 129 studies: mean 2.7, standard deviation of the means 1.45.
+  double mean_s = 2.7;
+  double std_s = 1.45;
+
+  /// P(late) of the other two: that he takes longer than the lead time; above 0, below 0.5. SUMO's
+  /// ToC device: 0.05.
+  double late_probability = 0.05;
+};
+
+/// Take-over time T for a request t before the automation gives up.
+///
+///     log-normal:  ln T ~ N(mu, s^2)    s^2 = ln(1 + std^2 / mean^2)    mu = ln mean - s^2 / 2
+///     SUMO:        T ~ N(m, ((t - m) / z)^2), T >= 0    m = min(2 sqrt(t), 0.7 t)    P(Z > z) =
+///     P(late) by lead:     log-normal with mean m and P(T > t) = P(late):  s = z - sqrt(z^2 - 2
+///     ln(t / m))
+///
+/// SUMO (MSDevice_ToC) draws again what is negative, up to 100 times, and then takes the mean; so
+/// of a lead time of minutes P(late) is more than asked for. SUMO has a table for (t - m) / z.
+class TakeOverTime {
+ public:
+  /// @param lead_s t, above 0
+  /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
+  /// distribution has this P(late), z^2 < 2 ln(t / m): above 19.9 % for t up to 8.2 s, 5 % for 60 s.
+  TakeOverTime(const TakeOverParameters& parameters, double lead_s);
+
+  /// T in s for the request made in this step: the same whoever asks, and in whatever order.
+  double Draw(const Random& random, std::int64_t step) const;
+
+  /// P(T > t) exactly.
+  double LateProbability() const;
+
+ private:
+  bool normal_ = false;  // else log-normal
+  double lead_s_;
+  double location_ = 0;  // mu, or m in s
+  double scale_ = 0;     // s, or the standard deviation in s
+};
+
+}  // namespace fogline
