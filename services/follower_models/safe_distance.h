@@ -1,0 +1,54 @@
+// How far behind is safe, by three rules: RSS, and the fuzzy safety model's two.
+#pragma once
+
+#include "services/driver_models/situation.h"
+
+namespace fogline {
+
+/// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
+/// Defaults: the parameter discussion of ad-rss-lib, for the vehicle behind.
+struct RssParameters {
+  double response_s = 1.0;          // rho, at least 0
+  double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0
+  double least_braking_mps2 = 4.0;  // b_min of the car behind after it, above 0
+  double most_braking_mps2 = 8.0;   // b_max of the car ahead, above 0
+};
+
+/// d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2 b_max)) in
+/// m.
+double RssSafeDistance(const RssParameters& rss, double speed_mps, double lead_speed_mps);
+
+/// Fuzzy safety model (Mattas, Makridis, Botzoris, Kriston, Minarini, Papadopoulos, Re, Rognelund &
+/// Ciuffo, Accident Analysis & Prevention 148:105794, 2020). Defaults: UN R157's use of it, as
+/// published by the JRC (JRC-FSM).
+struct FuzzyParameters {
+  double response_s = 0.75;             // rho, at least 0
+  double comfortable_braking_mps2 = 4;  // b_c, above 0
+  double hard_braking_mps2 = 6;         // b_h, above b_c
+  double lead_braking_mps2 = 7;         // b_l, above 0
+  double standstill_m = 2;              // d_1 that is left at rest, at least 0
+  double safe_margin_m = 2;             // d_2 more for being entirely safe, at least 0
+};
+
+/// Proactive fuzzy surrogate: if the car ahead braked now as hard as it can, 0 if comfortable
+/// braking would do, 1 if hard braking would not, between them in proportion to the distance s -
+/// d_1:
+///
+///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
+///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)
+double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
+
+/// Critical fuzzy surrogate: the same if the car ahead goes on at its speed and the own
+/// acceleration a, at least -b_c, lasts through the response. With the closing speed c' = v + a rho
+/// - v_l then:
+///
+///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)         d_unsafe: with b_h
+///
+/// If c' < 0 he is already braking enough, and it is 1 or 0 as s < (v - v_l)^2 / (2 |a|) or not.
+double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
+
+/// Deceleration in m/s2 that the model asks for, 0 if none:
+/// CFS > 0: b_c + CFS (b_h - b_c), else PFS b_c.
+double FuzzyDeceleration(const FuzzyParameters& fuzzy, const Situation& seen);
+
+}  // namespace fogline
