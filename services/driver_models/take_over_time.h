@@ -39,7 +39,8 @@ class TakeOverTime {
  public:
   /// @param lead_s t, above 0
   /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
-  /// distribution has this P(late), z^2 < 2 ln(t / m): above 19.9 % for t up to 8.2 s, 5 % for 60 s.
+  /// distribution has this P(late), z^2 < 2 ln(t / m): above 19.9 % for t up to 8.2 s, 5 % for 60
+  /// s.
   TakeOverTime(const TakeOverParameters& parameters, double lead_s);
 
   /// T in s for the request made in this step: the same whoever asks, and in whatever order.

@@ -1,12 +1,16 @@
 // Checks that no step of the closed loop allocates memory after the first, nor do the measures: in
 // every shipped scenario, with every fog model, whoever drives; and in no step of the ACC, whatever
-// path its solver takes. A program of its own, because it replaces malloc. Exits with 1 and says
-// what allocated.
+// path its solver takes, or of the models of vehicle, driver and follower. A program of its own,
+// because it replaces malloc. Exits with 1 and says what allocated.
 #include <cstddef>
 #include <cstdio>
 
 #include "services/acc/acc_controller.h"
+#include "services/driver_models/fog_sight.h"
+#include "services/driver_models/human_driver.h"
+#include "services/follower_models/safety_response.h"
 #include "services/measures/measures.h"
+#include "services/vehicle/longitudinal_vehicle.h"
 #include "tests/property/acc/draw.h"
 #include "tests/property/closed_loop/shipped.h"
 
@@ -67,6 +71,30 @@ bool CheckController() {
   return made == 0 && solver_steps > 1000;
 }
 
+// Allocations while a human drives a car uphill and through fog, from the first step on.
+bool CheckModels() {
+  LongitudinalVehicle car(kSedan, FrictionOf(Surface::kWet), GradeProfile({{0, 0}, {500, 0.05}}),
+                          0.1);
+  const FogSight sight{FogSightParameters{}};
+  HumanDriver driver(HumanParameters{}, Following(FollowingModel::kAccIdm, DriverSection{}),
+                     Random(1, Stream::kHumanErrors), 0.1);
+  SafetyResponse fuzzy(SafetyModel::kFuzzy, 0.1);
+  Motion motion{0, 20};
+  const long before = allocations;
+  car.Begin(motion, 0);
+  for (std::int64_t k = 0; k < 1000; ++k) {
+    const double lead_mps = k / 100 % 2 == 0 ? 10 : 25;
+    const Situation truth{
+        .speed_mps = motion.speed_mps,
+        .ahead = CarAhead{.gap_m = static_cast<double>(k % 70), .speed_mps = lead_mps}};
+    const double command = driver.Step(k, sight.Perceive(truth, 60)) - fuzzy.Step(truth);
+    motion = Advance(motion, car.Step(command, motion), 0.1);
+  }
+  const long made = allocations - before;
+  std::printf("models: %ld allocations in 1000 steps\n", made);
+  return made == 0;
+}
+
 // Allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   ClosedLoop loop(scenario);
@@ -105,6 +133,7 @@ bool CheckLoop(const Shipped& shipped) {
 
 bool Check() {
   bool clean = CheckController();
+  clean = CheckModels() && clean;
   const std::vector<Shipped> all = ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario");
   for (const Shipped& shipped : all) clean = CheckLoop(shipped) && clean;
   // A program without any allocation would not be counting.
