@@ -42,6 +42,12 @@ TEST(SafeDistanceTest, CriticalFuzzyIsAsWorkedByHand) {
   EXPECT_EQ(CriticalFuzzy({}, Behind(12, 0.51, 10, -4)), 0);
 }
 
+TEST(SafeDistanceTest, CriticalFuzzyCountsOnComfortableBrakingAtMost) {
+  // Closing at 10 m/s, braking at 8: with 4, 8.5 * 0.75 + 7^2 / 8 = 12.5 m are safe.
+  EXPECT_EQ(CriticalFuzzy({}, Behind(20, 12.5, 10, -8)), 0);
+  EXPECT_GT(CriticalFuzzy({}, Behind(20, 12.4, 10, -8)), 0);
+}
+
 TEST(SafeDistanceTest, FuzzyBrakesComfortablyFirstAndHarderWhenCritical) {
   EXPECT_EQ(FuzzyDeceleration({}, Behind(20, 100, 20)), 0);
   EXPECT_NEAR(FuzzyDeceleration({}, Behind(20, 2 + 0.5 * (38.4286 + 19.7619), 20)), 2, 1e-4);

@@ -175,6 +175,12 @@ TEST(LongitudinalVehicleTest, StopsWithinTheStepAndStands) {
   EXPECT_EQ(drive.motion().position_m, there_m);
 }
 
+TEST(LongitudinalVehicleTest, HasNoAccelerationWhileTheBrakesHoldItAtRest) {
+  LongitudinalVehicle car(kSedan, kDry, {}, kStep_s);
+  car.Begin({}, -3);
+  EXPECT_EQ(car.Step(-3, {}), 0);
+}
+
 TEST(LongitudinalVehicleTest, DoesNotRollBackwards) {
   Drive drive(kTruck, 0, 0, kDry, GradeProfile({{0, 0.1}}));
   drive.For(10, -1);
