@@ -59,7 +59,8 @@ struct ConflictParameters {
   // ---- Consonant beliefs ----
 
   /// Nested intervals of equal mass that stand for the density of them, at least 1, at most
-  /// kMostLevels. 20 give Dempster's k to 0.02.
+  /// kMostLevels. With 20 the scores are
+  /// within 0.03 of those with 40.
   int levels = 20;
 
   // ---- Sequential tests ----
