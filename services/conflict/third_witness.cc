@@ -28,9 +28,10 @@ double Shortfall(double support, double agreeing) {
 
 }  // namespace
 
-SensorResidual::SensorResidual(const ConflictParameters& parameters, double nominal_std_m)
+SensorResidual::SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
+                               double missing_error_m)
     : missing_(parameters.missing),
-      missing_conflict_m_(parameters.missing_conflict_m),
+      missing_error_m_(missing_error_m),
       smallest_std_m_(parameters.smallest_std_m),
       nominal_std_m_(nominal_std_m),
       std_m_(nominal_std_m),
@@ -47,7 +48,7 @@ std::optional<double> SensorResidual::Residual(const StatedRange& sensor,
   }
   if (missing_ == MissingLidar::kHold) return last_;
   if (missing_ == MissingLidar::kSkip) return std::nullopt;
-  return missing_conflict_m_ / scale_m;
+  return missing_error_m_ / scale_m;
 }
 
 double SensorResidual::Step(const StatedRange& sensor, const StatedRange& prediction,
@@ -64,8 +65,9 @@ void SensorResidual::Reset() {
 
 NisBlame::NisBlame(const ConflictParameters& parameters)
     : offset_m_(parameters.offset_m),
-      radar_(parameters, parameters.nominal_radar_std_m),
-      lidar_(parameters, parameters.nominal_lidar_std_m) {}
+      // d = radar - LiDAR = missing_conflict_m: a radar that is long, or a LiDAR that is short.
+      radar_(parameters, parameters.nominal_radar_std_m, parameters.missing_conflict_m),
+      lidar_(parameters, parameters.nominal_lidar_std_m, -parameters.missing_conflict_m) {}
 
 Blame NisBlame::Step(const Evidence& evidence) {
   const double radar = std::abs(radar_.Step(evidence.radar, evidence.prediction, offset_m_));

@@ -23,10 +23,13 @@ namespace fogline {
 /// long window scatters more than a standard normal number.
 class SensorResidual {
  public:
-  explicit SensorResidual(const ConflictParameters& parameters, double nominal_std_m);
+  /// @param nominal_std_m stands for the standard deviation before one has been stated
+  /// @param missing_error_m what a missing value is off by where it counts as conflict
+  SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
+                 double missing_error_m);
 
   /// T; 0 without a prediction or a residual. A missing value repeats the last residual, leaves its
-  /// place empty, or counts as one of missing_conflict_m, by the rule of the parameters.
+  /// place empty, or counts as conflict, by the rule of the parameters.
   double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
   void Reset();
 
@@ -35,7 +38,7 @@ class SensorResidual {
                                  double offset_m);
 
   MissingLidar missing_;
-  double missing_conflict_m_;
+  double missing_error_m_;
   double smallest_std_m_;
   double nominal_std_m_;
   double std_m_;  // last stated

@@ -92,6 +92,15 @@ TEST(NisBlameTest, AWindowAddsUpWhatSingleStepsCannotTell) {
   EXPECT_NEAR(last, std::erf(3 / std::sqrt(2.0)), 1e-12);  // T = 1 * sqrt(9)
 }
 
+TEST(NisBlameTest, ALidarThatIsShortAndThenSilentIsNotExcusedByTheSilence) {
+  ConflictParameters parameters;
+  parameters.blame_window_steps = 2;
+  parameters.missing = MissingLidar::kConflict;
+  NisBlame blame(parameters);
+  blame.Step(LidarShortBy(parameters.missing_conflict_m));
+  EXPECT_EQ(blame.Step(WithoutLidar(LidarShortBy(0))).lidar, 1);
+}
+
 TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
   ConflictParameters parameters;
   parameters.offset_m = 0.9;
