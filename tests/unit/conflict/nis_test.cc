@@ -2,13 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "services/conflict/divergence.h"
-#include "services/conflict/momentary.h"
 #include "tests/unit/conflict/evidence.h"
 
 namespace fogline {
@@ -23,8 +21,9 @@ TEST(NisTest, LimitsOfChiSquareAreTheQuotedOnes) {
   struct Row {
     double degrees, at_5_pct, at_1_pct, at_tenth_pct, digit;
   };
-  constexpr std::array<Row, 4> kTable{{{1, 3.84, 6.63, 10.83, .005},
+  constexpr std::array<Row, 5> kTable{{{1, 3.84, 6.63, 10.83, .005},
                                        {2, 5.99, 9.21, 13.82, .005},
+                                       {3, 7.81, 11.34, 16.27, .005},
                                        {10, 18.3, 23.2, 29.6, .05},
                                        {20, 31.4, 37.6, 45.3, .05}}};
   for (const Row& row : kTable) {
@@ -54,6 +53,25 @@ TEST(SignedNisTest, IsTheMeanInUnitsOfItsStandardDeviation) {
   double score = 0;
   for (const double d : {9.0, 1.0, 2.0, 3.0, 6.0}) score = measure.Step(LidarShortBy(d, 3, 4));
   EXPECT_NEAR(score, 3.0 * std::sqrt(4 / 25.0), 1e-12);  // mean 3 m, S = 25 m2, n = 4
+}
+
+TEST(SignedNisTest, IsStandardNormalWithoutAFault) {
+  constexpr int kWindows = 5000;
+  const Random random(7, Stream::kRadar);
+  const int window = ConflictParameters{}.window_steps;
+  SignedNis measure({});
+  double sum = 0;
+  double squares = 0;
+  for (int i = 0; i < kWindows; ++i) {
+    double score = 0;
+    for (int step = i * window; step < (i + 1) * window; ++step) {
+      score = measure.Step(UnitNoise(random, step));
+    }
+    sum += score;
+    squares += score * score;
+  }
+  EXPECT_NEAR(sum / kWindows, 0, 4 / std::sqrt(kWindows));
+  EXPECT_NEAR(squares / kWindows, 1, 4 * std::sqrt(2.0 / kWindows));
 }
 
 TEST(SignedNisTest, ALidarThatIsLongIsTheOppositeOfConflict) {
