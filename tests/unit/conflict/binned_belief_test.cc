@@ -35,6 +35,22 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
   }
 }
 
+TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
+  // GIVEN: four bins; the radar on an edge, m = (.4, .4, 0, 0); the LiDAR amid a bin, (0, 0, .8,
+  // 0); 0.2 on the frame each
+  ConflictParameters parameters;
+  parameters.frame_bins = 4;
+  parameters.radar_reliability = 0.8;
+  parameters.lidar_reliability = 0.8;
+  const BinnedPair pair = PairOnBins(Differing(0.75, 0.01, 0.01), parameters);
+  // THEN: D(bin, frame) = 1/4 makes c11 = .32 + .04 + .08, c22 = .64 + .04 + .08, c12 = .04 + .08
+  EXPECT_NEAR(CorrelationConflict(pair), 1 - .12 / std::sqrt(.44 * .76), 1e-12);
+  EXPECT_NEAR(JousselmeDistance(pair), std::sqrt((.44 + .76 - .24) / 2), 1e-12);
+  EXPECT_NEAR(CosineConflict(pair), 1 - .04 / std::sqrt(.36 * .68), 1e-12);
+  EXPECT_NEAR(DempsterConflict(pair), .64, 1e-12);
+  EXPECT_NEAR(PignisticDistance(pair), .8, 1e-12);
+}
+
 TEST(BinnedBeliefTest, DempsterFindsConflictInEqualEvidence) {
   // The known defect of k: both sensors say exactly the same.
   const BinnedPair pair = PairOnBins(Differing(0, 0.2, 0.2), {});

@@ -68,6 +68,13 @@ TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
   }
 }
 
+TEST(DocTest, ForgetsItsWholeWindowInReset) {
+  Doc measure({});
+  for (int i = 0; i < 8; ++i) measure.Step(LidarShortBy(2));
+  measure.Reset();
+  EXPECT_EQ(measure.Step(LidarShortBy(1)), 0.5);
+}
+
 TEST(DocTest, KeepsTheOffsetThatOtherMeasuresTakeOff) {
   ConflictParameters parameters;
   parameters.offset_m = 1;

@@ -1,5 +1,8 @@
 #include "services/conflict/lidar_modes.h"
 
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -29,6 +32,17 @@ TEST(LidarModesTest, OneStepIsBayesRuleWorkedByHand) {
   EXPECT_NEAR(Of(posterior, LidarMode::kClean), .99 * .02 / sum, 1e-12);
   EXPECT_NEAR(Of(posterior, LidarMode::kFogReturn), .005 * .1 / sum, 1e-12);
   EXPECT_NEAR(Of(posterior, LidarMode::kDropout), .005 * .98 / sum, 1e-12);
+}
+
+TEST(LidarModesTest, FogIsLikeliestAtTheMeanOfItsScatter) {
+  // GIVEN: an echo at r* + 10 m E[Beta(2, 20)], of which the clean mode can't be
+  const double fog_m = 3.5 + 10 * 2.0 / 22;
+  LidarModes modes({});
+  const auto& posterior = modes.Step(At(200, fog_m));
+  // THEN: odds of fog to dropout, with Var[Beta(2, 20)] = 40/(22^2 23) and a LiDAR of 0.05 m
+  const double variance = 0.05 * 0.05 + 100 * 40.0 / (22 * 22 * 23);
+  const double fog = 0.9 * (0.9 / std::sqrt(2 * std::numbers::pi * variance) + 0.1 / 250);
+  EXPECT_NEAR(Of(posterior, LidarMode::kDropout), 0.02 / 250 / (0.02 / 250 + fog), 1e-12);
 }
 
 TEST(LidarModesTest, AnEchoAtTheCarIsClean) {
