@@ -1,6 +1,7 @@
 #include "services/conflict/measures.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/conflict/binned_belief.h"
 #include "services/conflict/consonant_belief.h"

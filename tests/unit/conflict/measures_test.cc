@@ -6,7 +6,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <ostream>
 #include <set>
 #include <string>
 #include <string_view>
@@ -17,8 +16,6 @@
 #include "tests/unit/conflict/evidence.h"
 
 namespace fogline {
-
-static void PrintTo(const ConflictMeasureRow& row, std::ostream* out) { *out << row.name; }
 
 namespace {
 
@@ -43,135 +40,155 @@ Claims ClaimsOf(std::string_view name) {
   return less == kLess.end() ? Claims{} : less->second;
 }
 
-class EveryMeasureTest : public testing::TestWithParam<ConflictMeasureRow> {
- protected:
-  std::unique_ptr<ConflictMeasure> Make(const ConflictParameters& parameters = {}) const {
-    return GetParam().make(parameters);
-  }
+constexpr int kSteps = 3;           // fewer than any ceiling needs
+constexpr double kRounding = 1e-7;  // roots of differences of squares
+constexpr double kBin_m = 0.5;      // bins promise nothing between multiples of it
 
-  // The score after this evidence has been there for `steps`.
-  double After(int steps, const Evidence& evidence) const {
-    const auto measure = Make();
-    double score = 0;
-    for (int i = 0; i < steps; ++i) score = measure->Step(evidence);
-    return score;
-  }
-
-  std::vector<double> ScoresOfAnything(ConflictMeasure& measure) const {
-    const Random random(6, Stream::kRadar);
-    std::vector<double> scores;
-    for (int step = 0; step < 400; ++step) scores.push_back(measure.Step(Anything(random, step)));
-    return scores;
-  }
-
-  Claims claims() const { return ClaimsOf(GetParam().name); }
-
-  static constexpr int kSteps = 3;           // fewer than any ceiling needs
-  static constexpr double kRounding = 1e-7;  // roots of differences of squares
-  static constexpr double kBin_m = 0.5;      // bins promise nothing between multiples of it
-};
-
-TEST_P(EveryMeasureTest, BeginsAgainAfterReset) {
-  const auto measure = Make();
-  const std::vector<double> first = ScoresOfAnything(*measure);
-  measure->Reset();
-  EXPECT_EQ(ScoresOfAnything(*measure), first);
+// The score after this evidence has been there for `steps`.
+double After(const ConflictMeasureRow& row, int steps, const Evidence& evidence) {
+  const auto measure = row.make({});
+  double score = 0;
+  for (int i = 0; i < steps; ++i) score = measure->Step(evidence);
+  return score;
 }
 
-TEST_P(EveryMeasureTest, GivesEqualScoresForEqualEvidenceToTheBit) {
-  EXPECT_EQ(ScoresOfAnything(*Make()), ScoresOfAnything(*Make()));
+std::vector<double> ScoresOfAnything(ConflictMeasure& measure) {
+  const Random random(6, Stream::kRadar);
+  std::vector<double> scores;
+  for (int step = 0; step < 400; ++step) scores.push_back(measure.Step(Anything(random, step)));
+  return scores;
 }
 
-TEST_P(EveryMeasureTest, StaysInItsRangeWhateverComesUnderEveryRule) {
-  for (const auto rule : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
-    ConflictParameters parameters;
-    parameters.missing = rule;
-    for (const double score : ScoresOfAnything(*Make(parameters))) {
-      ASSERT_TRUE(std::isfinite(score));
-      ASSERT_TRUE(GetParam().range != "[0, 1]" || score <= 1) << score;
-      ASSERT_TRUE(!GetParam().range.starts_with("[0") || score >= 0) << score;
+TEST(EveryMeasureTest, BeginsAgainAfterReset) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    const auto measure = row.make({});
+    const std::vector<double> first = ScoresOfAnything(*measure);
+    measure->Reset();
+    EXPECT_EQ(ScoresOfAnything(*measure), first);
+  }
+}
+
+TEST(EveryMeasureTest, GivesEqualScoresForEqualEvidenceToTheBit) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    EXPECT_EQ(ScoresOfAnything(*row.make({})), ScoresOfAnything(*row.make({})));
+  }
+}
+
+TEST(EveryMeasureTest, StaysInItsRangeWhateverComesUnderEveryRule) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    for (const auto rule : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
+      ConflictParameters parameters;
+      parameters.missing = rule;
+      for (const double score : ScoresOfAnything(*row.make(parameters))) {
+        ASSERT_TRUE(std::isfinite(score));
+        ASSERT_TRUE(row.range != "[0, 1]" || score <= 1) << score;
+        ASSERT_TRUE(!row.range.starts_with("[0") || score >= 0) << score;
+      }
     }
   }
 }
 
-TEST_P(EveryMeasureTest, GrowsAsTheLidarGetsShorter) {
-  double last = After(kSteps, LidarShortBy(0));
-  for (double short_m = kBin_m; short_m <= 8; short_m += kBin_m) {
-    const double score = After(kSteps, LidarShortBy(short_m));
-    EXPECT_GE(score, last - kRounding) << short_m;
-    last = score;
+TEST(EveryMeasureTest, GrowsAsTheLidarGetsShorter) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    double last = After(row, kSteps, LidarShortBy(0));
+    for (double short_m = kBin_m; short_m <= 8; short_m += kBin_m) {
+      const double score = After(row, kSteps, LidarShortBy(short_m));
+      EXPECT_GE(score, last - kRounding) << short_m;
+      last = score;
+    }
+    EXPECT_GT(last, After(row, kSteps, LidarShortBy(0)));
   }
-  EXPECT_GT(last, After(kSteps, LidarShortBy(0)));
 }
 
-TEST_P(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
-  for (double error_m = kBin_m; error_m <= 8; error_m += kBin_m) {
-    const double longer = After(kSteps, LidarShortBy(-error_m));
-    if (claims().sides == Sides::kLidarShort) {
-      EXPECT_LE(longer, After(kSteps, LidarShortBy(0))) << error_m;
-    } else if (GetParam().name == "lidar_modes") {
-      EXPECT_GT(longer, After(kSteps, LidarShortBy(0))) << error_m;  // r* is on one side only
+TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    for (double error_m = kBin_m; error_m <= 8; error_m += kBin_m) {
+      const double longer = After(row, kSteps, LidarShortBy(-error_m));
+      if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
+        EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
+      } else if (row.name == "lidar_modes") {
+        // Any other range is not clean, but r* is on one side only.
+        EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
+      } else {
+        EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
+      }
+    }
+  }
+}
+
+TEST(EveryMeasureTest, FindsConflictInEqualEvidenceOnlyIfItSaysSo) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    const double score = After(row, kSteps, LidarShortBy(0, 0.3, 0.3));
+    if (ClaimsOf(row.name).zero_for_equal) {
+      EXPECT_NEAR(score, 0, kRounding);
     } else {
-      EXPECT_NEAR(longer, After(kSteps, LidarShortBy(error_m)), kRounding) << error_m;
+      EXPECT_GT(std::abs(score), kRounding);
     }
   }
 }
 
-TEST_P(EveryMeasureTest, FindsConflictInEqualEvidenceOnlyIfItSaysSo) {
-  const double score = After(kSteps, LidarShortBy(0, 0.3, 0.3));
-  if (claims().zero_for_equal) {
-    EXPECT_NEAR(score, 0, kRounding);
-  } else {
-    EXPECT_GT(std::abs(score), kRounding);
+TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    if (row.name == "lidar_modes") {
+      // It alone takes a missing value for evidence, whatever the rule.
+      const auto measure = row.make({});
+      measure->Step(LidarShortBy(0));
+      EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);
+      continue;
+    }
+    // As if the last evidence had been there again.
+    const auto measure = row.make({});
+    measure->Step(LidarShortBy(0.7));
+    EXPECT_EQ(measure->Step(WithoutLidar(LidarShortBy(0.7))), After(row, 2, LidarShortBy(0.7)));
   }
 }
 
-TEST_P(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
-  if (GetParam().name == "lidar_modes") {
-    // It alone takes a missing value for evidence, whatever the rule.
-    const auto measure = Make();
-    measure->Step(LidarShortBy(0));
-    EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);
-    return;
+TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    ConflictParameters parameters;
+    parameters.missing = MissingLidar::kConflict;
+    const auto measure = row.make(parameters);
+    const double before = measure->Step(LidarShortBy(0));
+    double after = before;
+    for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
+    // Unequal precision alone is d_J = 0.7 of 0.8 on consonant beliefs.
+    EXPECT_GT(after, before + 0.1);
   }
-  // As if the last evidence had been there again.
-  const auto measure = Make();
-  measure->Step(LidarShortBy(0.7));
-  EXPECT_EQ(measure->Step(WithoutLidar(LidarShortBy(0.7))), After(2, LidarShortBy(0.7)));
 }
 
-TEST_P(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
-  ConflictParameters parameters;
-  parameters.missing = MissingLidar::kConflict;
-  const auto measure = Make(parameters);
-  const double before = measure->Step(LidarShortBy(0));
-  double after = before;
-  for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
-  EXPECT_GT(after, before + 0.1);  // unequal precision alone is d_J = 0.7 on consonant beliefs
+TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    ConflictParameters parameters;
+    parameters.missing = MissingLidar::kSkip;
+    const auto measure = row.make(parameters);
+    // 0.1 m: evidence that leaves LiDAR modes clean, for which alone no echo is more suspicious.
+    const double before = measure->Step(LidarShortBy(0.1));
+    const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));
+    EXPECT_EQ(after > before, row.name == "lidar_modes");
+  }
 }
 
-TEST_P(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
-  ConflictParameters parameters;
-  parameters.missing = MissingLidar::kSkip;
-  const auto measure = Make(parameters);
-  // 0.1 m: evidence that leaves LiDAR modes clean, for which alone no echo is more suspicious.
-  const double before = measure->Step(LidarShortBy(0.1));
-  const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));
-  EXPECT_EQ(after > before, GetParam().name == "lidar_modes");
+TEST(EveryMeasureTest, IsBlindToTheOffsetThatItWasToldOfUnlikeTheDoc) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    SCOPED_TRACE(row.name);
+    constexpr double kOffset_m = 0.5;
+    ConflictParameters parameters;
+    parameters.offset_m = kOffset_m;
+    Evidence evidence = LidarShortBy(1);
+    evidence.radar.range_m += kOffset_m;
+    const double change = row.make(parameters)->Step(evidence) - After(row, 1, LidarShortBy(1));
+    EXPECT_EQ(std::abs(change) > kRounding, row.name == "doc");
+  }
 }
-
-TEST_P(EveryMeasureTest, IsBlindToTheOffsetThatItWasToldOfUnlikeTheDoc) {
-  constexpr double kOffset_m = 0.5;
-  ConflictParameters parameters;
-  parameters.offset_m = kOffset_m;
-  Evidence evidence = LidarShortBy(1);
-  evidence.radar.range_m += kOffset_m;
-  const double change = Make(parameters)->Step(evidence) - After(1, LidarShortBy(1));
-  EXPECT_EQ(std::abs(change) > kRounding, GetParam().name == "doc");
-}
-
-INSTANTIATE_TEST_SUITE_P(Of, EveryMeasureTest, testing::ValuesIn(ConflictMeasures()),
-                         [](const auto& row) { return std::string(row.param.name); });
 
 template <class Row>
 void ExpectWhole(std::span<const Row> rows) {
