@@ -1,0 +1,68 @@
+// Readings as least-committed consonant beliefs, and the measures of evidence theory between two of
+// them.
+#pragma once
+
+#include <array>
+
+#include "services/conflict/disagreement.h"
+
+namespace fogline {
+
+/// Of all belief densities whose pignistic probability is the sensor's Gaussian N(mu, s^2), the one
+/// that commits to least has the nested intervals [mu - y s, mu + y s] as focal sets, with the
+/// Maxwell density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al.
+/// 2008). There is no frame to be cut into bins, and no reliability to be chosen.
+///
+/// Dempster's k and the pignistic distance are computed from the density itself. The others need
+/// sums over pairs of focal sets: there the density is `levels` intervals of mass 1/levels each, at
+/// the quantiles (i + 1/2)/levels of f, and |A| is the length of A.
+class ConsonantBeliefs {
+ public:
+  static constexpr int kMostLevels = 64;
+
+  /// @param levels in [1, kMostLevels]
+  explicit ConsonantBeliefs(int levels);
+
+  /// c12 = sum of m1(A) m2(B) |A and B|/|A or B|, in [0, 1]: the product under Jousselme's D.
+  /// @param distance_m at least 0, between the means.  @param std1_m, std2_m above 0
+  double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
+  /// c11, the same for every reading.
+  double JaccardSquare() const { return jaccard_square_; }
+
+  /// Integral over x of pl1(x) pl2(x), in m: pl, the plausibility of single points (contour), has
+  /// all that there is to know of a consonant belief.
+  double ContourProduct(double distance_m, double std1_m, double std2_m) const;
+
+  /// d_J, in [0, 1].
+  double JousselmeDistance(const Disagreement& disagreement) const;
+  /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves is of no use here:
+  /// intervals of two readings are never the same set, so it is 0 for all but equal readings.
+  double CosineConflict(const Disagreement& disagreement) const;
+  /// 1 - r, in [0, 1].
+  double CorrelationConflict(const Disagreement& disagreement) const;
+
+ private:
+  int levels_;
+  std::array<double, kMostLevels> half_widths_{};  // y of each interval, in standard deviations
+  double jaccard_square_;
+  double contour_square_;  // of a reading with s = 1 m; it grows with s
+};
+
+/// F(y) = erf(y/sqrt(2)) - sqrt(2/pi) y exp(-y^2/2), the distribution of f; 0 for y <= 0.
+double MaxwellBelow(double y);
+
+/// pl(x) = sqrt(2/pi) y exp(-y^2/2) + erfc(y/sqrt(2)) = 1 - F(y), y = |x - mu|/s.
+double ConsonantPlausibility(double y);
+
+/// k(d) = P(s1 Y1 + s2 Y2 < |d|), Y1 and Y2 independent with density f: the probability that two
+/// intervals have no point in common,
+///     k = integral over [0, |d|/s1] of f(y) F((|d| - s1 y)/s2) dy,
+/// in [0, 1], with k(0) = 0. By quadrature, to 1e-9.
+double ConsonantConflict(const Disagreement& disagreement);
+
+/// difBetP: the pignistic probabilities are the Gaussians themselves, and the largest difference
+/// over sets of two probabilities is their total variation, the difference of what they have
+/// between the points of equal density. In [0, 1]; not 0 at d = 0 where the precisions differ.
+double ConsonantPignisticDistance(const Disagreement& disagreement);
+
+}  // namespace fogline

@@ -1,0 +1,147 @@
+// Who is wrong: two values that differ can't say, a third one can. The witness is the filter's
+// prediction of the range from all that was before this step.
+//
+// Every judgement here begins with the offset of the sensors taken off the radar's range. Without a
+// prediction there is no witness and nobody is blamed. A witness is only as good as what it heard
+// before: a filter that has followed a slowly drifting sensor blames the other one.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "services/conflict/conflict_measure.h"
+#include "services/conflict/consonant_belief.h"
+#include "services/conflict/parameters.h"
+#include "services/conflict/window.h"
+
+namespace fogline {
+
+/// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
+/// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. With one step T^2 is
+/// the NIS. Residuals of several steps are correlated by the prediction's error, so that T of a
+/// long window scatters more than a standard normal number.
+class SensorResidual {
+ public:
+  /// @param nominal_std_m stands for the standard deviation before one has been stated
+  /// @param missing_error_m what a missing value is off by where it counts as conflict
+  SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
+                 double missing_error_m);
+
+  /// T; 0 without a prediction or a residual. A missing value repeats the last residual, leaves its
+  /// place empty, or counts as conflict, by the rule of the parameters.
+  double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
+  void Reset();
+
+ private:
+  std::optional<double> Residual(const StatedRange& sensor, const StatedRange& prediction,
+                                 double offset_m);
+
+  MissingLidar missing_;
+  double missing_error_m_;
+  double smallest_std_m_;
+  double nominal_std_m_;
+  double std_m_;  // last stated
+  std::optional<double> last_;
+  Window residuals_;
+};
+
+/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)): one less the level
+/// at which the test of T would just refuse the sensor. Even over [0, 1] for a sensor without
+/// fault.
+class NisBlame final : public BlameMeasure {
+ public:
+  explicit NisBlame(const ConflictParameters& parameters);
+
+  Blame Step(const Evidence& evidence) override;
+  void Reset() override;
+  /// max T^2 of the two sensors in the last step, at least 0: for whoever needs to tell apart what
+  /// is 1 as blame.
+  double largest_square() const { return largest_square_; }
+
+ private:
+  double offset_m_;
+  SensorResidual radar_;
+  SensorResidual lidar_;
+  double largest_square_ = 0;
+};
+
+/// max T^2 of NisBlame, at least 0.
+class NisWitness final : public ConflictMeasure {
+ public:
+  explicit NisWitness(const ConflictParameters& parameters) : blame_(parameters) {}
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override { blame_.Reset(); }
+
+ private:
+  NisBlame blame_;
+};
+
+/// Products c under Jousselme's D of three consonant beliefs: the square, which is the same for
+/// all, and that of each pair.
+struct BeliefProducts {
+  double square;
+  double radar_lidar;
+  double radar_prediction;
+  double lidar_prediction;
+};
+
+/// Support of each body of evidence by the others, at least 0, in any unit.
+struct Support {
+  double radar;
+  double lidar;
+};
+
+/// Deng et al. 2004: credibility Crd_i = Sup_i/sum of Sup, Sup_i = sum over j of Sim_ij, with
+/// Sim = 1 - d_J/sqrt(c11). (Without sqrt(c11), the largest d_J of consonant beliefs, disjoint
+/// evidence would still support each other.)
+Support DengSupport(const BeliefProducts& products);
+/// Murphy 2000 averages the evidence. Here: 1 - d_J/sqrt(c11) of a body from the average of the two
+/// others.
+Support MurphySupport(const BeliefProducts& products);
+/// As Deng's, with Sim = cos of the angle that the law of cosines gives between two bodies as
+/// vectors under Jousselme's metric. After the published description of Zhang et al. 2014 (vector
+/// space, cosine theorem, degree of mutual support, an extension of Deng's rule), whose equations
+/// are not at hand: a reading of it, not a copy.
+Support MutualSupport(const BeliefProducts& products);
+
+/// Blame = 1 - support/support0, cut off at 0: support0 is what the same three precisions would
+/// give each other with equal means. So bodies that agree are not to blame for being of unequal
+/// precision. A missing value, by rule: the last blame; none; all the blame on that sensor.
+class BeliefBlame final : public BlameMeasure {
+ public:
+  using SupportFunction = Support (*)(const BeliefProducts&);
+
+  BeliefBlame(const ConflictParameters& parameters, SupportFunction support);
+
+  Blame Step(const Evidence& evidence) override;
+  void Reset() override { last_ = {}; }
+
+ private:
+  Blame Judge(const Evidence& evidence) const;
+  // With means in the order radar, LiDAR, prediction.
+  BeliefProducts Products(const std::array<double, 3>& means_m,
+                          const std::array<double, 3>& stds_m) const;
+
+  ConsonantBeliefs beliefs_;
+  SupportFunction support_;
+  MissingLidar missing_;
+  double offset_m_;
+  double smallest_std_m_;
+  Blame last_;
+};
+
+/// The larger blame of the two sensors, in [0, 1].
+class LargestBlame final : public ConflictMeasure {
+ public:
+  explicit LargestBlame(std::unique_ptr<BlameMeasure> blame) : blame_(std::move(blame)) {}
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override { blame_->Reset(); }
+
+ private:
+  std::unique_ptr<BlameMeasure> blame_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,51 @@
+// The last values of a measure.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace fogline {
+
+/// The values of the last W steps; a step can be there without a value, and ages like any other.
+/// Whoever sums does so anew in every step, oldest first: a result depends on what the window holds
+/// and on nothing that was before.
+class Window {
+ public:
+  /// @param steps W, at least 1
+  explicit Window(int steps) : values_(static_cast<std::size_t>(steps)) {}
+
+  void Push(std::optional<double> value) {
+    values_[oldest_] = value;
+    oldest_ = (oldest_ + 1) % values_.size();
+  }
+
+  void Clear() {
+    for (std::optional<double>& value : values_) value.reset();
+    oldest_ = 0;
+  }
+
+  /// Calls visit(value) for each value that is there, oldest first.
+  template <class Visitor>
+  void ForEach(Visitor&& visit) const {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const std::optional<double>& value = values_[(oldest_ + i) % values_.size()];
+      if (value) visit(*value);
+    }
+  }
+
+  /// Calls visit(value) for each value that is there, newest first.
+  template <class Visitor>
+  void ForEachBackwards(Visitor&& visit) const {
+    for (std::size_t i = values_.size(); i > 0; --i) {
+      const std::optional<double>& value = values_[(oldest_ + i - 1) % values_.size()];
+      if (value) visit(*value);
+    }
+  }
+
+ private:
+  std::vector<std::optional<double>> values_;  // a ring
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace fogline
