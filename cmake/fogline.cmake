@@ -23,7 +23,12 @@ function(fogline_add_tests name)
   target_compile_definitions(${name}_tests PRIVATE
     FOGLINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGLINE_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
+  # Runs in real time want the machine for themselves.
+  set(alone "*InRealtime*:*RealtimeTest.*:*UnderLoad*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-    TEST_FILTER "-Campaign/*"
+    TEST_FILTER "-Campaign/*:${alone}"
     DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name})
+  gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+    TEST_LIST ${name}_alone TEST_FILTER "${alone}-Campaign/*"
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name} RUN_SERIAL ON)
 endfunction()

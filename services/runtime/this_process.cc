@@ -1,6 +1,7 @@
 #include "services/runtime/this_process.h"
 
 #include <sched.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
@@ -30,6 +31,8 @@ bool RunBeforeOthers(int priority) {
     const auto thread = static_cast<pid_t>(std::atoi(task.path().filename().c_str()));
     granted = sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0 && granted;
   }
+  // A page that the kernel has taken back comes again from the disk, when that has time.
+  granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
 }
 

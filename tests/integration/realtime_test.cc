@@ -1,5 +1,6 @@
 // Runs in real time: roles are killed or stopped while the automation drives, and what counts is
 // what the cars do. Everything is judged from the log.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -120,6 +121,20 @@ class RealtimeRun {
   std::optional<Duration> missed_after_;
   std::map<std::string, pid_t> pids_;
 };
+
+TEST(RealtimeTest, RefusesASpeedThatIsNoneOrThatNothingKeeps) {
+  const auto refused = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {Program("fogline"), "run", "scenario/paper.json"});
+    const Outcome run = RunCommand(more);
+    EXPECT_EQ(run.code, 2);
+    return run.err;
+  };
+  EXPECT_THAT(refused({"--speed", "5"}), testing::HasSubstr("--speed requires --realtime"));
+  EXPECT_THAT(refused({"--realtime", "--speed", "nan"}),
+              testing::HasSubstr("error: --speed nan: not from"));
+  EXPECT_THAT(refused({"--realtime", "--transport", "memq"}),
+              testing::HasSubstr("error: --realtime: "));
+}
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   RealtimeRun run("scenario/paper.json", 60);

@@ -1,4 +1,5 @@
 // fogline run: one run of a scenario.
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -41,12 +42,13 @@ struct RunArguments {
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
         ->check(CLI::Range(0.0, 1000.0))
         ->capture_default_str();
-    verb.add_flag(
+    CLI::Option* realtime = verb.add_flag(
         "--realtime", options.realtime,
         "Tick on the wall clock and wait for nobody: inputs that fail are noticed by their "
         "age, and somebody else drives or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
         ->check(CLI::Range(kMinPace, 1000.0))
+        ->needs(realtime)
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
@@ -115,6 +117,10 @@ void ApplyRealtime(RunArguments& arguments) {
   }
   if (options.pace != 0) {
     throw InputError("error: --pace: slows the lockstep down; with --realtime it is --speed");
+  }
+  if (!std::isfinite(arguments.speed)) {  // which no range excludes
+    throw InputError(
+        fmt::format("error: --speed {}: not from {} to 1000", arguments.speed, kMinPace));
   }
   options.pace = arguments.speed;
 }

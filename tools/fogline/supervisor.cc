@@ -93,7 +93,7 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
   if (exit.killed && options_.restarts > 0) {
     text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
   }
-  const bool goes_on = conductor_.GoesOnWithout(exit.role);
+  const bool goes_on = options_.restarts > 0 && conductor_.GoesOnWithout(exit.role);
   if (goes_on) text += "; the run goes on without it";
   for (const std::string& line : exit.lines) {
     text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
