@@ -7,7 +7,8 @@
 // Nothing else changes: what is subscribed arrives as before, in the same order.
 //
 // It also keeps from LCM's parser what no process of ours sends: fragments, whose bounds LCM does
-// not check as it should (LCM issue 628: a remote heap write), and whatever is no message at all.
+// not check as it should (lcm-proj/lcm#628: a remote heap write), and whatever is no message at
+// all.
 #pragma once
 
 #include <linux/filter.h>
