@@ -55,7 +55,7 @@ void RealtimeRule::CountLate(std::size_t input) {
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   newest_ = std::max(newest_, step);
   if (input == tick_input_) {
-    if (!clock_.started()) health_[input] = InputHealth(limits_, period_, time);
+    if (!clock_.started()) health_[input] = InputHealth(limits_, period_, time - paused_);
     clock_.Tick(step, time);
   }
   health_[input].Arrived(step, ClockOf(input, time));
@@ -65,9 +65,16 @@ TimePoint RealtimeRule::Poll(TimePoint now) {
   bus().Drain();  // the newest step is wanted, and not those that a backlog begins with
   if (!Running()) return now;
   now = std::max(now, Clock::now());  // a backlog takes its time
+  NoticeOwnPause(now);
   const TimePoint health_at = UpdateHealth(now);
   const TimePoint fire_at = Fire(now);
-  return std::min({now + kHeartbeat, health_at, fire_at});
+  return wake_ = std::min({now + kHeartbeat, health_at, fire_at});
+}
+
+void RealtimeRule::NoticeOwnPause(TimePoint now) {
+  if (wake_ == TimePoint::max() || now <= wake_) return;
+  const Duration late = now - wake_;
+  if (late > kGrace * std::chrono::duration<double>(period_)) paused_ += late;
 }
 
 TimePoint RealtimeRule::Fire(TimePoint now) {
@@ -106,7 +113,8 @@ TimePoint RealtimeRule::UpdateHealth(TimePoint now) {
     const auto state = static_cast<std::int8_t>(health_[i].Update(ClockOf(i, now)));
     changed = changed || state != before;
     const TimePoint change = health_[i].NextChange();
-    next = std::min(next, i == tick_input_ ? change : clock_.Wall(change));
+    if (change == TimePoint::max()) continue;
+    next = std::min(next, i == tick_input_ ? change + paused_ : clock_.Wall(change));
   }
   if (changed) PublishStatus();
   return next;

@@ -69,13 +69,21 @@ class RealtimeRule : public FireRule {
   void CountLate(std::size_t input);
   /// Takes the time into account. @return when that may change a state
   TimePoint UpdateHealth(TimePoint now);
-  /// The world's ticks are judged on the wall clock, everything else on that of the run.
+  /// The world's ticks are judged on the wall clock without this process's own pauses, in which it
+  /// could not hear them; everything else on the clock of the run.
   TimePoint ClockOf(std::size_t input, TimePoint now) const {
-    return input == tick_input_ && clock_.started() ? now : clock_.At(now);
+    return input == tick_input_ && clock_.started() ? now - paused_ : clock_.At(now);
   }
+  /// Notices that it was called much later than it had asked for.
+  void NoticeOwnPause(TimePoint now);
   void NameCulprit(TimePoint now);
 
+  /// Part of a period by which a call may be late: as the world's ticks (RunClock).
+  static constexpr double kGrace = 0.25;
+
   Duration period_;
+  TimePoint wake_ = TimePoint::max();  // when the next call was asked for, at the latest
+  Duration paused_{};                  // of this process, in all
   std::int64_t step_us_;
   HealthSection limits_;
   RunClock clock_;

@@ -15,6 +15,16 @@ constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
 // What the runner knows of the progress is so many steps old at most, or it does not matter.
 constexpr std::int64_t kProgressAge = 8;
+// A tick that is so late, in periods, was held up by more than the usual jitter.
+constexpr double kHeldUp = 0.05;
+// Then the others get this long at most to finish the step before, several times what they need;
+// and the next tick is so many periods away at least.
+constexpr Duration kFinish = milliseconds(3);
+constexpr double kApart = 0.25;
+
+Duration operator*(double share, Duration period) {
+  return duration_cast<Duration>(share * std::chrono::duration<double>(period));
+}
 
 }  // namespace
 
@@ -79,21 +89,33 @@ TimePoint TickRule::Due(std::int64_t n) const {
          duration_cast<Duration>(static_cast<double>(n) * std::chrono::duration<double>(period()));
 }
 
+bool TickRule::Answered() const {
+  const std::int64_t needed = next() - lead();
+  return needed < 0 || std::ranges::all_of(inputs(), [needed](const Input& input) {
+           return input.ring.Has(needed);
+         });
+}
+
 TimePoint TickRule::Tick(TimePoint now) {
   if (now < Due(tick_)) return Due(tick_);
-  const std::int64_t missed = (now - Due(tick_)) / period();
-  ticks_missed_ += missed;
+  const bool answered = Answered();
+  if (!answered && now - Due(tick_) > kHeldUp * period()) {
+    if (!finish_by_) finish_by_ = now + std::min(kFinish, kApart * period());
+    if (now < *finish_by_) return *finish_by_;
+  }
+  finish_by_.reset();
+  if (!answered) statistics().Miss();
+  std::int64_t missed = (now - Due(tick_)) / period();
   tick_ += missed;
   const TimePoint due = Due(tick_);
-  const std::int64_t step = next();
-  for (const Input& input : inputs()) {
-    if (step >= lead() && !input.ring.Has(step - lead())) {
-      statistics().Miss();
-      break;
-    }
-  }
-  clock().Tick(step, now);
   ++tick_;
+  if (Due(tick_) - now < kApart * period()) {
+    ++tick_;
+    ++missed;
+  }
+  ticks_missed_ += missed;
+  const std::int64_t step = next();
+  clock().Tick(step, now);
   ComputeDue(step, due, now);
   sent_[RingSlot(step)] = {.step = step, .time = Clock::now()};
   return phase_ == Phase::kTicking ? Due(tick_) : now;

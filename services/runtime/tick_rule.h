@@ -3,8 +3,10 @@
 //
 // Step k is due k periods after the start, on a grid that does not drift. A tick at which the
 // process did not run (it was stopped, or the machine was) is not made up for: of those that are
-// over only the last one is begun, at once. Simulated time is the number of steps, so it stands
-// still with the world's process, and no step is ever left out; what was missed is counted.
+// over only the last one is begun. When the machine stood still the step before may not be
+// finished: the others get a moment for it, and the tick after a late one is not close behind it.
+// Simulated time is the number of steps, so it stands still with the world's process, and no step
+// is ever left out; what was missed is counted.
 //
 // A world that is started again goes on behind the last TRUTH that the recorder has.
 #pragma once
@@ -45,6 +47,8 @@ class TickRule final : public RealtimeRule {
   TimePoint End(TimePoint now);
   /// A step's command has come, in time or not: takes its latency, once.
   void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
+  /// The step before the next one has its commands, or there is none.
+  bool Answered() const;
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
 
@@ -56,6 +60,7 @@ class TickRule final : public RealtimeRule {
   TimePoint start_{};
   std::int64_t tick_ = 0;  // next one on the grid
   std::int64_t ticks_missed_ = 0;
+  std::optional<TimePoint> finish_by_{};  // until then a late tick waits for the step before
   /// A step that is out, until its command has come.
   struct Sent {
     std::int64_t step = -1;

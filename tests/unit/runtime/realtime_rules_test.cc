@@ -48,7 +48,7 @@ class RealtimeRulesTest : public testing::Test {
   /// The last STATUS of the node, of a heartbeat later.
   const status_t& Status(Node& node) {
     later_ += milliseconds(201);
-    script_.Poll(node, Clock::now() + later_);
+    script_.PollUpTo(node, Clock::now() + later_);
     return status_.back();
   }
 
@@ -70,11 +70,11 @@ class RealtimeRuleTest : public RealtimeRulesTest {
 
 TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
   Say<ego_t, radar_t, lidar_t>(0);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   Say<ego_t, lidar_t>(1);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   Say<ego_t, radar_t, lidar_t>(2);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(0, 2));
   EXPECT_EQ(Status(node_).deadline_misses, 1);
   EXPECT_TRUE(std::ranges::none_of(requests_, [](const resend_t& request) {
@@ -84,7 +84,7 @@ TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
 
 TEST_F(RealtimeRuleTest, ComputesTheNewestOfSeveralStepsThatAreThere) {
   for (std::int64_t step = 0; step < 4; ++step) Say<ego_t, radar_t, lidar_t>(step);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(3));
 }
 
@@ -92,9 +92,9 @@ TEST_F(RealtimeRuleTest, CountsWhatComesTooLateAndNeverUsesIt) {
   Say<ego_t, radar_t, lidar_t>(0);
   Say<ego_t, lidar_t>(1);
   Say<ego_t, radar_t, lidar_t>(2);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   Say<radar_t>(1);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(2));
   const status_t& status = Status(node_);
   const auto radar = std::ranges::find(status.input, ChannelOf<radar_t>().name);
@@ -104,8 +104,8 @@ TEST_F(RealtimeRuleTest, CountsWhatComesTooLateAndNeverUsesIt) {
 
 TEST_F(RealtimeRuleTest, BlamesTheWorldAloneForItsPause) {
   Say<ego_t, radar_t, lidar_t>(0);
-  script_.Poll(node_);
-  script_.Poll(node_, At(3));
+  script_.PollUpTo(node_);
+  script_.PollUpTo(node_, At(3));
   const status_t& status = status_.back();
   for (std::size_t i = 0; i < status.input.size(); ++i) {
     const bool from_world = status.input[i] == ChannelOf<ego_t>().name;
@@ -113,6 +113,16 @@ TEST_F(RealtimeRuleTest, BlamesTheWorldAloneForItsPause) {
         << status.input[i];
   }
   EXPECT_EQ(status.waiting_for, ChannelOf<ego_t>().name);
+}
+
+TEST_F(RealtimeRuleTest, BlamesNobodyForItsOwnPause) {
+  Say<ego_t, radar_t, lidar_t>(0);
+  script_.PollUpTo(node_);
+  script_.Poll(node_, At(4));
+  const status_t& status = Status(node_);
+  for (std::size_t i = 0; i < status.input.size(); ++i) {
+    EXPECT_EQ(status.input_state[i], status_t::INPUT_OK) << status.input[i];
+  }
 }
 
 // ---- DeadlineRule: the arbitrator decides in every step ----------------------------------------
@@ -134,24 +144,24 @@ class DeadlineRuleTest : public RealtimeRulesTest {
 
 TEST_F(DeadlineRuleTest, DecidesAtOnceWhenEverythingIsThere) {
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t, driver_command_t>(0);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0));
   EXPECT_EQ(Status(node_).deadline_misses, 0);
 }
 
 TEST_F(DeadlineRuleTest, WaitsUntilTheDeadlineForWhatIsMissingAndNoLonger) {
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
-  script_.Poll(node_);
-  script_.Poll(node_, At(0.45));
+  script_.PollUpTo(node_);
+  script_.PollUpTo(node_, At(0.45));
   EXPECT_THAT(StepsOf(commands_), ElementsAre());
-  script_.Poll(node_, At(0.55));
+  script_.PollUpTo(node_, At(0.55));
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0));
   EXPECT_EQ(Status(node_).deadline_misses, 1);
 }
 
 TEST_F(DeadlineRuleTest, DecidesNothingWithoutATick) {
   Say<radar_t, lidar_t, track_t, accel_command_t, driver_command_t>(0);
-  script_.Poll(node_, At(4));
+  script_.PollUpTo(node_, At(4));
   EXPECT_THAT(StepsOf(commands_), ElementsAre());
 }
 
@@ -159,26 +169,26 @@ TEST_F(DeadlineRuleTest, DecidesTheNewestStepOnly) {
   Say<ego_t>(0);
   Say<ego_t>(1);
   Say<ego_t>(2);
-  script_.Poll(node_, At(0.55));
+  script_.PollUpTo(node_, At(0.55));
   EXPECT_THAT(StepsOf(commands_), ElementsAre(2));
 }
 
 TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
   // GIVEN a human who is lost
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
-  script_.Poll(node_, At(1.22));
+  script_.PollUpTo(node_, At(1.22));
   // THEN the next step is decided at once
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
   // WHEN he speaks again, which is too late for that step
   Say<driver_command_t>(1);
   // THEN the one after it waits for him
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(2);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
   Say<driver_command_t>(2);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1, 2));
 }
 
@@ -192,38 +202,64 @@ class TickRuleTest : public RealtimeRulesTest {
 
 TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWhoeverAnswers) {
   script_.SayRun(run_t::PREPARE, -1, kSpeed);
-  script_.Poll(node_);
+  script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(truths_), ElementsAre());
   Go();
-  script_.Poll(node_, At(0));
-  script_.Poll(node_, At(0.9));
+  script_.PollUpTo(node_, At(0));
+  script_.PollUpTo(node_, At(0.9));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  script_.Poll(node_, At(1));
-  script_.Poll(node_, At(2.01));
+  script_.PollUpTo(node_, At(1));
+  script_.PollUpTo(node_, At(2.01));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1, 2));
   EXPECT_EQ(Status(node_).deadline_misses, 2) << "nobody commanded anything";
 }
 
 TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
   Go();
-  script_.Poll(node_, At(0));
+  script_.PollUpTo(node_, At(0));
+  Say<arbitration_t, follower_command_t>(0);
   // GIVEN that it wakes a little after tick 3
   script_.Poll(node_, At(3.05));
-  script_.Poll(node_, At(3.06));
+  script_.PollUpTo(node_, At(3.06));
   // THEN ticks 1 and 2 are missed, and the next step begins at once
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
   EXPECT_EQ(Status(node_).ticks_missed, 2);
   // AND the grid is what it was
-  script_.Poll(node_, At(3.95));
+  script_.PollUpTo(node_, At(3.95));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
-  script_.Poll(node_, At(4.01));
+  script_.PollUpTo(node_, At(4.01));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1, 2));
+}
+
+TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
+  Go();
+  script_.PollUpTo(node_, At(0));
+  // GIVEN that nobody has answered yet when it wakes, just before a tick
+  script_.Poll(node_, At(2.999));
+  EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
+  // WHEN the others are done THEN the step begins at once, and its tick is not close to the next
+  Say<arbitration_t, follower_command_t>(0);
+  script_.PollUpTo(node_, At(2.9995));
+  EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
+  script_.PollUpTo(node_, At(3.5));
+  EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
+  script_.PollUpTo(node_, At(4.01));
+  EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1, 2));
+  EXPECT_EQ(Status(node_).ticks_missed, 2) << "tick 1, in the pause, and tick 3";
+}
+
+TEST_F(TickRuleTest, WaitsForNobodyForLong) {
+  Go();
+  script_.PollUpTo(node_, At(0));
+  script_.Poll(node_, At(1.5));
+  script_.PollUpTo(node_, At(1.51));
+  EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
 }
 
 TEST_F(TickRuleTest, CountsTheLatencyAlsoOfACommandThatComesTooLate) {
   Go();
-  script_.Poll(node_, At(0));
-  script_.Poll(node_, At(1));
+  script_.PollUpTo(node_, At(0));
+  script_.PollUpTo(node_, At(1));
   Say<arbitration_t>(0);
   const status_t& status = Status(node_);
   EXPECT_GT(status.latency_max_us, 0);
@@ -248,10 +284,10 @@ TEST_F(RecordRuleTest, AsksForWhatIsMissingWhileThereIsHopeAndThenGoesOnWithoutI
   // GIVEN a step that lacks everything but TRUTH, and one that is complete
   Say<truth_t>(0);
   ForEachStepChannel([&]<class M>(std::size_t) { Say<M>(1); });
-  script_.Poll(recorder_, At(1.4));
+  script_.PollUpTo(recorder_, At(1.4));
   EXPECT_EQ(AskedFor(ChannelOf<radar_t>().name), 0) << "it may be on its way";
   for (int k = 0; k < 20; ++k) {
-    script_.Poll(recorder_, At(1.6) + k * milliseconds(21));
+    script_.PollUpTo(recorder_, At(1.6) + k * milliseconds(21));
   }
   EXPECT_EQ(AskedFor(ChannelOf<radar_t>().name), 4);
   EXPECT_EQ(AskedFor(ChannelOf<truth_t>().name), 0) << "it is there";
@@ -263,7 +299,7 @@ TEST_F(RecordRuleTest, WritesAtOnceWhatIsComplete) {
   for (std::int64_t step = 0; step < 3; ++step) {
     ForEachStepChannel([&]<class M>(std::size_t) { Say<M>(step); });
   }
-  script_.Poll(recorder_);
+  script_.PollUpTo(recorder_);
   EXPECT_EQ(Status(recorder_).header.step, 2);
   EXPECT_EQ(AskedFor(ChannelOf<radar_t>().name), 0);
 }

@@ -74,13 +74,21 @@ class Script {
     Say(resend);
   }
 
-  /// Lets the node do what is due at a time.
+  /// Lets the node do what is due at a time, once, whatever has come to pass since it was last
+  /// called.
   void Poll(Node& node, TimePoint now = Clock::now()) {
-    node.Poll(now);
+    wakes_[&node] = std::max(node.Poll(now), now + milliseconds(1));
     bus_.Drain();
+  }
+  /// The same up to a time, as its process would: whenever it asks for it.
+  void PollUpTo(Node& node, TimePoint now = Clock::now()) {
+    TimePoint& wake = wakes_.try_emplace(&node, TimePoint::max()).first->second;
+    while (wake < now) Poll(node, wake);
+    Poll(node, now);
   }
 
  private:
+  std::map<Node*, TimePoint> wakes_;  // when each has asked to be called
   std::string text_;
   std::int64_t sequence_ = 0;  // of what the runner says
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
