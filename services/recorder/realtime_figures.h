@@ -52,8 +52,8 @@ void VisitFigures(const RealtimeFigures& f, Visitor&& visit) {
 
 class RealtimeAccumulator {
  public:
-  RealtimeAccumulator(double speed, std::int64_t step_us)
-      : speed_(speed), fallbacks_(step_us, speed) {}
+  RealtimeAccumulator(double speed, std::int64_t step_us, std::int64_t steps)
+      : speed_(speed), fallbacks_(step_us, speed, steps) {}
 
   /// The next STATUS of the log.
   void Add(const status_t& status);

@@ -157,7 +157,7 @@ class RunLogReader::Assembler {
   void ExpectRealtime(const run_t& run) {
     const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
     steps_ = scenario.steps;
-    realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6));
+    realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
   }
 
   void TakeStatus(Bytes event) {

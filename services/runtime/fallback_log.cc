@@ -40,13 +40,14 @@ std::string Fallback::Text() const {
   return text;
 }
 
-FallbackLog::FallbackLog(std::int64_t step_us, double speed)
-    : step_us_(step_us), silent_us_(kSilent_us * speed) {}
+FallbackLog::FallbackLog(std::int64_t step_us, double speed, std::int64_t steps)
+    : step_us_(step_us), steps_(steps), silent_us_(kSilent_us * speed) {}
 
 const Fallback* FallbackLog::Add(const status_t& status) {
   const std::size_t role = PlaceOf(status.role);
   // Of the recorder's inputs each has somebody else who works on it.
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
+  if (status.header.utime / step_us_ >= steps_ - 1) return nullptr;
   Known& known = roles_[role];
   known.lost.reset();  // whatever it said before, or its predecessor
   known.utime = status.header.utime;

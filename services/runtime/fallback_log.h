@@ -37,7 +37,8 @@ class FallbackLog {
 
   /// @param step_us simulated time of a step
   /// @param speed simulated seconds per second
-  FallbackLog(std::int64_t step_us, double speed);
+  /// @param steps of the run: that all is silent after its last one is no news
+  FallbackLog(std::int64_t step_us, double speed, std::int64_t steps);
 
   /// Takes the next STATUS of a role. @return the change since its last one, nullptr if there is
   /// none; valid until the next call
@@ -62,6 +63,7 @@ class FallbackLog {
   bool IsSilent(const Known& known, std::int64_t utime) const;
 
   std::int64_t step_us_;
+  std::int64_t steps_;
   double silent_us_;  // simulated
   std::array<Known, kRoles.size()> roles_;
   Fallback newest_;

@@ -118,7 +118,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                          }});
   if (options.announce) AnnounceProcesses(bus, run_id, supervisor.group(), options.external);
   std::string trouble;
-  FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace);
+  FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     conductor.OnEveryStatus([&](const status_t& status) {
       if (const Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());

@@ -18,7 +18,7 @@ status_t Said(const std::string& role, std::int64_t instance, std::int64_t seque
 }
 
 TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
-  RealtimeAccumulator figures(1, kStep_us);
+  RealtimeAccumulator figures(1, kStep_us, 1000);
   for (const std::int64_t sequence : {1, 3, 2}) {  // the last one was overtaken
     status_t world = Said("world", 1, sequence);
     world.ticks = 10 * sequence;
@@ -32,7 +32,7 @@ TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
 
 TEST(RealtimeFiguresTest, IgnoresNumbersThatNoProcessCanHaveCounted) {
   constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
-  RealtimeAccumulator figures(1, kStep_us);
+  RealtimeAccumulator figures(1, kStep_us, 1000);
   status_t world = Said("world", 1, 1);
   world.ticks = 5;
   world.deadline_misses = 2;

@@ -40,7 +40,8 @@ class FallbackLogTest : public testing::Test {
     return change != nullptr ? change->Text() : "";
   }
 
-  FallbackLog log_{kStep_us, 1};
+  static constexpr std::int64_t kSteps = 100'000;
+  FallbackLog log_{kStep_us, 1, kSteps};
 };
 
 TEST_F(FallbackLogTest, SaysWhatIsLostWhoIsToBlameAndWhatIsDone) {
@@ -77,10 +78,15 @@ TEST_F(FallbackLogTest, ForgetsWhatARoleHasLostOnceItIsSilentItself) {
 }
 
 TEST_F(FallbackLogTest, MeasuresSilenceInTheTimeOfPeople) {
-  FallbackLog fast(kStep_us, 20);
+  FallbackLog fast(kStep_us, 20, kSteps);
   fast.Add(Said("fusion", 12, {{"RADAR", kLost}}));
   fast.Add(Said("acc", 40, {{"TRACK", kLost}}));  // 0.14 s later
   EXPECT_EQ(fast.all().back().culprit, "radar");
+}
+
+TEST_F(FallbackLogTest, TakesTheSilenceAfterTheLastStepForNoNews) {
+  EXPECT_EQ(Add(Said("fusion", kSteps - 1, {{"RADAR", kLost}})), "");
+  EXPECT_NE(Add(Said("fusion", kSteps - 2, {{"RADAR", kLost}})), "");
 }
 
 TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
