@@ -10,6 +10,8 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -41,6 +43,13 @@ void PutBigEndian(Unsigned value, std::size_t offset, EventHeader& header) {
 }
 
 }  // namespace
+
+bool IsEventLogOrEmpty(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<std::uint8_t, sizeof(kSyncWord)> head{};
+  in.read(reinterpret_cast<char*>(head.data()), std::ssize(head));
+  return in.gcount() == 0 ? in.eof() : in.good() && ReadUint32(head, 0) == kSyncWord;
+}
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& file)
     : file_(file), out_(std::fopen(file.c_str(), "wb")) {

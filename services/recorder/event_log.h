@@ -55,6 +55,9 @@ class EventLogWriter {
   std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
 
+/// A file that may be replaced by a log: an event log by its first bytes, or empty.
+bool IsEventLogOrEmpty(const std::filesystem::path& file);
+
 /// One event; views into the mapped file.
 struct Event {
   std::int64_t number;

@@ -23,6 +23,7 @@ void WatchSignals() {
   action.sa_handler = [](int) { interrupted = 1; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
 }
 
 // In real time the clock of the run comes first, then everybody else, then the rest of the machine.

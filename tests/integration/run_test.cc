@@ -1,4 +1,6 @@
 // `fogline run` as a person uses it: real processes, real LCM, real logs.
+#include <csignal>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -107,17 +109,78 @@ TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
 TEST(RunTest, DoesNotOverwriteALogUnlessForced) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
-  std::ofstream(log) << "precious";
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                        "--set", "/steps=10", "--log", log})
+                .code,
+            0);
+  const auto size = std::filesystem::file_size(log);
   const std::vector<std::string> command{
       Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log", log};
   Outcome outcome = RunCommand(command);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err, log + ": error: --log: the file exists; --force replaces it\n");
-  EXPECT_EQ(std::filesystem::file_size(log), 8U);
+  EXPECT_EQ(std::filesystem::file_size(log), size);
   std::vector<std::string> forced = command;
   forced.emplace_back("--force");
   EXPECT_EQ(RunCommand(forced).code, 0);
-  EXPECT_GT(std::filesystem::file_size(log), 8U);
+  EXPECT_GT(std::filesystem::file_size(log), size);
+}
+
+TEST(RunTest, ReplacesNothingButAnEventLogEvenWhenForced) {
+  const ScratchFolder folder;
+  const std::string scenario = folder.File("mine.json");
+  std::ofstream(scenario) << "precious";
+  const Outcome outcome = RunCommand({Program("fogline"), "run", "scenario/paper.json",
+                                      "--transport", "direct", "--force", "--log", scenario});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, scenario +
+                             ": error: --log: the file is no event log and stays as it is, "
+                             "--force or not\n");
+  EXPECT_EQ(std::filesystem::file_size(scenario), 8U);
+}
+
+TEST(RunTest, LeavesNoEmptyLogOfARunThatNeverBegan) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  EXPECT_NE(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                        "udpm://nowhere", "--log", log})
+                .code,
+            0);
+  EXPECT_FALSE(std::filesystem::exists(log));
+}
+
+TEST(RunTest, FailsWhereItsResultCannotBeWritten) {
+  const Outcome outcome =
+      RunCommand({"sh", "-c",
+                  Program("fogline") +
+                      " run scenario/paper.json --transport direct --set /steps=10 > /dev/full"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.err,
+            "fogline run: error: standard output cannot be written, such as on a full disk\n");
+}
+
+TEST(RunTest, HangingUpEndsARunAsCtrlCDoes) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--log", log});
+  ASSERT_TRUE(run.WaitForErr("world"));
+  run.Signal(SIGHUP);
+  EXPECT_EQ(run.Wait(), 130);
+}
+
+TEST(DigestTest, WorksOnTheOtherLogsWhenOneIsNone) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                        "--set", "/steps=10", "--log", log})
+                .code,
+            0);
+  for (const char* verb : {"digest", "metrics"}) {
+    const Outcome outcome = RunCommand({Program("fogline"), verb, "README.md", log});
+    EXPECT_EQ(outcome.code, 2) << verb;
+    EXPECT_NE(outcome.err.find("README.md: error: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.out.find(log), std::string::npos) << outcome.out;
+  }
 }
 
 TEST(RunTest, RefusesBadArgumentsWithExitCode2AndOneClearLine) {

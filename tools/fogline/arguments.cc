@@ -11,6 +11,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/recorder/event_log.h"
+
 namespace fogline {
 
 namespace {
@@ -54,6 +56,16 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
     throw InputError(
         fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
   }
+  if (!IsEventLogOrEmpty(log)) {
+    throw InputError(
+        fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
+                    log.string()));
+  }
+}
+
+LogWithoutRun::~LogWithoutRun() {
+  std::error_code ignored;
+  if (std::filesystem::is_empty(log_, ignored) && !ignored) std::filesystem::remove(log_, ignored);
 }
 
 std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {

@@ -1,11 +1,14 @@
 // Arguments that several verbs share.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
@@ -42,12 +45,41 @@ class ScenarioArguments {
   std::string seed_;  // checked where all fields are
 };
 
-/// A log file to write: refuses one that exists unless `force`; makes its folder.
+/// A log file to write: refuses one that exists unless `force`, and with it whatever is no event
+/// log; makes its folder.
 /// @throws InputError
 void PrepareLog(const std::filesystem::path& log, bool force);
 
+/// Removes a log at the end that a run has left empty, because it never began.
+class LogWithoutRun {
+ public:
+  explicit LogWithoutRun(std::filesystem::path log) : log_(std::move(log)) {}
+  ~LogWithoutRun();
+  LogWithoutRun(const LogWithoutRun&) = delete;
+  LogWithoutRun& operator=(const LogWithoutRun&) = delete;
+
+ private:
+  std::filesystem::path log_;
+};
+
 /// "logs/STEM-1.lcm", or the first number that is free.
 std::filesystem::path FreshLog(const std::filesystem::path& scenario_file);
+
+/// Calls `work(log)` for each; one that is no log is named on stderr and left out, and the others
+/// are worked on all the same. Returns whether there was none of that kind.
+template <class Work>
+bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work& work) {
+  bool readable = true;
+  for (const std::filesystem::path& log : logs) {
+    try {
+      work(log);
+    } catch (const InputError& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      readable = false;
+    }
+  }
+  return readable;
+}
 
 /// --json output: `text` and a newline on stdout.
 void PrintJson(const std::string& text);

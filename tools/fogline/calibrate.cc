@@ -1,5 +1,4 @@
 // fogline calibrate: finds the values of a scenario's fields with which its table meets another.
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -17,6 +16,7 @@
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/engine.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -128,9 +128,9 @@ void WriteOut(const std::filesystem::path& file, std::string text,
     text = WithValue(text, problem.fields[i].pointer(), NumberText(values[i]));
   }
   ParseScenario(text, file.string());
-  std::ofstream stream(file, std::ios::binary);
-  stream << text << std::flush;
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  WholeFile out(file);
+  out.Write(text);
+  out.Finish();
   fmt::print(stderr, "{}: written\n", file.string());
 }
 

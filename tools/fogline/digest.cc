@@ -20,7 +20,7 @@ struct DigestArguments {
 int RunDigest(const DigestArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool complete = true;
-  for (const std::filesystem::path& log : arguments.logs) {
+  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     RunLogReader reader(log);
     Digest digest;
     while (const StepMessages* messages = reader.Next()) {
@@ -36,8 +36,9 @@ int RunDigest(const DigestArguments& arguments) {
                     {"steps", run.steps},
                     {"complete", run.complete}});
     if (!arguments.json) fmt::print("{}  {}\n", digest.Hex(), log.string());
-  }
+  });
   if (arguments.json) PrintJson(rows.dump(2));
+  if (!readable) return kBadInput;
   return complete ? kDone : kCheckFailed;
 }
 

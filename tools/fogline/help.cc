@@ -1,6 +1,9 @@
 #include "tools/fogline/help.h"
 
+#include <cmath>
 #include <sstream>
+
+#include <fmt/core.h>
 
 namespace fogline {
 namespace {
@@ -8,6 +11,21 @@ namespace {
 constexpr std::size_t kOptionColumns = 34;  // of the names of options
 
 }  // namespace
+
+CLI::Validator NumberIn(double least, double most) {
+  const CLI::Validator range =
+      CLI::Range(least, most);  // lets NaN pass, which compares with nothing
+  CLI::Validator number = range;
+  number.operation([range, least, most](std::string& text) {
+    const std::string wrong = range(text);
+    double value = 0;
+    if (!wrong.empty() || (CLI::detail::lexical_cast(text, value) && !std::isnan(value))) {
+      return wrong;
+    }
+    return fmt::format("Value {} not in range [{:g} - {:g}]", text, least, most);
+  });
+  return number;
+}
 
 HelpFormatter::HelpFormatter() { column_width(kOptionColumns); }
 

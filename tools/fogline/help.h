@@ -11,6 +11,9 @@ namespace fogline {
 /// No line of a help text is longer.
 inline constexpr std::size_t kHelpColumns = 100;
 
+/// A real number of a closed range, which NaN is not in.
+CLI::Validator NumberIn(double least, double most);
+
 /// CLI11's help with the descriptions of options wrapped.
 class HelpFormatter : public CLI::Formatter {
  public:

@@ -16,12 +16,13 @@ namespace internal {
 inline volatile std::sig_atomic_t interrupts = 0;
 }
 
-/// From now on SIGINT and SIGTERM are only noted.
+/// From now on SIGINT, SIGTERM and SIGHUP (the terminal is gone) are only noted.
 inline void WatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = [](int) { internal::interrupts = 1; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
 }
 
 inline bool WasInterrupted() { return internal::interrupts != 0; }

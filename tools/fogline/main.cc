@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -43,7 +44,11 @@ int Main(int argc, char** argv) {
   }
   const std::string name = CommandName(app);
   try {
-    return action();
+    const int code = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written, such as on a full disk");
+    }
+    return code;
   } catch (const InputError& error) {
     // A mistake in a file begins with its place, one in the arguments with "error:".
     const std::string_view what = error.what();

@@ -19,7 +19,9 @@ struct MetricsArguments {
 
 int RunMetrics(const MetricsArguments& arguments) {
   std::vector<LoggedRun> runs;
-  for (const std::filesystem::path& log : arguments.logs) runs.push_back(ReadLoggedRun(log));
+  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
+    runs.push_back(ReadLoggedRun(log));
+  });
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -41,6 +43,7 @@ int RunMetrics(const MetricsArguments& arguments) {
     fmt::print("{}", MeasuresText(run.result.measures));
   }
   if (arguments.json) PrintJson(rows.dump(2));
+  if (!readable) return kBadInput;
   return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
 }
 

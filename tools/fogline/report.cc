@@ -21,6 +21,7 @@
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/threshold_rows.h"
 #include "tools/fogline/verbs.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -185,11 +186,9 @@ int RunReport(const ReportArguments& arguments) {
   }
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
-  std::ofstream file(arguments.output, std::ios::binary);
-  file << MakeReport(pages, table, curves);
-  if (!file.flush()) {
-    throw InputError(fmt::format("{}: error: --output: cannot write", arguments.output.string()));
-  }
+  WholeFile file(arguments.output);
+  file.Write(MakeReport(pages, table, curves));
+  file.Finish();
   if (!arguments.png.empty()) {
     WritePngFigures(arguments.png, pages);
     if (curves) WritePngCurves(arguments.png, *curves);

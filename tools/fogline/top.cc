@@ -12,6 +12,7 @@
 
 #include "services/runtime/bus.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/verbs.h"
 #include "tools/watch/terminal.h"
@@ -43,10 +44,10 @@ struct TopArguments {
         ->envname("LCM_DEFAULT_URL")
         ->capture_default_str();
     verb.add_option("--interval", interval_s, "Length of an observation, in s")
-        ->check(CLI::Range(0.1, 3600.0))
+        ->check(NumberIn(0.1, 3600))
         ->capture_default_str();
     verb.add_option("--for", limit_s, "Quit after so long, in s (0: do not)")
-        ->check(CLI::Range(0.0, 1e7))
+        ->check(NumberIn(0, 1e7))
         ->capture_default_str();
     verb.add_flag("--once", once, "Print what was seen in one interval, and quit");
     verb.add_flag("--json", json, "Print a JSON document for every interval instead of a table");
