@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "scenario/engagement.h"
 #include "scenario/field.h"
 
 namespace fogline {
@@ -222,6 +223,12 @@ struct ArbitratorSection {
   std::int64_t window_steps = 8;
   MissingLidar missing_lidar = MissingLidar::kHold;
   double missing_conflict_m = 10.0;
+  TransferSection transfer;
+  AdaptiveSection adaptive;
+  BayesSection bayes;
+  AvailabilitySection availability;
+  BlendSection blend;
+  TakeOverSection take_over;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
@@ -255,6 +262,12 @@ struct ArbitratorSection {
                  "What a step without radar or LiDAR value counts as.");
     visit.Number("missing_conflict_m", self.missing_conflict_m,
                  {.min = 0, .max = 1000, .unit = "m", .doc = "For missing_lidar conflict."});
+    visit.Section("transfer", self.transfer, "How authority goes from one to the other.");
+    visit.Section("adaptive", self.adaptive, "For policy adaptive.");
+    visit.Section("bayes", self.bayes, "For policy bayes.");
+    visit.Section("availability", self.availability, "For policy availability.");
+    visit.Section("blend", self.blend, "For policy blend.");
+    visit.Section("take_over", self.take_over, "Emergency fallback: a driver who must be asked.");
   }
 };
 

@@ -8,9 +8,12 @@
 
 #include "scenario/control.h"
 #include "scenario/field.h"
+#include "scenario/human.h"
 #include "scenario/realtime.h"
 #include "scenario/road.h"
 #include "scenario/sensing.h"
+#include "scenario/traffic.h"
+#include "scenario/vehicle.h"
 
 namespace fogline {
 
@@ -54,6 +57,9 @@ struct Scenario {
   std::int64_t steps = 500;
   double step_s = 0.1;
   WorldSection world;
+  RoadSection road;
+  VehicleSection host_vehicle;
+  VehicleSection follower_vehicle;
   LeadSection lead;
   FogSection fog;
   RadarSection radar;
@@ -61,8 +67,10 @@ struct Scenario {
   FusionSection fusion;
   AccSection acc;
   DriverSection driver;
+  HumanSection human;
   ArbitratorSection arbitrator;
   AccSection follower;
+  FollowersSection followers;
   HealthSection health;
   MinimalRiskSection minimal_risk;
   MeasuresSection measures;
@@ -92,6 +100,9 @@ struct Scenario {
                   .doc = "Length of a step.",
                   .source = "Sourav & Cheng 2024: 0.1 s"});
     visit.Section("world", self.world, "The cars at step 0, and their integration.");
+    visit.Section("road", self.road, "What the cars drive on.");
+    visit.Section("host_vehicle", self.host_vehicle, "How the host obeys its driver.");
+    visit.Section("follower_vehicle", self.follower_vehicle, "How following cars obey theirs.");
     visit.Section("lead", self.lead, "Speed of the preceding car.");
     visit.Section("fog", self.fog, "Fog and rain over time.");
     visit.Section("radar", self.radar, "The host's radar.");
@@ -99,8 +110,10 @@ struct Scenario {
     visit.Section("fusion", self.fusion, "Extended Kalman filter over both.");
     visit.Section("acc", self.acc, "The host's automation agent.");
     visit.Section("driver", self.driver, "The human driver of the host.");
+    visit.Section("human", self.human, "What makes him more human than the paper's.");
     visit.Section("arbitrator", self.arbitrator, "Who drives the host.");
     visit.Section("follower", self.follower, "ACC of the following car.");
+    visit.Section("followers", self.followers, "The cars behind the host, and who drives them.");
     visit.Section("health", self.health, "Real time: when an input counts as stale or lost.");
     visit.Section("minimal_risk", self.minimal_risk,
                   "Real time: how a car stops that nobody drives any more.");

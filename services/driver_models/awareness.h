@@ -5,28 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenario/human.h"
+
 namespace fogline {
 
 enum class DriverTask {
   kMonitors,  // automation drives and has asked for nothing
   kDrives,    // or has been asked to
-};
-
-struct AwarenessParameters {
-  /// A_mon, where awareness ends up if he only monitors, 0 to 1. Estimate: 0.3 to 0.7, by what else
-  /// he does; SUMO's ToC device begins a take-over with 0.5.
-  double monitoring = 0.5;
-
-  /// Time constant of the way there in s, above 0. Estimate: 30 to 120.
-  double fading_s = 60.0;
-
-  /// Growth in 1/s from a request on, above 0. SUMO's ToC device: 0.1.
-  double recovery_ps = 0.1;
-
-  /// T_r of an aware driver, and what a driver without awareness needs more, both in s, at least 0.
-  /// Estimate.
-  double reaction_time_s = 0.8;
-  double slow_reaction_time_s = 0.7;
 };
 
 /// Awareness A in [0, 1], from step to step exactly:

@@ -3,12 +3,11 @@
 #pragma once
 
 #include "scenario/control.h"
+#include "scenario/human.h"
 #include "services/driver/idm.h"
 #include "services/driver_models/situation.h"
 
 namespace fogline {
-
-enum class FollowingModel { kIdm, kIidm, kAccIdm };
 
 /// The IDM of services/driver and the two that Kesting, Treiber & Helbing (Philosophical
 /// Transactions of the Royal Society A 368:4585, 2010) and Treiber & Kesting (Traffic Flow

@@ -5,31 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "scenario/human.h"
 #include "services/driver_models/following.h"
 #include "services/driver_models/ornstein_uhlenbeck.h"
 #include "services/driver_models/situation.h"
 #include "services/runtime/random.h"
 
 namespace fogline {
-
-struct HumanParameters {
-  /// T_r in s, at least 0. Treiber, Kesting & Helbing 2006 look at 0.5 to 1.1; 0.8 is in the
-  /// middle.
-  double reaction_time_s = 0.8;
-
-  /// V_s, relative standard deviation of the gap, 0 to 1. As in the paper: 0.05; the book has 0.10.
-  double gap_error = 0.05;
-
-  /// r_c in 1/s, standard deviation of the inverse time to collision, 0 to 1. As in the paper:
-  /// 0.01.
-  double approach_error_ps = 0.01;
-
-  /// tau of both errors in s, above 0. As in the paper: 20.
-  double error_time_s = 20.0;
-
-  /// Whether he makes up for his reaction time. In the paper he does.
-  bool anticipates = true;
-};
 
 /// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for the one car ahead:
 ///

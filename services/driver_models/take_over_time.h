@@ -3,28 +3,10 @@
 
 #include <cstdint>
 
+#include "scenario/engagement.h"
 #include "services/runtime/random.h"
 
 namespace fogline {
-
-enum class TakeOverModel {
-  kLogNormal,        // of the given mean and standard deviation
-  kLogNormalByLead,  // of SUMO's mean for the lead time, and so wide that P(late) is as given
-  kSumo,             // SUMO's normal distribution
-};
-
-struct TakeOverParameters {
-  TakeOverModel model = TakeOverModel::kLogNormal;
-
-  /// Of kLogNormal, in s, above 0. Zhang, de Winter, Varotto, Happee & Martens (Transportation
-  /// Research F 64:285, 2019), 129 studies: mean 2.7, standard deviation of the means 1.45.
-  double mean_s = 2.7;
-  double std_s = 1.45;
-
-  /// P(late) of the other two: that he takes longer than the lead time; above 0, below 0.5. SUMO's
-  /// ToC device: 0.05.
-  double late_probability = 0.05;
-};
 
 /// Take-over time T for a request t before the automation gives up.
 ///

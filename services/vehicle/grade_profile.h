@@ -3,12 +3,9 @@
 
 #include <vector>
 
-namespace fogline {
+#include "scenario/vehicle.h"
 
-struct GradePoint {
-  double position_m = 0;  // along the lane, as truth_t counts
-  double grade = 0;       // rise per horizontal length, positive uphill: 0.05 is 5 %
-};
+namespace fogline {
 
 /// The grade between points in proportion, before the first and after the last as there. No points
 /// are a level road.

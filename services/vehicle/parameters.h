@@ -2,6 +2,8 @@
 // well its tyres hold on a road.
 #pragma once
 
+#include "scenario/vehicle.h"
+
 namespace fogline {
 
 /// A vehicle on its longitudinal axis. The defaults are the sedan. Where no published figure was at
@@ -88,7 +90,18 @@ inline constexpr VehicleParameters kTruck{
     .brake_lag_s = 0.3,
 };
 
-enum class Surface { kDry, kWet, kIce };
+/// The car of a scenario.
+constexpr const VehicleParameters& ParametersOf(CarKind car) {
+  switch (car) {
+    case CarKind::kCompact:
+      return kCompact;
+    case CarKind::kTruck:
+      return kTruck;
+    case CarKind::kSedan:
+      break;
+  }
+  return kSedan;
+}
 
 /// mu, the largest tyre force per weight. Estimate: dry 0.9 to 1.0, wet 0.6 to 0.7, ice 0.1 to 0.2
 /// are usual for cars.

@@ -1,0 +1,382 @@
+// Sections of a scenario that say how the wheel changes hands: how smoothly, by which rule beside
+// the paper's fixed threshold, and what a driver who must first be asked does about it.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "scenario/field.h"
+
+namespace fogline {
+
+enum class TransferProfile { kStep, kLinear, kSigmoid, kJerkLimited };
+template <>
+struct ChoiceNames<TransferProfile> {
+  static constexpr std::array<std::string_view, 4> kNames{"step", "linear", "sigmoid",
+                                                          "jerk_limited"};
+  static constexpr std::array<std::string_view, 4> kDocs{
+      "the paper's: from one step to the next", "authorities go linearly over duration_s",
+      "authorities go along a logistic curve over duration_s",
+      "at once, but the command changes by no more than jerk_mps3 until it has caught up"};
+};
+
+enum class Hysteresis { kNone, kBand, kSprt };
+template <>
+struct ChoiceNames<Hysteresis> {
+  static constexpr std::array<std::string_view, 3> kNames{"none", "band", "sprt"};
+  static constexpr std::array<std::string_view, 3> kDocs{
+      "the paper's: one threshold for both directions",
+      "the automation returns below threshold - band",
+      "Wald's test: each direction waits for enough evidence (sprt_alpha, sprt_beta)"};
+};
+
+/// How authority goes from one driver to the other.
+struct TransferSection {
+  TransferProfile profile = TransferProfile::kStep;
+  double duration_s = 2.0;
+  double jerk_mps3 = 2.0;
+  Hysteresis hysteresis = Hysteresis::kNone;
+  double band = 0.2;
+  double sprt_alpha = 0.01;
+  double sprt_beta = 0.01;
+  double min_dwell_s = 0.0;
+  bool gate = false;
+  double gate_s = 2.0;
+  double gate_acceleration_mps2 = 1.0;
+  double gate_jerk_mps3 = 0.5;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Choice("profile", self.profile, "How authorities and command change at a transfer.");
+    visit.Number("duration_s", self.duration_s,
+                 {.min = 0.01,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "For linear and sigmoid.",
+                  .source = "chosen; 1 to 3 s in shared-control studies"});
+    visit.Number("jerk_mps3", self.jerk_mps3,
+                 {.min = 0.05,
+                  .max = 100,
+                  .unit = "m/s3",
+                  .doc = "For jerk_limited: how fast the command may change after a transfer.",
+                  .source = "below 2.5, the limit of ISO 15622 above 20 m/s"});
+    visit.Choice("hysteresis", self.hysteresis, "What keeps authority from going to and fro.");
+    visit.Number("band", self.band,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "For hysteresis band.",
+                  .source = "chosen: at least 0.2"});
+    visit.Number("sprt_alpha", self.sprt_alpha,
+                 {.min = 1e-6,
+                  .max = 0.49,
+                  .unit = "",
+                  .doc = "For hysteresis sprt: probability of a transfer to the human for nothing.",
+                  .source = "chosen: 1 %"});
+    visit.Number("sprt_beta", self.sprt_beta,
+                 {.min = 1e-6,
+                  .max = 0.49,
+                  .unit = "",
+                  .doc = "For hysteresis sprt: probability of a conflict that is missed.",
+                  .source = "chosen: 1 %"});
+    visit.Number("min_dwell_s", self.min_dwell_s,
+                 {.min = 0,
+                  .max = 600,
+                  .unit = "s",
+                  .doc = "Least time between two transfers.",
+                  .source = "0: the paper's; 3 to 5 s avoid flapping"});
+    visit.Flag("gate", self.gate, "Limit the command itself for gate_s after a transfer.");
+    visit.Number("gate_s", self.gate_s,
+                 {.min = 0.01,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "For gate: how long after a transfer.",
+                  .source = "chosen"});
+    visit.Number("gate_acceleration_mps2", self.gate_acceleration_mps2,
+                 {.min = 0.1,
+                  .max = 10,
+                  .unit = "m/s2",
+                  .doc = "For gate: strongest acceleration and braking.",
+                  .source = "Autoware's vehicle_cmd_gate on transition: 1.0"});
+    visit.Number("gate_jerk_mps3", self.gate_jerk_mps3,
+                 {.min = 0.05,
+                  .max = 100,
+                  .unit = "m/s3",
+                  .doc = "For gate: fastest change of the command.",
+                  .source = "Autoware's vehicle_cmd_gate on transition: 0.5"});
+  }
+};
+
+/// Policy adaptive: a threshold that moves with the situation,
+/// clip(threshold + readiness_gain (1 - A) - visibility_gain_m / MOR - closing_gain_s max(0, 1/TTC
+/// of the follower) - braking_gain_s2pm max(0, host's braking), least, most).
+struct AdaptiveSection {
+  double readiness_gain = 0.4;
+  double visibility_gain_m = 5.0;
+  double closing_gain_s = 0.5;
+  double braking_gain_s2pm = 0.1;
+  double least = 0.3;
+  double most = 0.9;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Number("readiness_gain", self.readiness_gain,
+                 {.min = 0,
+                  .max = 10,
+                  .unit = "",
+                  .doc = "How much higher for a driver without readiness.",
+                  .source = "chosen"});
+    visit.Number("visibility_gain_m", self.visibility_gain_m,
+                 {.min = 0,
+                  .max = 1000,
+                  .unit = "m",
+                  .doc = "How much lower in fog, per 1/m of the inverse visibility.",
+                  .source = "chosen: 0.1 at 50 m"});
+    visit.Number("closing_gain_s", self.closing_gain_s,
+                 {.min = 0,
+                  .max = 100,
+                  .unit = "s",
+                  .doc = "How much lower, per 1/s of the follower's inverse time to collision.",
+                  .source = "chosen"});
+    visit.Number("braking_gain_s2pm", self.braking_gain_s2pm,
+                 {.min = 0,
+                  .max = 10,
+                  .unit = "s2/m",
+                  .doc = "How much lower, per m/s2 of the host's braking.",
+                  .source = "chosen"});
+    visit.Number("least", self.least,
+                 {.min = 0, .max = 0.5, .unit = "", .doc = "Never below.", .source = "chosen"});
+    visit.Number("most", self.most,
+                 {.min = 0.5, .max = 1, .unit = "", .doc = "Never above.", .source = "chosen"});
+  }
+};
+
+/// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a), with the expected costs
+/// C_h = human_cost + unready_cost (1 - A) + blind_cost min(1, near_m / MOR) of a human who drives,
+/// C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) of an automation
+/// that goes by a wrong distance. A slope of the DoC makes P of the conflict.
+struct BayesSection {
+  double human_cost = 1.0;
+  double unready_cost = 3.0;
+  double blind_cost = 1.0;
+  double automation_cost = 1.0;
+  double follower_cost = 3.0;
+  double near_m = 40.0;
+  double near_ttc_s = 4.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    const auto cost = [&](std::string_view name, auto& value, double least, std::string_view doc) {
+      visit.Number(name, value,
+                   {.min = least,
+                    .max = 1e6,
+                    .unit = "",
+                    .doc = doc,
+                    .source = "chosen; only ratios count"});
+    };
+    cost("human_cost", self.human_cost, 1e-6, "Of any human engagement.");
+    cost("unready_cost", self.unready_cost, 0, "On top, of a driver without readiness.");
+    cost("blind_cost", self.blind_cost, 0, "On top, of one who sees no further than near_m.");
+    cost("automation_cost", self.automation_cost, 1e-6, "Of an automation that is deceived.");
+    cost("follower_cost", self.follower_cost, 0, "On top, with a follower as close as near_ttc_s.");
+    visit.Number("near_m", self.near_m,
+                 {.min = 1,
+                  .max = 1000,
+                  .unit = "m",
+                  .doc = "Visibility at which blind_cost counts in full.",
+                  .source = "Hogema & van der Horst 1994: 40 to 100 m are most critical"});
+    visit.Number("near_ttc_s", self.near_ttc_s,
+                 {.min = 0.1,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "Time to collision at which follower_cost counts in full.",
+                  .source = "chosen: 4 s is a common limit of severe conflicts"});
+  }
+};
+
+/// Policy availability: as traded, but only a driver who can be there in time gets the wheel: the
+/// time until the follower must brake harder than comfort_mps2 is longer than his take-over time
+/// (95th percentile, longer by what readiness lacks). Otherwise the automation stays, on the sensor
+/// that is not to blame.
+struct AvailabilitySection {
+  double comfort_mps2 = 3.0;
+  double unready_s = 2.0;
+  double horizon_s = 20.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Number("comfort_mps2", self.comfort_mps2,
+                 {.min = 0.5,
+                  .max = 10,
+                  .unit = "m/s2",
+                  .doc = "Braking that a follower must not exceed (DRAC).",
+                  .source = "3.0 to 3.4 in surrogate safety studies"});
+    visit.Number("unready_s", self.unready_s,
+                 {.min = 0,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "How much later a driver without readiness is.",
+                  .source = "estimate"});
+    visit.Number("horizon_s", self.horizon_s,
+                 {.min = 1,
+                  .max = 600,
+                  .unit = "s",
+                  .doc = "What lies beyond does not count.",
+                  .source = "chosen"});
+  }
+};
+
+/// Policy blend: both drive, the human in proportion to the conflict:
+/// lambda_H = clip((DoC - from) / width, 0, 1).
+struct BlendSection {
+  double from = 0.2;
+  double width = 0.6;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Number("from", self.from,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "DoC up to which the automation drives alone.",
+                  .source = "the paper's lowest threshold"});
+    visit.Number("width", self.width,
+                 {.min = 0.001,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "DoC from there until the human drives alone.",
+                  .source = "up to the paper's highest threshold"});
+  }
+};
+
+enum class TakeOverMode { kInstant, kRequested };
+template <>
+struct ChoiceNames<TakeOverMode> {
+  static constexpr std::array<std::string_view, 2> kNames{"instant", "requested"};
+  static constexpr std::array<std::string_view, 2> kDocs{
+      "the paper's: the driver is always at it",
+      "the driver must be asked, comes after his take-over time or never, and the car stops if he "
+      "does not (services/arbitrator/take_over_table.h)"};
+};
+
+enum class TakeOverModel { kLogNormal, kLogNormalByLead, kSumo };
+template <>
+struct ChoiceNames<TakeOverModel> {
+  static constexpr std::array<std::string_view, 3> kNames{"log_normal", "log_normal_by_lead",
+                                                          "sumo"};
+  static constexpr std::array<std::string_view, 3> kDocs{
+      "log-normal with mean_s and std_s",
+      "log-normal with SUMO's mean for the lead time, as wide as late_probability says",
+      "SUMO's normal distribution for the lead time and late_probability"};
+};
+
+/// Distribution of the take-over time.
+struct TakeOverParameters {
+  TakeOverModel model = TakeOverModel::kLogNormal;
+  double mean_s = 2.7;
+  double std_s = 1.45;
+  double late_probability = 0.05;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Choice("model", self.model, "Distribution of the take-over time.");
+    visit.Number("mean_s", self.mean_s,
+                 {.min = 0.1,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "For log_normal.",
+                  .source = "Zhang et al. 2019, 129 studies: 2.7"});
+    visit.Number("std_s", self.std_s,
+                 {.min = 0.01,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "For log_normal.",
+                  .source = "Zhang et al. 2019, of the studies' means: 1.45"});
+    visit.Number("late_probability", self.late_probability,
+                 {.min = 1e-6,
+                  .max = 0.1,
+                  .unit = "",
+                  .doc = "For the other two: that he takes longer than the lead time.",
+                  .source = "SUMO's ToC device: 0.05"});
+  }
+};
+
+/// Emergency fallback: request, escalation, minimal risk manoeuvre.
+struct TakeOverSection {
+  TakeOverMode mode = TakeOverMode::kInstant;
+  double lead_s = 10.0;
+  double escalation_s = 4.0;
+  TakeOverParameters time;
+  double absent_probability = 0.0;
+  double required_readiness = 0.3;
+  double recovery_s = 5.0;
+  double severe_ttc_s = 1.5;
+  double comfort_deceleration_mps2 = 1.5;
+  double emergency_deceleration_mps2 = 4.0;
+  double jerk_mps3 = 2.5;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor& visit) {
+    visit.Choice("mode", self.mode, "Whether the driver must be asked.");
+    visit.Number("lead_s", self.lead_s,
+                 {.min = 1,
+                  .max = 20,
+                  .unit = "s",
+                  .doc = "From the request to the minimal risk manoeuvre.",
+                  .source = "UN R157: not before 10 s unless severe"});
+    visit.Number("escalation_s", self.escalation_s,
+                 {.min = 0.1,
+                  .max = 20,
+                  .unit = "s",
+                  .doc = "From the request to its escalation.",
+                  .source = "UN R157: at the latest after 4 s"});
+    visit.Section("time", self.time, "How long he takes.");
+    visit.Number("absent_probability", self.absent_probability,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "That he does not come at all.",
+                  .source = "0: chosen"});
+    visit.Number("required_readiness", self.required_readiness,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "Readiness below which his acknowledgement does not give him the wheel.",
+                  .source = "chosen"});
+    visit.Number("recovery_s", self.recovery_s,
+                 {.min = 0,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "After the transfer, until he counts as recovered and the automation may "
+                         "have the wheel back.",
+                  .source = "SUMO's ToC device: 5 s from awareness 0.5"});
+    visit.Number(
+        "severe_ttc_s", self.severe_ttc_s,
+        {.min = 0,
+         .max = 10,
+         .unit = "s",
+         .doc = "Time to collision with the preceding car below which the manoeuvre begins "
+                "at once, as an emergency.",
+         .source = "chosen: 1.5 s, a common limit of imminent collisions"});
+    visit.Number("comfort_deceleration_mps2", self.comfort_deceleration_mps2,
+                 {.min = 0.5,
+                  .max = 4,
+                  .unit = "m/s2",
+                  .doc = "Of the comfortable manoeuvre.",
+                  .source = "SUMO's ToC device: 1.5"});
+    visit.Number("emergency_deceleration_mps2", self.emergency_deceleration_mps2,
+                 {.min = 0.5,
+                  .max = 4,
+                  .unit = "m/s2",
+                  .doc = "Of the emergency manoeuvre.",
+                  .source = "UN R157: demand at most 4.0"});
+    visit.Number("jerk_mps3", self.jerk_mps3,
+                 {.min = 0.1,
+                  .max = 20,
+                  .unit = "m/s3",
+                  .doc = "How fast the manoeuvre's deceleration grows.",
+                  .source = "ISO 15622: 2.5 above 20 m/s"});
+  }
+};
+
+}  // namespace fogline
