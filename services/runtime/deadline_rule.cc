@@ -12,7 +12,11 @@ DeadlineRule::DeadlineRule(Node& node, const Scenario& scenario, double speed)
 TimePoint DeadlineRule::Fire(TimePoint now) {
   const Input& tick = inputs()[tick_input()];
   const std::int64_t step = tick.ring.newest();
-  if (step < next()) return now + kHeartbeat;
+  // Whoever was held up decides late what the log would lack otherwise.
+  for (std::int64_t over = Oldest(step); over < step && Running(); ++over) {
+    if (tick.ring.Has(over)) Decide(over, now);
+  }
+  if (step < next() || !Running()) return now + kHeartbeat;
   bool complete = true;
   TimePoint due = tick.heard;
   for (std::size_t i = 0; i < inputs().size(); ++i) {
@@ -27,6 +31,13 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   if (!complete) statistics().Miss();
   ComputeDue(step, complete ? due : deadline, now);
   return now + kHeartbeat;
+}
+
+void DeadlineRule::Decide(std::int64_t step, TimePoint now) {
+  const bool complete =
+      std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+  if (!complete) statistics().Miss();
+  ComputeDue(step, inputs()[tick_input()].heard, now);
 }
 
 }  // namespace fogline

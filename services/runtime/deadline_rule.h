@@ -1,6 +1,7 @@
 // Real time for the role that must decide in every step (the arbitrator): it does so as soon as all
 // inputs are there that are not lost (or that come again), and at the latest so long after the
-// world's tick that the decision can still be on time; then with what there is.
+// world's tick that the decision can still be on time; then with what there is. A step whose
+// successor has begun is decided at once.
 #pragma once
 
 #include <optional>
@@ -15,6 +16,8 @@ class DeadlineRule final : public RealtimeRule {
 
  private:
   TimePoint Fire(TimePoint now) override;
+  /// Decides with what there is.
+  void Decide(std::int64_t step, TimePoint now);
 
   Duration patience_;  // from the tick to the deadline
 };

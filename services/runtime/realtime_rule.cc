@@ -62,7 +62,7 @@ void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time)
 }
 
 TimePoint RealtimeRule::Poll(TimePoint now) {
-  bus().Drain();  // the newest step is wanted, and not those that a backlog begins with
+  bus().Drain();  // a backlog counts as a whole
   if (!Running()) return now;
   now = std::max(now, Clock::now());  // a backlog takes its time
   NoticeOwnPause(now);
@@ -80,14 +80,12 @@ void RealtimeRule::NoticeOwnPause(TimePoint now) {
 TimePoint RealtimeRule::Fire(TimePoint now) {
   std::int64_t newest = inputs().front().ring.newest();
   for (const Input& input : inputs()) newest = std::min(newest, input.ring.newest());
-  const std::int64_t oldest = std::max(next(), newest - kRingSteps + 1);
-  for (std::int64_t step = newest; step >= oldest; --step) {
+  for (std::int64_t step = Oldest(newest); step <= newest && Running(); ++step) {
     const bool all =
         std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
     if (!all) continue;
     const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
     ComputeDue(step, due, now);
-    break;
   }
   return now + kHeartbeat;
 }

@@ -1,7 +1,8 @@
 // Real time: the world ticks on the wall clock and waits for nobody, so a role that lacks an input
-// does not ask for it (by the time it came it would be old) but leaves the step out. It computes
-// the newest step for which all its inputs are there; what it has missed it counts. What comes
-// after its step is over is late: it is counted and never used.
+// does not ask for it (by the time it came it would be old) but leaves the step out, and counts it,
+// as soon as a newer one is complete. When it was held up itself it computes every step that is
+// complete, in order: a filter needs them all, and so does the log. What comes after its step is
+// over is late: it is counted and never used.
 //
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
@@ -42,9 +43,13 @@ class RealtimeRule : public FireRule {
   }
 
  protected:
-  /// Computes the step whose time has come, if any. @return when to be called again at the latest
+  /// Computes the steps whose time has come, if any. @return when to be called again at the latest
   virtual TimePoint Fire(TimePoint now);
 
+  /// The first step up to `newest` that may be computed still.
+  std::int64_t Oldest(std::int64_t newest) const {
+    return std::max(next(), newest - kRingSteps + 1);
+  }
   /// Computes a step that was due then; steps between the last one and it are missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
   /// Something of the input has come lately, in time or too late to be used.
