@@ -15,7 +15,7 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   if (step < next()) return now + kHeartbeat;
   bool complete = true;
   TimePoint due = tick.heard;
-  for (std::size_t i = 0; i < inputs().size(); ++i) {
+  for (std::size_t i = 0; i < awaited().size(); ++i) {
     const bool there = inputs()[i].ring.Has(step);
     // Nobody waits for what is lost, but for what comes again: decided without it at once, it would
     // be late in every step, and lost for good.

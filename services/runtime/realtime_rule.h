@@ -1,7 +1,8 @@
 // Real time: the world ticks on the wall clock and waits for nobody, so a role that lacks an input
 // does not ask for it (by the time it came it would be old) but leaves the step out. It computes
 // the newest step for which all its inputs are there; what it has missed it counts. What comes
-// after its step is over is late: it is counted and never used.
+// after its step is over is late: it is counted and never used. An input that is read on demand is
+// neither waited for nor judged.
 //
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +49,8 @@ class RealtimeRule : public FireRule {
 
   /// Computes a step that was due then; steps between the last one and it are missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
+  /// The inputs that a step is made of; what is read on demand stands behind them.
+  std::span<const Input> awaited() const { return std::span(inputs()).first(health_.size()); }
   /// Something of the input has come lately, in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const {
     return now - std::max(late_at_[input], inputs()[input].heard) <= kSpeaks * period_;
@@ -80,7 +84,7 @@ class RealtimeRule : public FireRule {
   HealthSection limits_;
   RunClock clock_;
   std::size_t tick_input_;
-  std::vector<InputHealth> health_;
+  std::vector<InputHealth> health_;  // of the awaited inputs
   std::vector<std::int64_t> late_;
   std::vector<TimePoint> late_at_;  // the last one
   RealtimeStatistics statistics_;

@@ -86,12 +86,8 @@ TimePoint TickRule::Tick(TimePoint now) {
   tick_ += missed;
   const TimePoint due = Due(tick_);
   const std::int64_t step = next();
-  for (const Input& input : inputs()) {
-    if (step >= lead() && !input.ring.Has(step - lead())) {
-      statistics().Miss();
-      break;
-    }
-  }
+  const auto ready = [step](const Input& input) { return input.ReadyFor(step); };
+  if (!std::ranges::all_of(inputs(), ready)) statistics().Miss();
   clock().Tick(step, now);
   ++tick_;
   ComputeDue(step, due, now);
