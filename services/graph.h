@@ -91,6 +91,7 @@ struct Channel {
   Role from;
   RoleSet to;  // who works on it; the recorder takes every kStep channel besides
   std::string_view what;
+  RoleSet on_demand = {};  // who reads it besides, where the scenario demands it
 };
 
 /// Every channel. The kStep channels stand in an order in which a step can be evaluated.
@@ -136,7 +137,8 @@ inline constexpr std::tuple kGraph{
                            Pace::kStep,
                            Role::kArbitrator,
                            {Role::kWorld},
-                           "the host's acceleration, authorities, Degree of Conflict"},
+                           "the host's acceleration, authorities, Degree of Conflict",
+                           {Role::kDriver}},
     Channel<follower_command_t>{"FOLLOWER_COMMAND",
                                 Pace::kStep,
                                 Role::kFollower,
@@ -160,6 +162,7 @@ struct ChannelInfo {
   Role from;
   RoleSet to;
   std::string_view what;
+  RoleSet on_demand;
 
   /// The recorder logs every kStep channel, and RUN, so that a log explains itself.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
@@ -168,8 +171,8 @@ struct ChannelInfo {
 /// `kGraph` without types, same order.
 inline constexpr auto kChannels = std::apply(
     [](const auto&... channel) {
-      return std::array{
-          ChannelInfo{channel.name, channel.pace, channel.from, channel.to, channel.what}...};
+      return std::array{ChannelInfo{channel.name, channel.pace, channel.from, channel.to,
+                                    channel.what, channel.on_demand}...};
     },
     kGraph);
 
@@ -202,6 +205,16 @@ constexpr void ForEachStepChannel(Visit&& visit) {
         ...);
   }
   (std::make_index_sequence<kNumChannels>{});
+}
+
+/// How many steps older than the step that `reader` computes the message of `producer` is that it
+/// uses: none if the producer comes first in the order of evaluation, one otherwise.
+constexpr std::int64_t LagOf(Role producer, Role reader) {
+  for (const RoleInfo& info : kRoles) {
+    if (info.role == reader) return 1;
+    if (info.role == producer) return 0;
+  }
+  return 0;
 }
 
 /// Name of a role, as on the command line and in STATUS.

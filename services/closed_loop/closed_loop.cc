@@ -3,7 +3,8 @@
 namespace fogline {
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
-    : world_(scenario),
+    : demands_(scenario),
+      world_(scenario),
       radar_(scenario),
       lidar_(scenario),
       fusion_(scenario),
@@ -13,6 +14,7 @@ ClosedLoop::ClosedLoop(const Scenario& scenario)
       follower_(scenario) {}
 
 void ClosedLoop::Restart(const Scenario& scenario) {
+  demands_ = Demands(scenario);
   acc_.Restart(scenario);
   follower_.Restart(scenario);
   world_ = World(scenario);

@@ -12,6 +12,7 @@
 #include "services/lidar/lidar.h"
 #include "services/measures/sample.h"
 #include "services/radar/radar.h"
+#include "services/runtime/algorithm.h"
 #include "services/world/world.h"
 
 namespace fogline {
@@ -61,23 +62,49 @@ class ClosedLoop {
   /// once after construction, and once after each Restart().
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
+    static const arbitration_t kBeforeTheRun{};
+    const arbitration_t* last = &kBeforeTheRun;
     const auto* made = &world_.Start(run_id);
     while (true) {
       const auto& [truth, ego] = *made;
       const radar_t& radar = radar_.Step(truth);
       const lidar_t& lidar = lidar_.Step(truth);
+      Hear(demands_.fusion, fusion_, truth);
       const track_t& track = fusion_.Step(ego, radar, lidar);
       const accel_command_t& acc = acc_.Step(ego, track);
+      Hear(demands_.driver, driver_, *last);
       const driver_command_t& driver = driver_.Step(truth);
+      Hear(demands_.arbitrator, arbitrator_, truth);
       const arbitration_t& host = arbitrator_.Step(ego, radar, lidar, track, acc, driver);
       const follower_command_t& follower = follower_.Step(truth);
       visit(StepView{truth, ego, radar, lidar, track, acc, driver, host, follower});
       if (truth.last) return;
       made = &world_.Step(host, follower);
+      last = &host;
     }
   }
 
  private:
+  /// Who hears in this scenario what it reads on demand (services/runtime/algorithm.h).
+  struct Demands {
+    explicit Demands(const Scenario& scenario)
+        : fusion(AlgorithmTraits<Fusion>::Demands(scenario)),
+          driver(AlgorithmTraits<Driver>::Demands(scenario)),
+          arbitrator(AlgorithmTraits<Arbitrator>::Demands(scenario)) {}
+    bool fusion;
+    bool driver;
+    bool arbitrator;
+  };
+
+  template <class A, class M>
+  static void Hear([[maybe_unused]] bool demanded, [[maybe_unused]] A& algorithm,
+                   [[maybe_unused]] const M& message) {
+    if constexpr (AlgorithmTraits<A>::kHears) {
+      if (demanded) algorithm.Hear(message);
+    }
+  }
+
+  Demands demands_;
   World world_;
   Radar radar_;
   Lidar lidar_;

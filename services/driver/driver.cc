@@ -1,16 +1,83 @@
 #include "services/driver/driver.h"
 
-namespace fogline {
+#include <stdexcept>
 
-Driver::Driver(const Scenario& scenario) : idm_(scenario.driver) {
+#include "scenario/loader.h"
+#include "scenario/wording.h"
+
+namespace fogline {
+namespace {
+
+Situation Truly(const truth_t& truth) {
+  return {.speed_mps = truth.host_speed_mps,
+          .acceleration_mps2 = truth.host_acceleration_mps2,
+          .ahead = CarAhead{.gap_m = truth.host_gap_m,
+                            .speed_mps = truth.preceding_speed_mps,
+                            .acceleration_mps2 = truth.preceding_acceleration_mps2}};
+}
+
+/// @param awareness nullptr if he is always aware
+HumanDriver MakeHuman(const Scenario& scenario, const Following& following,
+                      const Awareness* awareness) {
+  HumanParameters parameters = scenario.human.errors;
+  if (awareness != nullptr) parameters.reaction_time_s = awareness->LongestReactionTime_s();
+  try {
+    return HumanDriver(parameters, following, Random(scenario.seed, Stream::kHumanErrors),
+                       scenario.step_s);
+  } catch (const std::invalid_argument& error) {
+    throw InputError("/step_s: " + NumberText(scenario.step_s) +
+                     " s is too short for the driver: " + error.what());
+  }
+}
+
+}  // namespace
+
+Driver::Driver(const Scenario& scenario)
+    : following_(scenario.human.following, scenario.driver, scenario.human.coolness),
+      errors_(scenario.human.errors),
+      step_s_(scenario.step_s) {
+  const HumanSection& human = scenario.human;
   out_.readiness = scenario.driver.readiness;
+  if (human.sight == Sight::kFog) sight_.emplace(human.fog_sight);
+  if (human.loses_awareness) awareness_.emplace(human.awareness, scenario.driver.readiness);
+  if (human.misjudges) {
+    human_.emplace(MakeHuman(scenario, following_, awareness_ ? &*awareness_ : nullptr));
+  }
+}
+
+void Driver::Hear(const arbitration_t& host) {
+  // In every mode but AUTOMATION he drives or is asked to, unless the car stops by itself.
+  const bool stops = host.lambda_automation == 0 && host.lambda_human == 0;
+  const bool monitors = host.mode == arbitration_t::AUTOMATION || stops;
+  task_ = monitors ? DriverTask::kMonitors : DriverTask::kDrives;
 }
 
 const driver_command_t& Driver::Step(const truth_t& truth) {
+  if (awareness_) PassTime(truth.header.step);
   out_.header = truth.header;
-  out_.acceleration_mps2 =
-      idm_.Acceleration(truth.host_speed_mps, truth.preceding_speed_mps, truth.host_gap_m);
+  out_.acceleration_mps2 = Drive(truth);
   return out_;
+}
+
+void Driver::PassTime(std::int64_t step) {
+  if (last_step_) {
+    const auto steps = static_cast<double>(step - *last_step_);
+    awareness_->Step(task_, steps * step_s_);
+  }
+  last_step_ = step;
+  out_.readiness = awareness_->awareness();
+}
+
+double Driver::Drive(const truth_t& truth) {
+  Situation seen = Truly(truth);
+  if (sight_) seen = sight_->Perceive(seen, truth.fog_visibility_m);
+  if (!human_) return following_.Acceleration(seen);
+  if (!awareness_) return human_->Step(truth.header.step, seen);
+  return human_->Step(
+      truth.header.step, seen,
+      {.reaction_time_s = awareness_->ReactionTime_s(),
+       .gap_error = errors_.gap_error + awareness_->GapError(),
+       .approach_error_ps = errors_.approach_error_ps + awareness_->ApproachError_ps()});
 }
 
 }  // namespace fogline

@@ -48,6 +48,12 @@ class Awareness {
     return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - awareness_);
   }
 
+  /// The most that it becomes from now on.
+  double LongestReactionTime_s() const {
+    const double least = std::min(awareness_, parameters_.monitoring);
+    return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - least);
+  }
+
   /// V_s and r_c of human_driver.h as SUMO's driver state has them.
   double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
   double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }

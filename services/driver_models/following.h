@@ -4,7 +4,7 @@
 
 #include "scenario/control.h"
 #include "scenario/human.h"
-#include "services/driver/idm.h"
+#include "services/driver_models/idm.h"
 #include "services/driver_models/situation.h"
 
 namespace fogline {

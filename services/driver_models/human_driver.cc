@@ -17,6 +17,17 @@ const HumanParameters& Checked(const HumanParameters& human) {
   return human;
 }
 
+// A time as whole steps and the rest.
+struct Steps {
+  double whole;
+  double rest;
+};
+Steps StepsIn(double time_s, double step_s) {
+  const double steps = time_s / step_s;
+  const double whole = std::floor(steps + kWholeSteps);
+  return {whole, std::max(0.0, steps - whole)};
+}
+
 double Mix(double newer, double older, double share) { return newer + share * (older - newer); }
 
 }  // namespace
@@ -27,27 +38,30 @@ HumanDriver::HumanDriver(const HumanParameters& human, const Following& model, c
       model_(model),
       random_(random),
       gap_error_(human.error_time_s, step_s),
-      approach_error_(human.error_time_s, step_s) {
-  const double steps = human.reaction_time_s / step_s;
-  const double whole = std::floor(steps + kWholeSteps);
-  if (whole > static_cast<double>(kMaxReactionSteps)) {
+      approach_error_(human.error_time_s, step_s),
+      step_s_(step_s) {
+  const Steps steps = StepsIn(human.reaction_time_s, step_s);
+  if (steps.whole > static_cast<double>(kMaxReactionSteps)) {
     throw std::invalid_argument("human driver: the reaction time is longer than 254 steps");
   }
-  reaction_steps_ = static_cast<std::size_t>(whole);
-  between_ = std::max(0.0, steps - whole);
 }
 
-double HumanDriver::Step(std::int64_t step, const Situation& seen, double error_scale) {
-  const Situation now = Misjudged(step, seen, error_scale);
+double HumanDriver::Step(std::int64_t step, const Situation& seen) {
+  return Step(step, seen, {human_.reaction_time_s, human_.gap_error, human_.approach_error_ps});
+}
+
+double HumanDriver::Step(std::int64_t step, const Situation& seen, const Attention& attention) {
+  const double reaction_time_s = std::min(attention.reaction_time_s, human_.reaction_time_s);
+  const Situation now = Misjudged(step, seen, attention);
   if (!begun_) seen_.fill(now);
   begun_ = true;
   last_ = (last_ + 1) % seen_.size();
   seen_[last_] = now;
-  Situation then = Remembered();
+  Situation then = Remembered(reaction_time_s);
   if (human_.anticipates) {
-    const double gained = human_.reaction_time_s * then.acceleration_mps2;
+    const double gained = reaction_time_s * then.acceleration_mps2;
     if (then.ahead) {
-      then.ahead->gap_m -= human_.reaction_time_s * (then.speed_mps - then.ahead->speed_mps);
+      then.ahead->gap_m -= reaction_time_s * (then.speed_mps - then.ahead->speed_mps);
       then.ahead->speed_mps += gained;
     }
     then.speed_mps += gained;
@@ -55,11 +69,12 @@ double HumanDriver::Step(std::int64_t step, const Situation& seen, double error_
   return model_.Acceleration(then);
 }
 
-Situation HumanDriver::Misjudged(std::int64_t step, const Situation& seen, double error_scale) {
+Situation HumanDriver::Misjudged(std::int64_t step, const Situation& seen,
+                                 const Attention& attention) {
   const auto [gap_normal, approach_normal] = random_.Normal2(step, 0);
-  const double gap_error = error_scale * human_.gap_error * gap_error_.Step(gap_normal);
+  const double gap_error = attention.gap_error * gap_error_.Step(gap_normal);
   const double approach_error_ps =
-      error_scale * human_.approach_error_ps * approach_error_.Step(approach_normal);
+      attention.approach_error_ps * approach_error_.Step(approach_normal);
   Situation misjudged = seen;
   if (misjudged.ahead) {
     CarAhead& ahead = *misjudged.ahead;
@@ -69,17 +84,19 @@ Situation HumanDriver::Misjudged(std::int64_t step, const Situation& seen, doubl
   return misjudged;
 }
 
-Situation HumanDriver::Remembered() const {
-  const Situation& newer = SeenAgo(reaction_steps_);
-  const Situation& older = SeenAgo(reaction_steps_ + 1);
+Situation HumanDriver::Remembered(double reaction_time_s) const {
+  const auto [whole, rest] = StepsIn(reaction_time_s, step_s_);
+  const auto steps = static_cast<std::size_t>(whole);
+  const Situation& newer = SeenAgo(steps);
+  const Situation& older = SeenAgo(steps + 1);
   // A car that appeared or vanished between the two was there, or not, as at the nearer of them.
-  Situation then = between_ < 0.5 ? newer : older;
-  then.speed_mps = Mix(newer.speed_mps, older.speed_mps, between_);
-  then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, between_);
+  Situation then = rest < 0.5 ? newer : older;
+  then.speed_mps = Mix(newer.speed_mps, older.speed_mps, rest);
+  then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, rest);
   if (newer.ahead && older.ahead) {
-    then.ahead = {Mix(newer.ahead->gap_m, older.ahead->gap_m, between_),
-                  Mix(newer.ahead->speed_mps, older.ahead->speed_mps, between_),
-                  Mix(newer.ahead->acceleration_mps2, older.ahead->acceleration_mps2, between_)};
+    then.ahead = {Mix(newer.ahead->gap_m, older.ahead->gap_m, rest),
+                  Mix(newer.ahead->speed_mps, older.ahead->speed_mps, rest),
+                  Mix(newer.ahead->acceleration_mps2, older.ahead->acceleration_mps2, rest)};
   }
   return then;
 }

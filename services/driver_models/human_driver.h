@@ -13,6 +13,13 @@
 
 namespace fogline {
 
+/// What of a driver may change from step to step.
+struct Attention {
+  double reaction_time_s;    // T_r
+  double gap_error;          // V_s
+  double approach_error_ps;  // r_c
+};
+
 /// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for the one car ahead:
 ///
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
@@ -31,6 +38,7 @@ class HumanDriver {
   /// Longest reaction time in steps.
   static constexpr std::size_t kMaxReactionSteps = 254;
 
+  /// @param human with the longest reaction time that he will have
   /// @param random whose errors they are: a stream of its own for each driver
   /// @throw std::invalid_argument for a parameter out of its range or a reaction time too long.
   HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
@@ -38,13 +46,14 @@ class HumanDriver {
 
   /// What he does in this step. Once per step, in order: his errors and what he has seen go with
   /// him from step to step. Before T_r is over he goes by the first situation.
-  /// @param error_scale on V_s and r_c, at least 0: more than 1 for one who is not all there
-  double Step(std::int64_t step, const Situation& seen, double error_scale = 1.0);
+  double Step(std::int64_t step, const Situation& seen);
+  /// The same for one who is not always the same.
+  double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:
-  Situation Misjudged(std::int64_t step, const Situation& seen, double error_scale);
-  // What was seen T_r ago.
-  Situation Remembered() const;
+  Situation Misjudged(std::int64_t step, const Situation& seen, const Attention& attention);
+  // What was seen so long ago.
+  Situation Remembered(double reaction_time_s) const;
   const Situation& SeenAgo(std::size_t steps) const;
 
   HumanParameters human_;
@@ -52,8 +61,7 @@ class HumanDriver {
   Random random_;
   OrnsteinUhlenbeck gap_error_;
   OrnsteinUhlenbeck approach_error_;
-  std::size_t reaction_steps_ = 0;                       // whole steps in T_r
-  double between_ = 0;                                   // and the rest of it, in steps
+  double step_s_;
   std::array<Situation, kMaxReactionSteps + 2> seen_{};  // a ring
   std::size_t last_ = 0;
   bool begun_ = false;

@@ -1,10 +1,20 @@
 // What an algorithm's Step function says about its role: the types of its inputs and outputs, and
 // from these, by the graph table, its channels and the role itself.
+//
+// An algorithm may have one input more, which only some scenarios demand:
+//
+//     static bool Demands(const Scenario& scenario);  // whether this one does
+//     void Hear(const M& message);                    // before each Step, if so
+//
+// M is of the same step if its producer comes before this role in the order of evaluation, and of
+// the step before (at step 0 all zero) if it comes after. In real time nobody waits for it: it is
+// the newest that has come, and before the first there is no call.
 #pragma once
 
 #include <concepts>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "scenario/scenario.h"
 #include "services/graph.h"
@@ -31,6 +41,23 @@ struct StepSignature<const Out& (A::*)(const In&...)> {
   using Outputs = typename AsTuple<Out>::Type;
 };
 
+template <class HearFunction>
+struct HearSignature;
+template <class A, class M>
+struct HearSignature<void (A::*)(const M&)> {
+  using Inputs = std::tuple<M>;
+};
+
+template <class A>
+struct OnDemandInputs {
+  using Type = std::tuple<>;
+};
+template <class A>
+requires requires { &A::Hear; }
+struct OnDemandInputs<A> {
+  using Type = typename HearSignature<decltype(&A::Hear)>::Inputs;
+};
+
 /// The types of kGraph's kStep channels that go to a role are exactly those of the tuple.
 template <class... In>
 constexpr bool Reads(Role role, std::type_identity<std::tuple<In...>>) {
@@ -50,6 +77,12 @@ constexpr bool Writes(Role role, std::type_identity<std::tuple<Out...>>) {
   return exact;
 }
 
+/// kGraph lets a role read these types on demand.
+template <class... In>
+constexpr bool MayHear([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
+  return (ChannelOf<In>().on_demand.Has(role) && ...);
+}
+
 }  // namespace internal
 
 /// Traits of an algorithm: a class with a constructor from a Scenario and one function
@@ -61,15 +94,37 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
+  /// What it may hear on demand: a tuple of one message, or of none.
+  using OnDemand = typename internal::OnDemandInputs<A>::Type;
+  static constexpr bool kHears = std::tuple_size_v<OnDemand> != 0;
+  /// Everything that it can read, what it may hear last.
+  using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
+
   static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
   /// An algorithm with Start() makes step 0 from nothing and each further step from the one before.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
+
+  /// Whether it hears in this scenario.
+  static bool Demands([[maybe_unused]] const Scenario& scenario) {
+    if constexpr (kHears) {
+      return A::Demands(scenario);
+    } else {
+      return false;
+    }
+  }
 
   static_assert(std::constructible_from<A, const Scenario&>);
   static_assert(internal::Reads(kRole, std::type_identity<Inputs>{}),
                 "the inputs of Step are not the channels that kGraph sends to this role");
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role");
+  // Another algorithm for the role need not demand what the first one does.
+  static_assert(internal::MayHear(kRole, std::type_identity<OnDemand>{}),
+                "kGraph does not let this role read on demand what Hear takes");
+  static_assert(
+      kHears == requires(const Scenario& scenario) { A::Demands(scenario); },
+      "Demands and Hear are only of use together");
+  static_assert(!(kHears && kStarts), "who begins the steps hears nothing on demand");
 };
 
 }  // namespace fogline

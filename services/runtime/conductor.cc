@@ -294,7 +294,10 @@ std::string Conductor::Culprit(TimePoint now) const {
     const ChannelInfo* channel = ChannelNamed(consumer.status->waiting_for);
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
-    const bool passes_on = source.status && now - source.heard <= kSilent &&
+    // Who has computed what is waited for may wait himself, but for something else.
+    const bool done = channel != nullptr && source.status &&
+                      source.status->header.step >= stuck - LagOf(producer, waiting);
+    const bool passes_on = source.status && now - source.heard <= kSilent && !done &&
                            !source.status->waiting_for.empty() && producer != waiting;
     if (passes_on) {
       waiting = producer;

@@ -19,7 +19,7 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   if (step < next() || !Running()) return now + kHeartbeat;
   bool complete = true;
   TimePoint due = tick.heard;
-  for (std::size_t i = 0; i < inputs().size(); ++i) {
+  for (std::size_t i = 0; i < awaited().size(); ++i) {
     const bool there = inputs()[i].ring.Has(step);
     // Nobody waits for what is lost, but for what comes again: decided without it at once, it would
     // be late in every step, and lost for good.
@@ -35,7 +35,7 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
 
 void DeadlineRule::Decide(std::int64_t step, TimePoint now) {
   const bool complete =
-      std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+      std::ranges::all_of(awaited(), [step](const Input& input) { return input.ring.Has(step); });
   if (!complete) statistics().Miss();
   ComputeDue(step, inputs()[tick_input()].heard, now);
 }

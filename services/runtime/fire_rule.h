@@ -44,9 +44,8 @@ class FireRule {
 
   std::vector<Input>& inputs() { return node_.inputs_; }
   const std::vector<Input>& inputs() const { return node_.inputs_; }
-  /// The step to compute next; the inputs that it is made of are those of next() - lead().
+  /// The step to compute next. It is made of each input's step next() - lag.
   std::int64_t next() const { return node_.next_; }
-  std::int64_t lead() const { return node_.lead_; }
   std::int64_t progress() const { return node_.progress_; }
   bool Running() const { return node_.Running(); }
   status_t& status() { return node_.status_; }

@@ -12,9 +12,7 @@ void LeadRule::OnGo(const run_t& run, TimePoint now) {
 
 TimePoint LeadRule::Poll(TimePoint now) {
   if (gate_.started()) Expect(next());
-  const bool complete = std::ranges::all_of(
-      inputs(), [this](const Input& input) { return input.ring.Has(next() - 1); });
-  if (gate_.Finished(next()) && complete) SetState(status_t::DONE);
+  if (gate_.Finished(next()) && InputsReady()) SetState(status_t::DONE);
   if (const auto step = gate_.WantsRecorded(next(), now)) {
     Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
   }

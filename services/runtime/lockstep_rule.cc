@@ -13,8 +13,8 @@ constexpr Duration kMinBetweenAsks = milliseconds(2);
 LockstepRule::LockstepRule(Node& node) : FireRule(node), expected_(progress()), late_(progress()) {}
 
 StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
-  const std::int64_t needed = std::max<std::int64_t>(0, next() - lead());
-  const auto verdict = inputs()[input].ring.Classify(step, bytes, needed);
+  const Input& from = inputs()[input];
+  const auto verdict = from.ring.Classify(step, bytes, FirstNeeded(from));
   // Who catches up hears of steps that are under way elsewhere.
   const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
   return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
@@ -22,7 +22,7 @@ StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, B
 }
 
 void LockstepRule::OnInput(std::size_t /*input*/, std::int64_t step, TimePoint time) {
-  Expect(step + lead());
+  Expect(step);
   if (CatchingUp()) patience_.Arrived(time);
   Advance(time);
 }
@@ -53,22 +53,18 @@ void LockstepRule::WriteStatus(TimePoint now) {
   status().waiting_ms = Milliseconds(now - *patience_.since());
 }
 
-bool LockstepRule::InputsReady(std::int64_t step) const {
-  return step < 0 ||
-         std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+const LockstepRule::Input* LockstepRule::FirstMissing() const {
+  const auto missing = std::ranges::find_if_not(
+      inputs(), [this](const Input& input) { return input.ReadyFor(next()); });
+  return missing == inputs().end() ? nullptr : &*missing;
 }
 
-const LockstepRule::Input* LockstepRule::FirstMissing() const {
-  const std::int64_t needed = next() - lead();
-  if (needed < 0) return nullptr;
-  for (const Input& input : inputs()) {
-    if (!input.ring.Has(needed)) return &input;
-  }
-  return nullptr;
+std::int64_t LockstepRule::FirstNeeded(const Input& input) const {
+  return std::max<std::int64_t>(0, next() - input.lag);
 }
 
 void LockstepRule::Advance(TimePoint now) {
-  while (Running() && InputsReady(next() - lead()) && MayCompute(next(), now)) {
+  while (Running() && InputsReady() && MayCompute(next(), now)) {
     if (!Compute(next())) return;
     patience_.Computed(now);
   }
@@ -77,7 +73,7 @@ void LockstepRule::Advance(TimePoint now) {
 TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + kHeartbeat;
   const TimePoint ask_at = patience_.Wait(now);
-  if (CatchingUp() && next() - lead() > asked_) {  // nothing of it can be on its way
+  if (CatchingUp() && next() > asked_) {  // nothing of it can be on its way
     AskForMissing(now);
     patience_.AskedForMany(now);
   } else if (now >= ask_at) {
@@ -88,13 +84,11 @@ TimePoint LockstepRule::Repair(TimePoint now) {
 }
 
 void LockstepRule::AskForMissing(TimePoint now) {
-  const std::int64_t needed = next() - lead();
-  if (needed < 0) return;
   patience_.Asked(now);
   // As far as is known to be under way, and as the rings can hold.
-  asked_ = std::clamp(expected_ - lead(), needed, needed + kRingSteps - 2);
+  asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : inputs()) {
-    const StepRange steps = Lacking(input, needed, asked_);
+    const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);
     if (steps.count == 0) continue;
     Ask(kChannels[input.channel].name, steps);
     ++status().repairs_asked;

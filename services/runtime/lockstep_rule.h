@@ -35,11 +35,14 @@ class LockstepRule : public FireRule {
   virtual bool MayCompute(std::int64_t /*step*/, TimePoint /*now*/) { return true; }
   /// Computes every step that can be computed.
   void Advance(TimePoint now);
+  /// All that the next step is made of is there.
+  bool InputsReady() const { return FirstMissing() == nullptr; }
 
  private:
-  bool InputsReady(std::int64_t step) const;
   /// First input that the next step waits for, or nullptr.
   const Input* FirstMissing() const;
+  /// First step of an input that is of use.
+  std::int64_t FirstNeeded(const Input& input) const;
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
   /// Steps from `first` to `last` that an input lacks and that should be asked for together.
@@ -49,7 +52,7 @@ class LockstepRule : public FireRule {
 
   std::int64_t expected_;    // highest step that is known to be under way
   std::int64_t late_;        // last step to catch up with
-  std::int64_t asked_ = -1;  // last step that was asked for
+  std::int64_t asked_ = -1;  // last step whose inputs were asked for
   Patience patience_;
 };
 

@@ -54,16 +54,10 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   for (std::size_t i = 0; i < kChannels.size(); ++i) {
     const ChannelInfo& channel = kChannels[i];
     if (channel.pace != Pace::kStep) continue;
-    if (channel.to.Has(role) || role == Role::kRecorder) {
-      inputs_.push_back({.channel = i, .fingerprint = FingerprintOf(i), .ring = {}});
-    }
+    if (channel.to.Has(role) || role == Role::kRecorder) Read(i, false);
     if (channel.from == role) {
       outputs_.push_back({.channel = i, .topic = bus_.TopicOf(channel.name), .ring = {}});
     }
-  }
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    bus_.Subscribe(kChannels[inputs_[i].channel].name,
-                   [this, i](Arrival& arrival) { OnInput(i, arrival); });
   }
   bus_.Subscribe(ChannelOf<run_t>().name, [this](Bytes bytes) { OnRun(bytes); });
   bus_.Subscribe(
@@ -79,6 +73,17 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
 }
 
 Node::~Node() = default;
+
+void Node::Read(std::size_t channel, bool on_demand) {
+  const ChannelInfo& info = kChannels[channel];
+  inputs_.push_back({.channel = channel,
+                     .fingerprint = FingerprintOf(channel),
+                     .lag = LagOf(info.from, role_),
+                     .on_demand = on_demand,
+                     .ring = {}});
+  const std::size_t index = inputs_.size() - 1;
+  bus_.Subscribe(info.name, [this, index](Arrival& arrival) { OnInput(index, arrival); });
+}
 
 std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
   return std::make_unique<LockstepRule>(*this);

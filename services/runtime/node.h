@@ -55,8 +55,13 @@ class Node {
   struct Input {
     std::size_t channel;       // in kChannels
     std::int64_t fingerprint;  // of its type
+    std::int64_t lag;          // step k is made of its step k - lag
+    bool on_demand;  // read in this scenario, not in every one; in real time not waited for
     StepRing ring;
     TimePoint heard{};
+
+    /// What a step is made of is there; before the run there is nothing.
+    bool ReadyFor(std::int64_t step) const { return step < lag || ring.Has(step - lag); }
   };
   /// One channel that the node writes.
   struct Output {
@@ -98,6 +103,8 @@ class Node {
   void Answer(std::string_view channel, Bytes bytes, TimePoint now);
   /// The steps before this one are done, by a predecessor. Call it in Configure().
   void StartAt(std::int64_t step);
+  /// Reads this channel, too (its place in kChannels). Call it in Configure().
+  void ReadOnDemand(std::size_t channel) { Read(channel, true); }
 
   Bus& bus() { return bus_; }
   /// @pre the node has joined
@@ -118,9 +125,6 @@ class Node {
   }
   status_t& status() { return status_; }
 
-  /// The world reads the commands of step k - 1 to make step k: its lead is 1. Everybody else's is
-  /// 0.
-  std::int64_t lead_ = 0;
   /// What a node answers of steps that are over. Repairs on a network that loses a third take a few
   /// hundred a second.
   AnswerBudget budget_{2000, 500};
@@ -128,6 +132,7 @@ class Node {
   static constexpr Duration kHeartbeat = milliseconds(200);
 
  private:
+  void Read(std::size_t channel, bool on_demand);
   void OnRun(Bytes bytes);
   /// Whether the runner can be believed to have said this just now, and not in an old run. Asks it,
   /// if that is not known.

@@ -29,15 +29,21 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
       late_(inputs().size()),
       late_at_(inputs().size()) {
   const TimePoint began = clock_.At(Clock::now());
-  health_.assign(inputs().size(), InputHealth(limits_, period_, began));
+  const auto judged = std::ranges::count(inputs(), false, &Input::on_demand);
+  health_.assign(static_cast<std::size_t>(judged), InputHealth(limits_, period_, began));
 }
 
 StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
-  const StepRing& ring = inputs()[input].ring;
+  const Input& from = inputs()[input];
+  const StepRing& ring = from.ring;
   if (ring.Has(step) && std::ranges::equal(ring.Get(step), bytes)) {
     return StepRing::Verdict::kDuplicate;
   }
-  if (step + lead() < next() || step <= ring.newest() - kRingSteps || ring.Has(step)) {
+  // Of what is read on demand the newest counts, whatever its step.
+  const bool late = from.on_demand ? step <= ring.newest()
+                                   : step + from.lag < next() ||
+                                         step <= ring.newest() - kRingSteps || ring.Has(step);
+  if (late) {
     CountLate(input);
     return StepRing::Verdict::kLate;
   }
@@ -54,6 +60,7 @@ void RealtimeRule::CountLate(std::size_t input) {
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   newest_ = std::max(newest_, step);
+  if (inputs()[input].on_demand) return;
   if (input == tick_input_) {
     if (!clock_.started()) health_[input] = InputHealth(limits_, period_, time - paused_);
     clock_.Tick(step, time);
@@ -78,13 +85,14 @@ void RealtimeRule::NoticeOwnPause(TimePoint now) {
 }
 
 TimePoint RealtimeRule::Fire(TimePoint now) {
-  std::int64_t newest = inputs().front().ring.newest();
-  for (const Input& input : inputs()) newest = std::min(newest, input.ring.newest());
+  const std::span<const Input> needed = awaited();
+  std::int64_t newest = needed.front().ring.newest();
+  for (const Input& input : needed) newest = std::min(newest, input.ring.newest());
   for (std::int64_t step = Oldest(newest); step <= newest && Running(); ++step) {
     const bool all =
-        std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+        std::ranges::all_of(needed, [step](const Input& input) { return input.ring.Has(step); });
     if (!all) continue;
-    const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
+    const TimePoint due = std::ranges::max(needed, {}, &Input::heard).heard;
     ComputeDue(step, due, now);
   }
   return now + kHeartbeat;

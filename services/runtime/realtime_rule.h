@@ -3,6 +3,7 @@
 // as soon as a newer one is complete. When it was held up itself it computes every step that is
 // complete, in order: a filter needs them all, and so does the log. What comes after its step is
 // over is late: it is counted and never used.
+// An input that is read on demand is neither waited for nor judged.
 //
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,8 @@ class RealtimeRule : public FireRule {
   }
   /// Computes a step that was due then; steps between the last one and it are missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
+  /// The inputs that a step is made of; what is read on demand stands behind them.
+  std::span<const Input> awaited() const { return std::span(inputs()).first(health_.size()); }
   /// Something of the input has come lately, in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const {
     return now - std::max(late_at_[input], inputs()[input].heard) <= kSpeaks * period_;
@@ -93,7 +97,7 @@ class RealtimeRule : public FireRule {
   HealthSection limits_;
   RunClock clock_;
   std::size_t tick_input_;
-  std::vector<InputHealth> health_;
+  std::vector<InputHealth> health_;  // of the awaited inputs
   std::vector<std::int64_t> late_;
   std::vector<TimePoint> late_at_;  // the last one
   RealtimeStatistics statistics_;

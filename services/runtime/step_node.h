@@ -31,10 +31,7 @@ class StepNode final : public Node {
   using Traits = AlgorithmTraits<Algorithm>;
 
   StepNode(Bus& bus, std::optional<std::int64_t> run_id) : Node(bus, Traits::kRole, run_id) {
-    if constexpr (Traits::kStarts) {
-      lead_ = 1;
-      gate_.emplace(bus, status());
-    }
+    if constexpr (Traits::kStarts) gate_.emplace(bus, status());
   }
 
  private:
@@ -44,13 +41,25 @@ class StepNode final : public Node {
   struct Rings<std::tuple<M...>> {
     using Type = std::tuple<std::array<M, kRingSteps>...>;
   };
-  using InputRings = typename Rings<typename Traits::Inputs>::Type;
+  using AllInputs = typename Traits::AllInputs;
+  using InputRings = typename Rings<AllInputs>::Type;
+  static constexpr std::size_t kInputs = std::tuple_size_v<typename Traits::Inputs>;
+  template <std::size_t I>
+  static constexpr std::int64_t kLag = LagOf(ChannelOf<std::tuple_element_t<I, AllInputs>>().from,
+                                             Traits::kRole);
   static constexpr bool kFailsafe = !std::is_void_v<Failsafe>;
   struct Nothing {};
   using InRealtime = std::conditional_t<kFailsafe, Failsafe, Nothing>;
+  static_assert(
+      !kFailsafe || Traits::kHears == requires { &InRealtime::Hear; },
+      "what stands in for an algorithm hears what that does");
 
   void Configure(const Scenario& scenario) override {
     algorithm_ = std::make_unique<Algorithm>(scenario);
+    if constexpr (Traits::kHears) {
+      hears_ = Traits::Demands(scenario);
+      if (hears_) ReadOnDemand(IndexOf<std::tuple_element_t<kInputs, AllInputs>>());
+    }
     if constexpr (kFailsafe) {
       if (realtime()) failsafe_ = std::make_unique<Failsafe>(scenario);
     }
@@ -60,7 +69,7 @@ class StepNode final : public Node {
   RefusalCounter Wrong(std::size_t input, Arrival& arrival) override {
     RefusalCounter wrong = nullptr;
     WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
-      using M = std::tuple_element_t<I, typename Traits::Inputs>;
+      using M = std::tuple_element_t<I, AllInputs>;
       if (inputs()[input].channel == IndexOf<M>()) wrong = arrival.Wrong<M>();
     });
     return wrong;
@@ -69,7 +78,7 @@ class StepNode final : public Node {
   RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override {
     RefusalCounter wrong = nullptr;
     WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
-      using M = std::tuple_element_t<I, typename Traits::Inputs>;
+      using M = std::tuple_element_t<I, AllInputs>;
       if (inputs()[input].channel != IndexOf<M>()) return;
       if (const M* message = arrival.As<M>()) {
         std::get<I>(rings_)[RingSlot(step)] = *message;
@@ -104,10 +113,42 @@ class StepNode final : public Node {
     if constexpr (Traits::kStarts) {
       if (step == 0) return Publish(step, algorithm_->Start(run_id()));
     }
-    const std::size_t slot = RingSlot(step - lead_);
-    Publish(step, std::apply([&](const auto&... ring)
-                                 -> decltype(auto) { return algorithm_->Step(ring[slot]...); },
-                             rings_));
+    Hear(*algorithm_, step);
+    Publish(step, Step(step, std::make_index_sequence<kInputs>{}));
+  }
+
+  template <std::size_t... I>
+  const typename Traits::Output& Step(std::int64_t step, std::index_sequence<I...>) {
+    return algorithm_->Step(std::get<I>(rings_)[RingSlot(step - kLag<I>)]...);
+  }
+
+  /// Before each step of an algorithm that hears in this scenario.
+  template <class A>
+  void Hear(A& algorithm, std::int64_t step) {
+    if constexpr (Traits::kHears) {
+      if (!hears_) return;
+      static const std::tuple_element_t<kInputs, AllInputs> kBeforeTheRun{};
+      const auto* newest = NewestOf<kInputs>(step - kLag<kInputs>);
+      if (newest == nullptr && !realtime()) newest = &kBeforeTheRun;
+      if (newest != nullptr) algorithm.Hear(*newest);
+    }
+  }
+
+  /// The newest message of an input that is not newer than a step; nullptr if none has come. In
+  /// lockstep that is the step's.
+  template <std::size_t I>
+  const std::tuple_element_t<I, AllInputs>* NewestOf(std::int64_t step) {
+    const StepRing& ring = InputOf<I>().ring;
+    std::int64_t newest = std::min(step, ring.newest());
+    const std::int64_t oldest = std::max<std::int64_t>(0, newest - kRingSteps + 1);
+    while (newest >= oldest && !ring.Has(newest)) --newest;
+    return newest < oldest ? nullptr : &std::get<I>(rings_)[RingSlot(newest)];
+  }
+
+  template <std::size_t I>
+  const Input& InputOf() {
+    return *std::ranges::find(inputs(), IndexOf<std::tuple_element_t<I, AllInputs>>(),
+                              &Input::channel);
   }
 
   // ---- real time, with what there is ------------------------------------------------------------
@@ -124,35 +165,24 @@ class StepNode final : public Node {
   }
 
   const typename Traits::Output& StepFailsafe(std::int64_t step) {
-    const auto& rule = static_cast<const RealtimeRule&>(this->rule());
+    Hear(*failsafe_, step);
     return [&]<std::size_t... I>(std::index_sequence<I...>)->const typename Traits::Output& {
       if constexpr (Traits::kStarts) {
-        return failsafe_->Step({HeardBy<I>(step - lead_, rule)...});
+        return failsafe_->Step({HeardBy<I>(step - kLag<I>)...});
       } else {
-        return failsafe_->Step(HeaderOf(step), {HeardBy<I>(step - lead_, rule)...});
+        return failsafe_->Step(HeaderOf(step), {HeardBy<I>(step - kLag<I>)...});
       }
     }
-    (std::make_index_sequence<std::tuple_size_v<typename Traits::Inputs>>{});
+    (std::make_index_sequence<kInputs>{});
   }
 
-  /// The newest message of an input that is not newer than a step.
   template <std::size_t I>
-  auto HeardBy(std::int64_t step, const RealtimeRule& rule) {
-    using M = std::tuple_element_t<I, typename Traits::Inputs>;
-    Heard<M> heard;
-    const Input& input = InputOf<M>();
-    std::int64_t newest = std::min(step, input.ring.newest());
-    const std::int64_t oldest = std::max<std::int64_t>(0, newest - kRingSteps + 1);
-    while (newest >= oldest && !input.ring.Has(newest)) --newest;
-    if (newest < oldest) return heard;
-    heard.state = rule.StateFor(static_cast<std::size_t>(&input - inputs().data()), step);
-    heard.newest = &std::get<I>(rings_)[RingSlot(newest)];
-    return heard;
-  }
-
-  template <class M>
-  const Input& InputOf() {
-    return *std::ranges::find(inputs(), IndexOf<M>(), &Input::channel);
+  Heard<std::tuple_element_t<I, AllInputs>> HeardBy(std::int64_t step) {
+    const auto* newest = NewestOf<I>(step);
+    if (newest == nullptr) return {};
+    const auto place = static_cast<std::size_t>(&InputOf<I>() - inputs().data());
+    const auto& rule = static_cast<const RealtimeRule&>(this->rule());
+    return {.state = rule.StateFor(place, step), .newest = newest};
   }
 
   /// That of the input which brings the step.
@@ -205,6 +235,7 @@ class StepNode final : public Node {
   std::unique_ptr<Algorithm> algorithm_;
   std::unique_ptr<InRealtime> failsafe_;  // in real time, if there is one
   InputRings rings_;
+  bool hears_ = false;  // in this scenario
   std::vector<std::uint8_t> encoded_;
   std::optional<LeadGate> gate_;  // of the role that begins the steps
 };

@@ -90,10 +90,8 @@ TimePoint TickRule::Due(std::int64_t n) const {
 }
 
 bool TickRule::Answered() const {
-  const std::int64_t needed = next() - lead();
-  return needed < 0 || std::ranges::all_of(inputs(), [needed](const Input& input) {
-           return input.ring.Has(needed);
-         });
+  const std::int64_t step = next();
+  return std::ranges::all_of(inputs(), [step](const Input& input) { return input.ReadyFor(step); });
 }
 
 TimePoint TickRule::Tick(TimePoint now) {

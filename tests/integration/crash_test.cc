@@ -32,12 +32,14 @@ std::vector<std::string> PaperOf(int steps, const std::vector<std::string>& more
   return command;
 }
 
-/// Digest of the run that nothing happens to.
-std::string UndisturbedDigest(int steps) {
-  static std::map<int, std::string> known;
-  std::string& digest = known[steps];
+/// Digest of the run that nothing happens to, of the paper's scenario with such changes.
+std::string UndisturbedDigest(int steps, const std::vector<std::string>& changes) {
+  static std::map<std::pair<int, std::vector<std::string>>, std::string> known;
+  std::string& digest = known[{steps, changes}];
   if (digest.empty()) {
-    const Outcome outcome = RunCommand(PaperOf(steps, {"--transport", "direct"}));
+    std::vector<std::string> arguments{"--transport", "direct"};
+    arguments.insert(arguments.end(), changes.begin(), changes.end());
+    const Outcome outcome = RunCommand(PaperOf(steps, arguments));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     digest = nlohmann::json::parse(outcome.out).at("digest");
   }
@@ -47,9 +49,11 @@ std::string UndisturbedDigest(int steps) {
 /// A run over the network whose STATUS messages tell this test who is who.
 class WatchedRun {
  public:
+  /// @param changes of the scenario, as "--set", "/steps=10"
   explicit WatchedRun(const std::vector<std::string>& more = {}, int steps = kSteps,
-                      int pace = kPace)
+                      int pace = kPace, const std::vector<std::string>& changes = {})
       : steps_(steps),
+        changes_(changes),
         bus_(FreshMulticastUrl()),
         log_(folder_.File("run.lcm")),
         run_(Command(more, pace)) {
@@ -105,7 +109,7 @@ class WatchedRun {
   nlohmann::json ExpectSameResult() {
     EXPECT_EQ(run_.Wait(), 0) << run_.Err();
     const auto result = nlohmann::json::parse(run_.Out(), nullptr, false);
-    EXPECT_EQ(result.value("digest", ""), UndisturbedDigest(steps_)) << run_.Err();
+    EXPECT_EQ(result.value("digest", ""), UndisturbedDigest(steps_, changes_)) << run_.Err();
     EXPECT_EQ(result.value("steps", 0), steps_);
     return result;
   }
@@ -126,10 +130,12 @@ class WatchedRun {
     std::vector<std::string> arguments{"--lcm-url", bus_.url(), "--log",
                                        log_,        "--pace",   std::to_string(pace)};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), changes_.begin(), changes_.end());
     return PaperOf(steps_, arguments);
   }
 
   const int steps_;
+  const std::vector<std::string> changes_;
   ScratchFolder folder_;
   Bus bus_;
   std::string log_;
@@ -172,6 +178,22 @@ TEST(CrashTest, OfEveryRoleAtOnceChangesNoResult) {
   for (const std::string& role : AllRoles()) watched.Signal(role, SIGKILL);
   const auto result = watched.ExpectSameResult();
   EXPECT_EQ(result["restarts"].size(), kRoles.size());
+}
+
+TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
+  // GIVEN a driver whose awareness depends on the arbitrator, who reads his command
+  WatchedRun watched({}, kSteps, kPace,
+                     {"--set", "/human/loses_awareness=true", "--set", "/human/misjudges=true",
+                      "--set", "/arbitrator/threshold=0.2", "--set", "/fog/start_s=5"});
+  const std::vector<std::string> both{"driver", "arbitrator"};
+  watched.WaitForStep(70);
+  watched.Signal("driver", SIGKILL);
+  watched.WaitForStep(120);
+  watched.Signal("arbitrator", SIGKILL);
+  watched.WaitForStep(190);
+  for (const std::string& role : both) watched.Signal(role, SIGKILL);
+  const auto result = watched.ExpectSameResult();
+  for (const std::string& role : both) EXPECT_EQ(WatchedRun::RestartsOf(result, role), 2) << role;
 }
 
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {

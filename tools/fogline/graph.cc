@@ -11,16 +11,18 @@
 namespace fogline {
 namespace {
 
-std::string Consumers(const ChannelInfo& channel) {
-  if (channel.pace == Pace::kControl && channel.name != "STATUS") return "everyone";
+std::string NamesOf(const RoleSet& roles) {
   std::string names;
   for (const RoleInfo& info : kRoles) {
-    if (channel.to.Has(info.role))
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
+    if (roles.Has(info.role)) names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
   }
-  if (channel.to.Has(Role::kRunner)) names += names.empty() ? "runner" : ", runner";
-  if (channel.pace == Pace::kStep) names += ", recorder";
+  if (roles.Has(Role::kRunner)) names += names.empty() ? "runner" : ", runner";
   return names;
+}
+
+std::string Consumers(const ChannelInfo& channel) {
+  if (channel.pace == Pace::kControl && channel.name != "STATUS") return "everyone";
+  return NamesOf(channel.to) + (channel.pace == Pace::kStep ? ", recorder" : "");
 }
 
 std::string Producer(const ChannelInfo& channel) {
@@ -42,8 +44,9 @@ void PrintMarkdown() {
   fmt::print("\n| channel | type | from | to | what |\n|---|---|---|---|---|\n");
   ForEachChannel([](const ChannelInfo& info, const auto& channel) {
     using M = typename std::decay_t<decltype(channel)>::Message;
-    fmt::print("| {} | `{}` | {} | {} | {} |\n", info.name, M::getTypeName(), Producer(info),
-               Consumers(info), info.what);
+    const std::string on_demand = NamesOf(info.on_demand);
+    fmt::print("| {} | `{}` | {} | {}{}{} | {} |\n", info.name, M::getTypeName(), Producer(info),
+               Consumers(info), on_demand.empty() ? "" : "; on demand ", on_demand, info.what);
   });
 }
 
@@ -59,6 +62,7 @@ void PrintAsJson() {
                                 {"type", M::getTypeName()},
                                 {"from", Producer(info)},
                                 {"to", Consumers(info)},
+                                {"on_demand", NamesOf(info.on_demand)},
                                 {"per_step", info.pace == Pace::kStep},
                                 {"logged", info.Logged()},
                                 {"what", info.what}});

@@ -113,6 +113,18 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   return after_last - after_first;
 }
 
+// A driver with all weaknesses at once, who reads who drives.
+bool CheckHuman(Scenario scenario) {
+  scenario.human.following = FollowingModel::kAccIdm;
+  scenario.human.sight = Sight::kFog;
+  scenario.human.misjudges = true;
+  scenario.human.loses_awareness = true;
+  std::int64_t steps = 0;
+  const long made = LoopAllocations(scenario, steps);
+  std::printf("human driver: %ld allocations in %ld steps\n", made, static_cast<long>(steps));
+  return made == 0 && steps > 100;
+}
+
 bool CheckLoop(const Shipped& shipped) {
   bool clean = true;
   Scenario scenario = shipped.scenario;
@@ -136,6 +148,7 @@ bool Check() {
   clean = CheckModels() && clean;
   const std::vector<Shipped> all = ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario");
   for (const Shipped& shipped : all) clean = CheckLoop(shipped) && clean;
+  clean = CheckHuman(all.front().scenario) && clean;
   // A program without any allocation would not be counting.
   return clean && all.size() >= 2 && allocations > 0;
 }

@@ -30,6 +30,8 @@ void Change(Draw& draw, Scenario& scenario) {
   if (draw.Chance(0.3)) scenario.acc.max_track_std_m = draw.Uniform(0.01, 1);
   if (draw.Chance(0.3)) scenario.follower.weight_speed = draw.Uniform(0.1, 5);
   if (draw.Chance(0.2)) scenario.step_s = draw.Uniform(0.05, 0.2);
+  scenario.human.misjudges = draw.Chance(0.3);
+  scenario.human.loses_awareness = draw.Chance(0.3);
 }
 
 TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {

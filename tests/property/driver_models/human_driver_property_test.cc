@@ -38,7 +38,7 @@ TEST(HumanDriverProperty, WithoutErrorsAndReactionTimeIsTheModelExactly) {
     for (std::int64_t k = 0; k < kSituations; ++k) {
       const Situation seen = AnySituation(k);
       ASSERT_EQ(driver.Step(k, seen), model.Acceleration(seen)) << k;
-      ASSERT_EQ(attentive.Step(k, seen, 0.0), model.Acceleration(seen)) << k;
+      ASSERT_EQ(attentive.Step(k, seen, Attention{}), model.Acceleration(seen)) << k;
     }
   }
 }

@@ -1,6 +1,13 @@
 #include "services/driver/driver.h"
 
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "scenario/loader.h"
 
 namespace fogline {
 namespace {
@@ -53,6 +60,227 @@ TEST(DriverTest, HasNoMemory) {
   emergency.host_gap_m = 1;
   EXPECT_LT(driver.Step(emergency).acceleration_mps2, first);
   EXPECT_EQ(driver.Step(Truth()).acceleration_mps2, first);
+}
+
+// ---- scenario section human --------------------------------------------------------------------
+
+/// TRUTH of a step in a traffic that never comes to rest.
+truth_t TruthOf(std::int64_t step) {
+  truth_t truth = Truth();
+  const auto k = static_cast<double>(step);
+  truth.header.step = step;
+  truth.preceding_speed_mps = 18 + 2 * std::sin(0.1 * k);
+  truth.preceding_acceleration_mps2 = 2 * std::cos(0.1 * k);
+  truth.host_acceleration_mps2 = -0.5;
+  truth.host_gap_m = 30 + 5 * std::cos(0.03 * k);
+  truth.fog_visibility_m = 60;
+  return truth;
+}
+
+Situation SituationOf(const truth_t& truth) {
+  return {.speed_mps = truth.host_speed_mps,
+          .acceleration_mps2 = truth.host_acceleration_mps2,
+          .ahead = CarAhead{.gap_m = truth.host_gap_m,
+                            .speed_mps = truth.preceding_speed_mps,
+                            .acceleration_mps2 = truth.preceding_acceleration_mps2}};
+}
+
+constexpr std::int64_t kSteps = 60;
+
+/// He does in every step what this model says.
+void ExpectDrives(const Scenario& scenario,
+                  const std::function<double(const truth_t& truth)>& model) {
+  Driver driver(scenario);
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    const truth_t truth = TruthOf(step);
+    EXPECT_EQ(driver.Step(truth).acceleration_mps2, model(truth)) << step;
+  }
+}
+
+TEST(DriverTest, FollowsByTheModelOfTheScenario) {
+  for (const auto kind : {FollowingModel::kIdm, FollowingModel::kIidm, FollowingModel::kAccIdm}) {
+    Scenario scenario;
+    scenario.human.following = kind;
+    scenario.human.coolness = 0.7;
+    const Following model(kind, scenario.driver, 0.7);
+    ExpectDrives(scenario,
+                 [&](const truth_t& truth) { return model.Acceleration(SituationOf(truth)); });
+  }
+}
+
+TEST(DriverTest, SeesWhatFogLeavesOfTheTruth) {
+  Scenario scenario;
+  scenario.human.sight = Sight::kFog;
+  const FogSight sight(scenario.human.fog_sight);
+  const Following model(FollowingModel::kIdm, scenario.driver);
+  ExpectDrives(scenario, [&](const truth_t& truth) {
+    return model.Acceleration(sight.Perceive(SituationOf(truth), truth.fog_visibility_m));
+  });
+}
+
+TEST(DriverTest, DrivesOnAsOnAFreeRoadWhereFogHidesTheCarAhead) {
+  Scenario scenario;
+  scenario.human.sight = Sight::kFog;
+  truth_t truth = Truth();
+  truth.fog_visibility_m = 10;
+  const double free = Following(FollowingModel::kIdm, scenario.driver)
+                          .Acceleration({.speed_mps = truth.host_speed_mps});
+  EXPECT_EQ(Driver(scenario).Step(truth).acceleration_mps2, free);
+}
+
+TEST(DriverTest, ErrsIsLateAndAnticipatesLikeTheHumanDriverModel) {
+  Scenario scenario;
+  scenario.seed = 11;
+  scenario.human.misjudges = true;
+  HumanDriver human(scenario.human.errors, Following(FollowingModel::kIdm, scenario.driver),
+                    Random(11, Stream::kHumanErrors), scenario.step_s);
+  ExpectDrives(scenario, [&](const truth_t& truth) {
+    return human.Step(truth.header.step, SituationOf(truth));
+  });
+}
+
+TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
+  Scenario scenario;
+  scenario.human.misjudges = true;
+  scenario.human.sight = Sight::kFog;
+  const FogSight sight(scenario.human.fog_sight);
+  HumanDriver human(scenario.human.errors, Following(FollowingModel::kIdm, scenario.driver),
+                    Random(scenario.seed, Stream::kHumanErrors), scenario.step_s);
+  ExpectDrives(scenario, [&](const truth_t& truth) {
+    return human.Step(truth.header.step,
+                      sight.Perceive(SituationOf(truth), truth.fog_visibility_m));
+  });
+}
+
+TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
+  Scenario scenario;
+  scenario.step_s = 0.003;  // 0.8 s are 266 of them
+  EXPECT_NO_THROW(Driver{scenario}) << "he has none";
+  scenario.human.misjudges = true;
+  const auto error = [&] {
+    try {
+      const Driver driver(scenario);
+    } catch (const InputError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(error(),
+            "/step_s: 0.003 s is too short for the driver: human driver: the reaction time is "
+            "longer than 254 steps");
+  scenario.step_s = 0.005;
+  EXPECT_EQ(error(), "none");
+  // Whoever loses awareness can become slower: 0.8 s + 0.5 x 0.7 s are 288 steps of 4 ms.
+  scenario.step_s = 0.004;
+  EXPECT_EQ(error(), "none");
+  scenario.human.loses_awareness = true;
+  EXPECT_NE(error(), "none");
+}
+
+// ---- awareness ---------------------------------------------------------------------------------
+
+class AwarenessOfTheDriverTest : public testing::Test {
+ protected:
+  static Scenario Losing() {
+    Scenario scenario;
+    scenario.human.loses_awareness = true;
+    return scenario;
+  }
+  static arbitration_t Host(std::int8_t mode) {
+    arbitration_t host{};
+    host.mode = mode;
+    host.lambda_human = mode == arbitration_t::HUMAN ? 1 : 0;
+    host.lambda_automation = 1 - host.lambda_human;
+    return host;
+  }
+  static arbitration_t Stopping() {
+    arbitration_t host{};
+    host.mode = arbitration_t::MINIMAL_RISK;
+    return host;
+  }
+  /// His readiness in the next step, after one of which he hears this.
+  double ReadinessAfter(const arbitration_t& host) {
+    driver_.Hear(host);
+    return driver_.Step(TruthOf(step_++)).readiness;
+  }
+
+  Scenario scenario_ = Losing();
+  Driver driver_{scenario_};
+  Awareness awareness_{scenario_.human.awareness};
+  std::int64_t step_ = 0;
+};
+
+TEST_F(AwarenessOfTheDriverTest, IsTheReadinessThatHeReports) {
+  EXPECT_EQ(ReadinessAfter(arbitration_t{}), 1) << "no time has passed";
+  for (int k = 0; k < 50; ++k) {
+    EXPECT_EQ(ReadinessAfter(Host(arbitration_t::AUTOMATION)),
+              awareness_.Step(DriverTask::kMonitors, 0.1));
+  }
+  const double faded = awareness_.awareness();
+  EXPECT_LT(faded, 0.97);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(ReadinessAfter(Host(arbitration_t::HUMAN)),
+              awareness_.Step(DriverTask::kDrives, 0.1));
+  }
+  EXPECT_GT(awareness_.awareness(), faded);
+}
+
+TEST_F(AwarenessOfTheDriverTest, ReturnsAlsoWhileHeIsOnlyAsked) {
+  ReadinessAfter(arbitration_t{});
+  for (int k = 0; k < 50; ++k) ReadinessAfter(Host(arbitration_t::AUTOMATION));
+  arbitration_t request = Host(arbitration_t::AUTOMATION);
+  request.mode = arbitration_t::MINIMAL_RISK + 1;  // any mode in which the automation still drives
+  const double before = ReadinessAfter(Host(arbitration_t::AUTOMATION));
+  EXPECT_GT(ReadinessAfter(request), before);
+}
+
+TEST_F(AwarenessOfTheDriverTest, FadesWhileTheCarStopsByItself) {
+  ReadinessAfter(arbitration_t{});
+  EXPECT_LT(ReadinessAfter(Stopping()), 1);
+}
+
+TEST_F(AwarenessOfTheDriverTest, BeginsWithTheReadinessOfTheScenario) {
+  scenario_.driver.readiness = 0.7;
+  Driver driver(scenario_);
+  EXPECT_EQ(driver.Step(TruthOf(0)).readiness, 0.7);
+}
+
+TEST_F(AwarenessOfTheDriverTest, FadesAsMuchOverStepsThatAreLeftOut) {
+  ReadinessAfter(arbitration_t{});
+  step_ += 9;
+  EXPECT_NEAR(ReadinessAfter(Host(arbitration_t::AUTOMATION)),
+              awareness_.Step(DriverTask::kMonitors, 1.0), 1e-15);
+}
+
+TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
+  scenario_.human.misjudges = true;
+  HumanParameters errors = scenario_.human.errors;
+  errors.reaction_time_s = awareness_.LongestReactionTime_s();
+  HumanDriver human(errors, Following(FollowingModel::kIdm, scenario_.driver),
+                    Random(scenario_.seed, Stream::kHumanErrors), scenario_.step_s);
+  Driver driver(scenario_);
+  for (std::int64_t step = 0; step < 200; ++step) {
+    const truth_t truth = TruthOf(step);
+    if (step > 0) awareness_.Step(DriverTask::kMonitors, scenario_.step_s);
+    const double faded = 1 - awareness_.awareness();
+    // V_s and r_c grow by what SUMO's driver state has without awareness, T_r by 0.7 s.
+    const Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
+                              .gap_error = 0.05 + 0.75 * 0.2 * faded,
+                              .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};
+    EXPECT_NEAR(driver.Step(truth).acceleration_mps2,
+                human.Step(step, SituationOf(truth), attention), 1e-9)
+        << step;
+  }
+}
+
+TEST(DriverTest, DemandsToKnowWhoDrivesOnlyIfHisAwarenessDependsOnIt) {
+  Scenario scenario;
+  EXPECT_FALSE(Driver::Demands(scenario));
+  scenario.human.misjudges = true;
+  scenario.human.sight = Sight::kFog;
+  EXPECT_FALSE(Driver::Demands(scenario));
+  scenario.human.loses_awareness = true;
+  EXPECT_TRUE(Driver::Demands(scenario));
 }
 
 }  // namespace

@@ -157,6 +157,29 @@ TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
 }
 
+TEST_F(ConductorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
+  Conductor hasty(script_.bus(), {.run_id = Script::kRunId,
+                                  .scenario_text = script_.text(),
+                                  .stall_limit = milliseconds(100)});
+  BeAtStep(-1);
+  hasty.Poll(Clock::now());
+  // GIVEN that everybody waits for somebody
+  const auto wait = [this](Role who, std::int64_t next, const char* channel, std::int64_t heard) {
+    role(who).header.step = next - 1;
+    role(who).waiting_for = channel;
+    role(who).last_heard_step = heard;
+    SayStatus(who);
+  };
+  wait(Role::kWorld, 8, "HOST_COMMAND", 6);
+  wait(Role::kArbitrator, 7, "DRIVER_COMMAND", 6);
+  // WHEN it is the driver who lacks what the arbitrator has said before
+  wait(Role::kDriver, 7, "HOST_COMMAND", 5);
+  hasty.Poll(Clock::now() + milliseconds(150));
+  EXPECT_THAT(
+      hasty.error(),
+      HasSubstr("step 7: driver waits for HOST_COMMAND from arbitrator (last heard: step 5"));
+}
+
 TEST_F(ConductorTest, CountsWhatItRefusesItself) {
   auto foreign = role(Role::kRadar);
   foreign.header.run_id = Script::kRunId + 1;

@@ -1,4 +1,4 @@
-#include "services/driver/idm.h"
+#include "services/driver_models/idm.h"
 
 #include <algorithm>
 #include <cmath>
