@@ -89,6 +89,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
   MeasureAccumulator measures;
+  FollowerAccumulator followers;
   result.samples.reserve(static_cast<std::size_t>(scenario.steps));
   const TimePoint began = Clock::now();
   ClosedLoop loop(scenario);
@@ -96,6 +97,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
     writer.Add(step);
     result.samples.push_back(step.ToSample());
     measures.Add(result.samples.back());
+    followers.Add(step.truth, step.follower);
     if (WasInterrupted()) throw Interrupted("interrupted");
   });
   if (log) log->Flush();
@@ -104,6 +106,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   result.steps = static_cast<std::int64_t>(result.samples.size());
   result.digest = digest.Hex();
   result.measures = measures.Result();
+  result.followers = followers.Result();
   result.log = options.log;
   return result;
 }
@@ -141,6 +144,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   LoggedRun logged;
   Digest digest;
   MeasureAccumulator measures;
+  FollowerAccumulator followers;
   std::vector<Sample>& samples = logged.result.samples;
   SampleDecoder decoder;
   RunLogReader reader(log);
@@ -162,6 +166,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
     }
     samples.push_back(*sample);
     measures.Add(*sample);
+    followers.Add(decoder.truth(), decoder.follower());
   }
   const RunLog& run = reader.run();
   logged.result.seed = run.scenario.seed;
@@ -169,6 +174,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   logged.result.digest = digest.Hex();
   logged.result.log = log;
   logged.result.measures = measures.Result();
+  logged.result.followers = followers.Result();
   logged.scenario = run.scenario;
   logged.scenario_text = run.scenario_text;
   logged.result.realtime = run.realtime;

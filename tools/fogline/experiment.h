@@ -9,6 +9,7 @@
 
 #include "scenario/scenario.h"
 #include "services/graph.h"
+#include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
 #include "services/recorder/realtime_figures.h"
@@ -54,6 +55,7 @@ struct ExperimentResult {
   std::vector<Restarts> restarts;
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
+  std::vector<FollowerMeasures> followers;  // nearest to the host first
   std::vector<Sample> samples;
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
