@@ -28,7 +28,9 @@ class ScenarioArguments {
   Scenario Load() const {
     std::vector<std::string> overrides = overrides_;
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
-    return LoadScenario(file_, overrides);
+    Scenario scenario = LoadScenario(file_, overrides);
+    CheckPossible(scenario, file_);
+    return scenario;
   }
   const std::filesystem::path& file() const { return file_; }
 

@@ -133,6 +133,22 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 
 }  // namespace
 
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
+  try {
+    const ClosedLoop parts(scenario);
+  } catch (const InputError& error) {
+    // "/pointer: message", or a message alone where no single field is to blame.
+    const std::string what = error.what();
+    const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
+    const bool field = colon != std::string::npos;
+    throw ScenarioError(fmt::format("{}: error: {}", file.string(), what),
+                        {{.file = file.string(),
+                          .pointer = field ? what.substr(0, colon) : "",
+                          .rule = "impossible",
+                          .message = field ? what.substr(colon + 2) : what}});
+  }
+}
+
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
   ExperimentResult result =
       options.transport == "direct" ? RunDirect(scenario, options) : RunLogged(scenario, options);

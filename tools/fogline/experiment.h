@@ -60,6 +60,12 @@ struct ExperimentResult {
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
+/// Makes every part of a run once, without running it: fields that are each within their range may
+/// not go together, and that should be told before any process is started.
+/// @param file as which the scenario is known to the user
+/// @throws ScenarioError with the rule "impossible"
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
+
 /// Runs a scenario to its end and reads the result from its log.
 /// @throws InputError for a transport or log that cannot be, Interrupted after Ctrl-C,
 ///     std::runtime_error with one line that names the culprit when the run fails; a log stays
