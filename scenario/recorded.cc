@@ -12,15 +12,12 @@
 #include <fmt/core.h>
 
 #include "scenario/csv.h"
+#include "scenario/csv_series.h"
 #include "scenario/file.h"
 #include "scenario/wording.h"
 
 namespace fogline {
 namespace {
-
-// Times in files are rounded decimals. A step this near to a row takes the row's speed as it is;
-// one microsecond is the resolution of a message's time, too.
-constexpr double kSameTime_s = 1e-6;
 
 constexpr std::string_view kFile = "/lead/recorded/file";
 constexpr std::string_view kTimeColumn = "/lead/recorded/time_column";
@@ -151,7 +148,8 @@ class RecordingReader {
     const double last_s = recording.times_s.back().value;
     const double begin_s = recorded_.start_s;
     const double end_s = begin_s + static_cast<double>(scenario_.steps - 1) * scenario_.step_s;
-    if (begin_s >= first_s - kSameTime_s && end_s <= last_s + kSameTime_s) return;
+    if (begin_s >= first_s - CsvSeries::kSameTime_s && end_s <= last_s + CsvSeries::kSameTime_s)
+      return;
     AddInScenario(
         kStart, "csv-span",
         fmt::format("{} steps of {} s from here need {} s to {} s, but {} has {} s to {} s",
@@ -165,26 +163,6 @@ class RecordingReader {
   std::string csv_name_;
   std::uint32_t csv_source_;
   MistakeList& mistakes_;
-};
-
-// Linear interpolation at growing times. @pre the recording spans every time asked for
-class Interpolator {
- public:
-  explicit Interpolator(const Recording& recording) : recording_(recording) {}
-
-  double SpeedAt(double time_s) {
-    const auto& times_s = recording_.times_s;
-    while (row_ + 1 < times_s.size() && times_s[row_ + 1].value <= time_s + kSameTime_s) ++row_;
-    const double from_s = times_s[row_].value;
-    const double from_mps = recording_.speeds_mps[row_].value;
-    if (time_s - from_s <= kSameTime_s || row_ + 1 == times_s.size()) return from_mps;
-    const double share = (time_s - from_s) / (times_s[row_ + 1].value - from_s);
-    return std::lerp(from_mps, recording_.speeds_mps[row_ + 1].value, share);
-  }
-
- private:
-  const Recording& recording_;
-  std::size_t row_ = 0;
 };
 
 }  // namespace
@@ -205,13 +183,13 @@ void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,
                          static_cast<std::uint32_t>(sources.size() - 1), mistakes);
   const std::optional<Recording> recording = reader.Read(csv);
   if (!recording) mistakes.Throw(sources);
-  Interpolator interpolator(*recording);
+  CsvSeries speed_mps(recording->times_s, recording->speeds_mps);
   std::vector<double>& speeds_mps = scenario.lead.recorded.speeds_mps;
   speeds_mps.clear();
   for (std::int64_t step = 0; step < scenario.steps; ++step) {
     const double time_s =
         scenario.lead.recorded.start_s + static_cast<double>(step) * scenario.step_s;
-    speeds_mps.push_back(interpolator.SpeedAt(time_s));
+    speeds_mps.push_back(speed_mps.At(time_s));
   }
 }
 

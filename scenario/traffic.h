@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct ChoiceNames<SafetyModelChoice> {
       "Responsibility-Sensitive Safety", "the fuzzy safety model of UN R157"};
 };
 
+/// Most cars that may follow the host: TRUTH has to fit one datagram.
+inline constexpr std::int64_t kMaxFollowers = 32;
+
 /// One following car that differs from the rest.
 struct FollowerCar {
   FollowerDriver driver = FollowerDriver::kAcc;
@@ -66,7 +70,7 @@ struct FollowersSection {
   static void Fields(Self& self, Visitor& visit) {
     visit.Integer("count", self.count,
                   {.min = 1,
-                   .max = 32,
+                   .max = kMaxFollowers,
                    .unit = "",
                    .doc = "How many cars follow the host.",
                    .source = "1: the paper's; at most what a datagram of TRUTH holds"});
@@ -94,9 +98,9 @@ struct FollowersSection {
                  "What a following person does in danger, on top of following.");
     visit.List("cars", self.cars,
                {.min_items = 0,
-                .max_items = 32,
+                .max_items = kMaxFollowers,
                 .doc = "The first so many cars one by one, nearest to the host first; the others "
-                       "are as above."});
+                       "are as above. What is beyond count is not there."});
   }
 };
 

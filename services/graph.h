@@ -60,14 +60,14 @@ struct RoleInfo {
 
 /// Every role that is a process of its own, in the order of evaluation within a step.
 inline constexpr std::array kRoles{
-    RoleInfo{Role::kWorld, "world", "moves the three cars and is the clock of the run"},
+    RoleInfo{Role::kWorld, "world", "moves the cars and is the clock of the run"},
     RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly touches it"},
     RoleInfo{Role::kLidar, "lidar", "measures range; fog deceives it"},
     RoleInfo{Role::kFusion, "fusion", "extended Kalman filter over both sensors"},
     RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
     RoleInfo{Role::kDriver, "driver", "the human agent: Intelligent Driver Model"},
     RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
-    RoleInfo{Role::kFollower, "follower", "drives the car behind the host: the same ACC"},
+    RoleInfo{Role::kFollower, "follower", "drives the cars behind the host: the same ACC, or people"},
     RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
 };
 

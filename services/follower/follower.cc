@@ -1,29 +1,77 @@
 #include "services/follower/follower.h"
 
-namespace fogline {
+#include <algorithm>
+#include <stdexcept>
 
-Follower::Follower(const Scenario& scenario) : controller_(scenario.follower, scenario.step_s) {
-  out_.acceleration_mps2.reserve(1);
-  out_.safe_distance_m.reserve(1);
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "services/follower/acc_driver.h"
+#include "services/follower/cast.h"
+#include "services/follower/person.h"
+
+namespace fogline {
+namespace {
+
+std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car, Style style) {
+  const Random errors(scenario.seed, FollowerErrors(static_cast<std::uint32_t>(car)));
+  try {
+    return std::make_unique<Person>(style, scenario.followers.safety_model, errors,
+                                    scenario.step_s);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("/step_s: {} s is too short for a person in following car {}: {}",
+                                 scenario.step_s, car, error.what()));
+  }
+}
+
+/// The driver of this car; `before` again if that can begin anew.
+std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
+                                      std::unique_ptr<CarDriver> before) {
+  const Part part = PartOf(scenario, car);
+  if (!part.has_acc) return MakePerson(scenario, car, part.style);
+  if (auto* acc = dynamic_cast<AccDriver*>(before.get())) {
+    acc->Restart(scenario.follower, scenario.step_s);
+    return before;
+  }
+  return std::make_unique<AccDriver>(scenario.follower, scenario.step_s);
+}
+
+/// What the driver of this following car goes by.
+Situation SituationOf(const truth_t& truth, std::size_t car) {
+  const bool first = car == 0;
+  return {.speed_mps = truth.follower_speed_mps[car],
+          .acceleration_mps2 = truth.follower_acceleration_mps2[car],
+          .ahead = CarAhead{
+              .gap_m = truth.follower_gap_m[car],
+              .speed_mps = first ? truth.host_speed_mps : truth.follower_speed_mps[car - 1],
+              .acceleration_mps2 = first ? truth.host_acceleration_mps2
+                                         : truth.follower_acceleration_mps2[car - 1]}};
+}
+
+}  // namespace
+
+void Follower::Restart(const Scenario& scenario) {
+  drivers_.resize(static_cast<std::size_t>(scenario.followers.count));
+  for (std::size_t car = 0; car < drivers_.size(); ++car) {
+    drivers_[car] = MakeDriver(scenario, car, std::move(drivers_[car]));
+  }
+  out_.acceleration_mps2.reserve(drivers_.size());
+  out_.safe_distance_m.reserve(drivers_.size());
 }
 
 const follower_command_t& Follower::Step(const truth_t& truth) {
+  const std::size_t cars =
+      std::min(drivers_.size(), static_cast<std::size_t>(std::max(truth.num_followers, 0)));
   out_.header = truth.header;
-  out_.num_followers = truth.num_followers > 0 ? 1 : 0;
+  out_.num_followers = static_cast<std::int32_t>(cars);
   out_.acceleration_mps2.clear();
   out_.safe_distance_m.clear();
-  if (out_.num_followers == 0) return out_;
-
-  const double speed_mps = truth.follower_speed_mps[0];
-  const AccController::Output output = controller_.Step({
-      .distance_m = truth.follower_gap_m[0],
-      .relative_speed_mps = truth.host_speed_mps - speed_mps,
-      .speed_mps = speed_mps,
-      .acceleration_mps2 = truth.follower_acceleration_mps2[0],
-      .has_target = true,
-  });
-  out_.acceleration_mps2.push_back(output.acceleration_mps2);
-  out_.safe_distance_m.push_back(output.safe_distance_m);
+  for (std::size_t car = 0; car < cars; ++car) {
+    const CarDriver::Action action =
+        drivers_[car]->Step(truth.header.step, SituationOf(truth, car));
+    out_.acceleration_mps2.push_back(action.acceleration_mps2);
+    out_.safe_distance_m.push_back(action.safe_distance_m);
+  }
   return out_;
 }
 

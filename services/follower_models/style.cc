@@ -46,4 +46,8 @@ Style DrawStyle(const StyleShares& shares, const Random& random, std::int64_t fo
   return drawn < shares.aggressive + shares.normal ? Style::kNormal : Style::kCautious;
 }
 
+bool DrawChance(double share, const Random& random, std::int64_t follower) {
+  return random.Uniform2(follower, 0)[1] < share;
+}
+
 }  // namespace fogline

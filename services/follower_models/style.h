@@ -34,4 +34,7 @@ struct StyleShares {
 /// @throw std::invalid_argument if shares are none.
 Style DrawStyle(const StyleShares& shares, const Random& random, std::int64_t follower);
 
+/// True of this share of following cars, in [0, 1]; independent of their styles, and as constant.
+bool DrawChance(double share, const Random& random, std::int64_t follower);
+
 }  // namespace fogline

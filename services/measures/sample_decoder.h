@@ -30,6 +30,10 @@ class SampleDecoder {
     return decoded ? &sample_ : nullptr;
   }
 
+  /// Messages of the step decoded last.
+  const truth_t& truth() const { return truth_; }
+  const follower_command_t& follower() const { return follower_; }
+
  private:
   /// A message all of whose numbers are NaN, and that claims nothing.
   template <class M>

@@ -20,7 +20,13 @@ enum class Stream : std::uint32_t {
   kHumanErrors = 5,
   kTakeOver = 6,
   kStyle = 7,
+  kFollowerErrors = 256,  // and the numbers after it: see FollowerErrors()
 };
+
+/// The stream of the errors of one following car, nearest to the host first: each errs for itself.
+constexpr Stream FollowerErrors(std::uint32_t car) {
+  return static_cast<Stream>(static_cast<std::uint32_t>(Stream::kFollowerErrors) + car);
+}
 
 /// The random numbers of one stream under one seed.
 class Random {

@@ -46,6 +46,7 @@ LongitudinalVehicle::LongitudinalVehicle(const VehicleParameters& vehicle, doubl
 
 void LongitudinalVehicle::Begin(const Motion& now, double command_mps2) {
   last_mps2_ = command_mps2;
+  pedals_.Release();
   const PedalDemand demand = Demand(command_mps2, now);
   powertrain_.Settle(demand.traction_n);
   brake_.Settle(demand.brake_n);

@@ -19,9 +19,8 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 ///
 ///     m_eff dv/dt = F_t - F_b - 1/2 rho c_d A v^2 - m g c_r cos(theta) - m g sin(theta)
 ///
-/// - A controller turns the commanded acceleration a into a force, F = m_eff a + resistances, at
-/// the
-///   speed that the command leads to in the middle of the step. So a steady command is followed
+/// - A controller turns the commanded acceleration a into a force, F = m_eff a + resistances, for
+///   the speed that the command leads to in the middle of the step. So a steady command is followed
 ///   exactly where nothing limits it, outside the pedals' dead band (pedals.h).
 /// - Traction and brake each come with delay and lag (actuator.h).
 /// - Engine: F_t <= min(m a_traction, P / v). Brakes: F_b <= m a_brake.

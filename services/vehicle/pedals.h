@@ -28,6 +28,9 @@ class Pedals {
     return {.brake_n = force_n < 0.0 ? -force_n : 0.0};
   }
 
+  /// The foot is where it is before the first demand: on the throttle.
+  void Release() { pedal_ = Pedal::kThrottle; }
+
   Pedal pedal() const { return pedal_; }
 
  private:

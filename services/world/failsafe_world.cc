@@ -7,7 +7,7 @@ namespace fogline {
 void FailsafeWorld::Resume(const truth_t& truth, std::int8_t minimal_risk) {
   world_.Resume(truth);
   if ((minimal_risk & status_t::HOST) != 0) vehicles_.ResumeHost(truth);
-  if ((minimal_risk & status_t::FOLLOWER) != 0) vehicles_.ResumeFollower(truth);
+  if ((minimal_risk & status_t::FOLLOWER) != 0) vehicles_.ResumeFollowers(truth);
 }
 
 const FailsafeWorld::Output& FailsafeWorld::Step(const WorldInputs& inputs) {

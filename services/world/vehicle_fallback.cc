@@ -16,17 +16,31 @@ double CarFallback::Step(InputState state, std::optional<double> command_mps2, d
 VehicleFallback::VehicleFallback(const Scenario& scenario)
     : health_(scenario.health),
       host_(scenario.minimal_risk, scenario.step_s),
-      follower_(scenario.minimal_risk, scenario.step_s) {
+      followers_(static_cast<std::size_t>(scenario.followers.count),
+                 {.fallback = CarFallback(scenario.minimal_risk, scenario.step_s)}) {
   host_out_.lambda_automation = 1;
-  followers_out_.num_followers = 1;
-  followers_out_.acceleration_mps2.assign(1, 0.0);
-  followers_out_.safe_distance_m.assign(1, 0.0);
+  followers_out_.num_followers = static_cast<std::int32_t>(followers_.size());
+  followers_out_.acceleration_mps2.assign(followers_.size(), 0.0);
+  followers_out_.safe_distance_m.assign(followers_.size(), 0.0);
 }
 
 void VehicleFallback::Step(const truth_t& now, const Heard<arbitration_t>& host,
                            const Heard<follower_command_t>& followers) {
   StepHost(now, host);
-  StepFollower(now, followers);
+  followers_out_.header = now.header;
+  follower_state_ = followers.state;
+  for (std::size_t car = 0; car < followers_.size(); ++car) StepFollower(car, now, followers);
+}
+
+void VehicleFallback::ResumeFollowers(const truth_t& now) {
+  for (std::size_t car = 0; car < followers_.size(); ++car) {
+    followers_[car].fallback.BeginMinimalRisk(now.follower_acceleration_mps2.at(car));
+  }
+}
+
+bool VehicleFallback::follower_in_minimal_risk() const {
+  return std::ranges::any_of(
+      followers_, [](const FollowingCar& car) { return car.fallback.in_minimal_risk(); });
 }
 
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
@@ -49,23 +63,24 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
 }
 
 // A message without an acceleration for the car is as good as none: it must not keep the input OK.
-void VehicleFallback::StepFollower(const truth_t& now, const Heard<follower_command_t>& followers) {
-  if (now.num_followers < 1) return;
-  followers_out_.header = now.header;
-  follower_state_ = followers.state;
+void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
+                                   const Heard<follower_command_t>& followers) {
+  FollowingCar& follower = followers_[car];
+  InputState state = followers.state;
   std::optional<double> command_mps2;
   if (Usable(followers.state)) {
-    const bool empty = followers.newest->num_followers < 1;
-    empty_steps_ = empty ? empty_steps_ + 1 : 0;
+    const bool empty = followers.newest->num_followers <= static_cast<std::int64_t>(car);
+    follower.empty_steps = empty ? follower.empty_steps + 1 : 0;
     if (empty) {
-      follower_state_ = std::max(follower_state_, StateAfter(empty_steps_));
+      state = std::max(state, StateAfter(follower.empty_steps));
     } else {
-      command_mps2 = followers.newest->acceleration_mps2[0];
-      followers_out_.safe_distance_m[0] = followers.newest->safe_distance_m[0];
+      command_mps2 = followers.newest->acceleration_mps2[car];
+      followers_out_.safe_distance_m[car] = followers.newest->safe_distance_m[car];
     }
   }
-  followers_out_.acceleration_mps2[0] = follower_.Step(
-      follower_state_, command_mps2, now.follower_speed_mps[0], now.follower_acceleration_mps2[0]);
+  follower_state_ = std::max(follower_state_, state);
+  followers_out_.acceleration_mps2[car] = follower.fallback.Step(
+      state, command_mps2, now.follower_speed_mps.at(car), now.follower_acceleration_mps2.at(car));
 }
 
 // At the first step without one, the last command came two periods ago.

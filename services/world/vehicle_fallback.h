@@ -2,8 +2,10 @@
 // a moment, then the car stops. No process but the world itself is needed for it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "fogline/arbitration_t.hpp"
 #include "fogline/follower_command_t.hpp"
@@ -40,7 +42,9 @@ class CarFallback {
   std::optional<double> last_mps2_;
 };
 
-/// The host and the following car. Their commands come out in the form that World::Step takes.
+/// The host and the following cars. Their commands come out in the form that World::Step takes.
+/// Each following car stops by itself: one whose acceleration a message leaves out does, and the
+/// others go on.
 ///
 /// Once the arbitrator has commanded the host's minimal risk manoeuvre the vehicle remembers it: it
 /// goes on with that command as long as it comes, and by itself when it stays away or when another
@@ -55,10 +59,8 @@ class VehicleFallback {
 
   /// A process before this one was in the manoeuvre: so is this one, from now on.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  void ResumeFollower(const truth_t& now) {
-    if (now.num_followers < 1) return;
-    follower_.BeginMinimalRisk(now.follower_acceleration_mps2[0]);
-  }
+  /// It is not known which of them: all following cars are.
+  void ResumeFollowers(const truth_t& now);
 
   /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
   /// yet, with the authorities and the mode that this means.
@@ -69,23 +71,30 @@ class VehicleFallback {
   bool host_in_minimal_risk() const { return commanded_ || host_.in_minimal_risk(); }
   /// The vehicle itself does it: the arbitrator is to be told.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
-  bool follower_in_minimal_risk() const { return follower_.in_minimal_risk(); }
-  /// How the follower's command is; a message without one does not count.
+  /// Any of the following cars is in the manoeuvre.
+  bool follower_in_minimal_risk() const;
+  /// How the followers' commands are, that of the car which is worst off; a message without one for
+  /// it does not count.
   InputState follower_state() const { return follower_state_; }
 
  private:
+  struct FollowingCar {
+    CarFallback fallback;
+    std::int64_t empty_steps = 0;  // messages without an acceleration for this car
+  };
+
   void StepHost(const truth_t& now, const Heard<arbitration_t>& host);
-  void StepFollower(const truth_t& now, const Heard<follower_command_t>& followers);
+  void StepFollower(std::size_t car, const truth_t& now,
+                    const Heard<follower_command_t>& followers);
 
   /// How an input is whose last so many messages said nothing, by the limits of any other.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;
   CarFallback host_;
-  CarFallback follower_;
+  std::vector<FollowingCar> followers_;
   InputState follower_state_ = InputState::kAwaited;
-  std::int64_t empty_steps_ = 0;  // without an acceleration for the following car
-  bool commanded_ = false;        // by the arbitrator, at least once
+  bool commanded_ = false;  // by the arbitrator, at least once
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };

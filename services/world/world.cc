@@ -1,19 +1,45 @@
 #include "services/world/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+
 namespace fogline {
 namespace {
 
 constexpr double kMicrosPerSecond = 1e6;
-constexpr std::int32_t kNumFollowers = 1;
 
 double Finite(double acceleration_mps2, const char* channel) {
   if (std::isfinite(acceleration_mps2)) return acceleration_mps2;
   throw std::invalid_argument(std::string(channel) + ": acceleration is not finite");
+}
+
+GradeProfile RoadOf(const Scenario& scenario) {
+  try {
+    return GradeProfile(scenario.road.grade);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what());
+  }
+}
+
+// Nothing for a point mass. @param section its name in the scenario
+std::optional<LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle, const char* section,
+                                             const Scenario& scenario, const GradeProfile& road,
+                                             double step_s) {
+  if (vehicle.model == VehicleModel::kPointMass) return std::nullopt;
+  try {
+    return LongitudinalVehicle(ParametersOf(vehicle.car), FrictionOf(scenario.road.surface), road,
+                               step_s);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("/step_s: {} s is too short for {}: {}", scenario.step_s, section,
+                                 error.what()));
+  }
 }
 
 }  // namespace
@@ -24,13 +50,24 @@ World::World(const Scenario& scenario)
       step_us_(std::llround(scenario.step_s * kMicrosPerSecond)),
       step_s_(static_cast<double>(step_us_) / kMicrosPerSecond),
       leader_(scenario.lead),
-      fog_(scenario.fog) {
+      fog_(scenario.fog),
+      cars_(kFirstFollower + static_cast<std::size_t>(scenario.followers.count)),
+      vehicles_(cars_.size()) {
+  MakeVehicles(scenario);
   truth_t& truth = std::get<truth_t>(output_);
-  truth.num_followers = kNumFollowers;
+  truth.num_followers = static_cast<std::int32_t>(num_followers());
   for (auto* values : {&truth.follower_position_m, &truth.follower_speed_mps,
                        &truth.follower_acceleration_mps2, &truth.follower_gap_m}) {
-    values->assign(kNumFollowers, 0.0);
+    values->assign(num_followers(), 0.0);
   }
+}
+
+void World::MakeVehicles(const Scenario& scenario) {
+  const GradeProfile road = RoadOf(scenario);
+  vehicles_[kHost] = VehicleOf(scenario.host_vehicle, "/host_vehicle", scenario, road, step_s_);
+  const std::optional<LongitudinalVehicle> follower =
+      VehicleOf(scenario.follower_vehicle, "/follower_vehicle", scenario, road, step_s_);
+  std::fill(vehicles_.begin() + kFirstFollower, vehicles_.end(), follower);
 }
 
 const World::Output& World::Start(std::int64_t run_id) {
@@ -39,32 +76,40 @@ const World::Output& World::Start(std::int64_t run_id) {
   collision_ = truth_t::COLLISION_NONE;
   collision_time_s_ = 0.0;
   const double length_m = world_.vehicle_length_m;
-  cars_[kPreceding] = {.motion = {world_.host_gap_m + length_m, leader_.SpeedAt(0, 0.0)}};
-  cars_[kHost] = {.motion = {0.0, world_.host_speed_mps}};
-  cars_[kFollower] = {.motion = {-world_.follower_gap_m - length_m, world_.follower_speed_mps}};
+  Place(kPreceding, {world_.host_gap_m + length_m, leader_.SpeedAt(0, 0.0)}, 0.0);
+  Place(kHost, {0.0, world_.host_speed_mps}, 0.0);
+  for (std::size_t i = kFirstFollower; i < cars_.size(); ++i) {
+    const double position_m = cars_[i - 1].motion.position_m - (world_.follower_gap_m + length_m);
+    Place(i, {position_m, world_.follower_speed_mps}, 0.0);
+  }
   return Publish();
 }
 
 void World::Resume(const truth_t& truth) {
-  if (truth.num_followers != kNumFollowers) {
+  if (truth.num_followers != static_cast<std::int32_t>(num_followers())) {
     throw std::invalid_argument("TRUTH: " + std::to_string(truth.num_followers) +
-                                " following cars instead of " + std::to_string(kNumFollowers));
+                                " following cars instead of " + std::to_string(num_followers()));
   }
   run_id_ = truth.header.run_id;
   step_ = truth.header.step;
   collision_ = truth.collision;
   collision_time_s_ = truth.collision_time_s;
-  const auto car = [](double position_m, double speed_mps, double acceleration_mps2) {
-    return Car{.motion = {position_m, speed_mps},
-               .command_mps2 = acceleration_mps2,
-               .applied_mps2 = acceleration_mps2};
-  };
-  cars_[kPreceding] =
-      car(truth.preceding_position_m, truth.preceding_speed_mps, truth.preceding_acceleration_mps2);
-  cars_[kHost] = car(truth.host_position_m, truth.host_speed_mps, truth.host_acceleration_mps2);
-  cars_[kFollower] = car(truth.follower_position_m[0], truth.follower_speed_mps[0],
-                         truth.follower_acceleration_mps2[0]);
+  Place(kPreceding, {truth.preceding_position_m, truth.preceding_speed_mps},
+        truth.preceding_acceleration_mps2);
+  Place(kHost, {truth.host_position_m, truth.host_speed_mps}, truth.host_acceleration_mps2);
+  for (std::size_t i = 0; i < num_followers(); ++i) {
+    Place(kFirstFollower + i, {truth.follower_position_m[i], truth.follower_speed_mps[i]},
+          truth.follower_acceleration_mps2[i]);
+  }
   Publish();
+}
+
+void World::Place(std::size_t car, const Motion& motion, double acceleration_mps2) {
+  cars_[car] = {.motion = motion,
+                .begin_mps = motion.speed_mps,
+                .acceleration_mps2 = acceleration_mps2,
+                .applied_mps2 = acceleration_mps2};
+  if (vehicles_[car]) vehicles_[car]->Begin(motion, acceleration_mps2);
 }
 
 const World::Output& World::Step(const arbitration_t& host, const follower_command_t& followers) {
@@ -83,47 +128,52 @@ double World::GapOf(std::size_t car) const {
 }
 
 void World::Command(const arbitration_t& host, const follower_command_t& followers) {
-  if (followers.num_followers != kNumFollowers ||
-      followers.acceleration_mps2.size() != kNumFollowers) {
+  if (followers.num_followers != static_cast<std::int32_t>(num_followers()) ||
+      followers.acceleration_mps2.size() != num_followers()) {
     throw std::invalid_argument("FOLLOWER_COMMAND: " + std::to_string(followers.num_followers) +
-                                " accelerations for " + std::to_string(kNumFollowers) +
-                                " following car");
+                                " accelerations for " + std::to_string(num_followers()) +
+                                " following cars");
   }
   const double next_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
-  cars_[kPreceding].command_mps2 = (next_mps - cars_[kPreceding].motion.speed_mps) / step_s_;
-  cars_[kHost].command_mps2 = Finite(host.acceleration_mps2, "HOST_COMMAND");
-  cars_[kFollower].command_mps2 = Finite(followers.acceleration_mps2[0], "FOLLOWER_COMMAND");
+  Obey(kPreceding, (next_mps - cars_[kPreceding].motion.speed_mps) / step_s_);
+  Obey(kHost, Finite(host.acceleration_mps2, "HOST_COMMAND"));
+  for (std::size_t i = 0; i < num_followers(); ++i) {
+    Obey(kFirstFollower + i, Finite(followers.acceleration_mps2[i], "FOLLOWER_COMMAND"));
+  }
+}
+
+void World::Obey(std::size_t car, double command_mps2) {
+  Car& moved = cars_[car];
+  std::optional<LongitudinalVehicle>& vehicle = vehicles_[car];
+  moved.begin_mps = moved.motion.speed_mps;
+  moved.acceleration_mps2 = vehicle ? vehicle->Step(command_mps2, moved.motion) : command_mps2;
 }
 
 void World::Integrate() {
-  std::array<double, kNumCars> begin_mps;
-  for (std::size_t i = 0; i < kNumCars; ++i) begin_mps[i] = cars_[i].motion.speed_mps;
-
   const double substep_s = step_s_ / static_cast<double>(world_.substeps);
   for (std::int64_t i = 0; i < world_.substeps; ++i) {
     if (collision_ == truth_t::COLLISION_NONE) {
       RecordCollision(TimeOf(step_) + static_cast<double>(i) * substep_s, substep_s);
     }
-    for (Car& car : cars_) car.motion = Advance(car.motion, car.command_mps2, substep_s);
+    for (Car& car : cars_) car.motion = Advance(car.motion, car.acceleration_mps2, substep_s);
   }
   // The profile itself, free of what the sum v + a t rounds away.
   cars_[kPreceding].motion.speed_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
 
-  for (std::size_t i = 0; i < kNumCars; ++i) {
-    Car& car = cars_[i];
-    const bool rested = car.command_mps2 < 0.0 && car.motion.speed_mps == 0.0;
-    car.applied_mps2 = rested ? (0.0 - begin_mps[i]) / step_s_ : car.command_mps2;
+  for (Car& car : cars_) {
+    const bool rested = car.acceleration_mps2 < 0.0 && car.motion.speed_mps == 0.0;
+    car.applied_mps2 = rested ? (0.0 - car.begin_mps) / step_s_ : car.acceleration_mps2;
   }
 }
 
 void World::RecordCollision(double begin_s, double duration_s) {
   double first_s = duration_s;
-  for (std::size_t i = kHost; i < kNumCars; ++i) {
+  for (std::size_t i = kHost; i < cars_.size(); ++i) {
     const Car& ahead = cars_[i - 1];
     const Car& behind = cars_[i];
     const std::optional<double> contact_s =
-        TimeToContact(GapOf(i), ahead.motion.speed_mps, ahead.command_mps2, behind.motion.speed_mps,
-                      behind.command_mps2, duration_s);
+        TimeToContact(GapOf(i), ahead.motion.speed_mps, ahead.acceleration_mps2,
+                      behind.motion.speed_mps, behind.acceleration_mps2, duration_s);
     const bool first = contact_s && (collision_ == truth_t::COLLISION_NONE || *contact_s < first_s);
     if (!first) continue;
     first_s = *contact_s;
@@ -147,11 +197,13 @@ const World::Output& World::Publish() {
   truth.host_speed_mps = host.motion.speed_mps;
   truth.host_acceleration_mps2 = host.applied_mps2;
   truth.host_gap_m = GapOf(kHost);
-  const Car& follower = cars_[kFollower];
-  truth.follower_position_m[0] = follower.motion.position_m;
-  truth.follower_speed_mps[0] = follower.motion.speed_mps;
-  truth.follower_acceleration_mps2[0] = follower.applied_mps2;
-  truth.follower_gap_m[0] = GapOf(kFollower);
+  for (std::size_t i = 0; i < num_followers(); ++i) {
+    const Car& follower = cars_[kFirstFollower + i];
+    truth.follower_position_m[i] = follower.motion.position_m;
+    truth.follower_speed_mps[i] = follower.motion.speed_mps;
+    truth.follower_acceleration_mps2[i] = follower.applied_mps2;
+    truth.follower_gap_m[i] = GapOf(kFirstFollower + i);
+  }
 
   const Fog fog = fog_.At(truth.header.utime);
   truth.fog_present = fog.present;

@@ -1,42 +1,52 @@
-// The road: it moves the three cars, keeps the time of the run and knows everything. What the cars
+// The road: it moves the cars, keeps the time of the run and knows everything. What the cars
 // do is not decided here: the preceding car follows its profile, the others their commands.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <tuple>
+#include <vector>
 
 #include "fogline/arbitration_t.hpp"
 #include "fogline/ego_t.hpp"
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "scenario/scenario.h"
+#include "services/vehicle/longitudinal_vehicle.h"
 #include "services/world/fog_schedule.h"
 #include "services/world/leader.h"
 #include "services/world/motion.h"
 
 namespace fogline {
 
-/// The preceding car, the host and one following car in one lane, as point masses whose
-/// acceleration is constant within a step (services/world/motion.h). Cars that have collided do
-/// not push each other: unless the run ends there, they go on as commanded, through one another,
-/// and the gap between them is negative.
+/// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
+/// speed of its profile. Each other car is a point mass, which does what it is told, or a vehicle
+/// that obeys as well as it can (services/vehicle). The acceleration of every car is constant
+/// within a step (services/world/motion.h). Cars that have collided do not push each other: unless
+/// the run ends there, they go on as commanded, through one another, and the gap between them is
+/// negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
 
-  /// @throw std::invalid_argument if the scenario's recorded leader has no speeds.
+  /// @throw std::invalid_argument if the scenario's recorded leader has no speeds
+  /// @throw InputError if the places of its hills do not increase, or a step is too short for the
+  ///     delays of a vehicle
   explicit World(const Scenario& scenario);
 
   /// Step 0: the state that the scenario describes. Begins a new run.
   const Output& Start(std::int64_t run_id);
 
-  /// Goes on behind a step that another instance gave out, as this one would have.
+  /// Goes on behind a step that another instance gave out: with point masses as this one would
+  /// have. TRUTH does not say what engine and brakes of a vehicle were about to do, so a vehicle
+  /// begins as if it had kept its acceleration for long.
+  /// @throw std::invalid_argument if that instance had another number of cars
   void Resume(const truth_t& truth);
 
   /// With the commands of step k, step k + 1. The acceleration that truth and ego report is the
-  /// command, or (v(k+1) - v(k)) / step_s of a car that came to rest within the step.
+  /// command, or what a vehicle made of it; or (v(k+1) - v(k)) / step_s of a car that came to rest
+  /// within the step.
   /// @pre Start() was called; `host` and `followers` are those of the last step given out.
   /// @throw std::invalid_argument if a command is not finite, or not one per following car.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
@@ -47,15 +57,21 @@ class World {
  private:
   struct Car {
     Motion motion;
-    double command_mps2 = 0;  // in force during the step
-    double applied_mps2 = 0;  // mean over the step that ended
+    double begin_mps = 0;          // speed at the beginning of the step
+    double acceleration_mps2 = 0;  // in force during the step, or until the car rests
+    double applied_mps2 = 0;       // mean over the step that ended
   };
   // In the order of the lane, from the front. The car at index i follows the one at i - 1.
-  enum : std::size_t { kPreceding, kHost, kFollower, kNumCars };
+  enum : std::size_t { kPreceding, kHost, kFirstFollower };
 
   double TimeOf(std::int64_t step) const;
   double GapOf(std::size_t car) const;
+  std::size_t num_followers() const { return cars_.size() - kFirstFollower; }
+  void MakeVehicles(const Scenario& scenario);
+  // Puts a car on the road, with this acceleration for some time already.
+  void Place(std::size_t car, const Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
+  void Obey(std::size_t car, double command_mps2);
   void Integrate();
   void RecordCollision(double begin_s, double duration_s);
   const Output& Publish();
@@ -69,7 +85,8 @@ class World {
 
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;
-  std::array<Car, kNumCars> cars_;
+  std::vector<Car> cars_;
+  std::vector<std::optional<LongitudinalVehicle>> vehicles_;  // of each car; none of a point mass
   std::int8_t collision_ = truth_t::COLLISION_NONE;
   double collision_time_s_ = 0;
   Output output_{};

@@ -1,5 +1,7 @@
 // A leader recorded on a road: the shipped scenario names a file that is not part of this
 // repository.
+#include <cstdio>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +51,26 @@ TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
   EXPECT_EQ(metrics["collision"], 0);
   // The fog really deceived the LiDAR: by far more than the noise of the sensors.
   EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
+}
+
+TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsHeadway) {
+  // GIVEN an ACC with the headway that a straight line through the real car's speeds and gaps has
+  const ScratchFolder folder;
+  Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",
+       "--set", "/acc/standstill_m=6.5", "--set", "/world/host_speed_mps=17.68", "--set",
+       "/world/host_gap_m=17.23"});
+  const auto compared =
+      RunCommand({Program("fogline"), "compare", folder.File("second.lcm"),
+                  SourceDirectory() / "../shared/data/acc_platoon_a.csv", "--json"});
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  const auto json = nlohmann::json::parse(compared.out);
+  std::printf("behind the recorded leader: RMSE of speed %.3f m/s, of gap %.3f m\n",
+              json["speed_rmse_mps"].get<double>(), json["gap_rmse_m"].get<double>());
+  EXPECT_EQ(json["steps"], 7000);
+  // THEN they drive alike: within what car-following models that are fitted to a car leave, 11 to
+  // 29 % of the gap (Kesting & Treiber 2008)
+  EXPECT_LT(json["gap_rmse_m"], 0.29 * json["recorded_mean_gap_m"].get<double>());
+  EXPECT_LT(json["speed_rmse_mps"], 1);
 }
 
 TEST_F(RecordedLeadTest, TravelsWithTheScenarioSoThatOtherMachinesNeedNoFile) {

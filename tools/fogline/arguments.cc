@@ -95,32 +95,67 @@ void CheckNetworkUrl(const std::string& url) {
       "error: --lcm-url {}: not an LCM network such as \"udpm://239.255.76.67:7667?ttl=0\"", url));
 }
 
-std::string MeasuresJson(const RunMeasures& measures) {
+namespace {
+
+/// Puts every measure that it visits into a JSON object.
+auto Into(nlohmann::ordered_json& json) {
+  return
+      [&json]<class V>(std::string_view name, const V& value, std::string_view, std::string_view) {
+        if constexpr (std::is_same_v<V, std::optional<double>>) {
+          json[std::string(name)] =
+              value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+        } else {
+          json[std::string(name)] = value;
+        }
+      };
+}
+
+std::string Cell(std::optional<double> value) {
+  return value ? fmt::format("{:.4f}", *value) : "-";
+}
+
+/// One line for each following car, under a line of names.
+std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
+  std::string text = fmt::format("  {:<10}", "follower");
+  VisitFollowerMeasures(FollowerMeasures(),
+                        [&text](std::string_view name, const auto&, std::string_view,
+                                std::string_view) { text += fmt::format("  {}", name); });
+  text += '\n';
+  for (std::size_t i = 0; i < followers.size(); ++i) {
+    text += fmt::format("  {:<10}", i + 1);
+    VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
+                                                std::string_view, std::string_view) {
+      text += fmt::format("  {:>{}}", Cell(value), name.size());
+    });
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string MeasuresJson(const ExperimentResult& result) {
   nlohmann::ordered_json json;
-  VisitMeasures(measures, [&json]<class V>(std::string_view name, const V& value, std::string_view,
-                                           std::string_view) {
-    if constexpr (std::is_same_v<V, std::optional<double>>) {
-      json[std::string(name)] =
-          value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-    } else {
-      json[std::string(name)] = value;
+  VisitMeasures(result.measures, Into(json));
+  if (result.followers.size() > 1) {
+    for (const FollowerMeasures& follower : result.followers) {
+      VisitFollowerMeasures(follower, Into(json["followers"].emplace_back()));
     }
-  });
+  }
   return json.dump();
 }
 
-std::string MeasuresText(const RunMeasures& measures) {
+std::string MeasuresText(const ExperimentResult& result) {
   std::string text;
-  VisitMeasures(measures, [&text]<class V>(std::string_view name, const V& value,
-                                           std::string_view unit, std::string_view) {
+  VisitMeasures(result.measures, [&text]<class V>(std::string_view name, const V& value,
+                                                  std::string_view unit, std::string_view) {
     if constexpr (std::is_same_v<V, std::optional<double>>) {
-      text += fmt::format("  {:<32}{:>12} {}\n", name, value ? fmt::format("{:.4f}", *value) : "-",
-                          unit);
+      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(value), unit);
     } else {
       text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
     }
   });
-  return text;
+  return result.followers.size() > 1 ? text + FollowersText(result.followers) : text;
 }
 
 nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {

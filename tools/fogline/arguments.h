@@ -31,7 +31,9 @@ class ScenarioArguments {
   Scenario Load() const {
     std::vector<std::string> overrides = overrides_;
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
-    return LoadScenario(file_, overrides);
+    Scenario scenario = LoadScenario(file_, overrides);
+    CheckPossible(scenario, file_);
+    return scenario;
   }
   const std::filesystem::path& file() const { return file_; }
 
@@ -88,11 +90,13 @@ void PrintJson(const std::string& text);
 /// @throws InputError
 void CheckNetworkUrl(const std::string& url);
 
-/// {"name": value, ...} of a run's measures, to stand in a larger JSON text.
-std::string MeasuresJson(const RunMeasures& measures);
+/// {"name": value, ...} of a run's measures, to stand in a larger JSON text. With more than one
+/// following car "followers" is the list of theirs.
+std::string MeasuresJson(const ExperimentResult& result);
 
-/// The measures of a run as lines "name  value unit".
-std::string MeasuresText(const RunMeasures& measures);
+/// The measures of a run as lines "name  value unit", and a table of the following cars' where
+/// there is more than one.
+std::string MeasuresText(const ExperimentResult& result);
 
 /// The same of the figures of a run in real time, and its fallbacks.
 nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures);

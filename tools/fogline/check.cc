@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "tools/fogline/experiment.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -34,6 +35,7 @@ int CheckFiles(const CheckOptions& options) {
   for (const std::string& file : options.files) {
     try {
       const Scenario scenario = LoadScenario(file, options.overrides);
+      CheckPossible(scenario, file);
       if (options.print) {
         fmt::print("{}", PrintScenario(scenario));
       } else if (!options.json) {

@@ -89,6 +89,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
   MeasureAccumulator measures;
+  FollowerAccumulator followers;
   result.samples.reserve(static_cast<std::size_t>(scenario.steps));
   const TimePoint began = Clock::now();
   ClosedLoop loop(scenario);
@@ -96,6 +97,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
     writer.Add(step);
     result.samples.push_back(step.ToSample());
     measures.Add(result.samples.back());
+    followers.Add(step.truth, step.follower);
     if (WasInterrupted()) throw Interrupted("interrupted");
   });
   if (log) log->Flush();
@@ -104,6 +106,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   result.steps = static_cast<std::int64_t>(result.samples.size());
   result.digest = digest.Hex();
   result.measures = measures.Result();
+  result.followers = followers.Result();
   result.log = options.log;
   return result;
 }
@@ -130,6 +133,22 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 
 }  // namespace
 
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
+  try {
+    const ClosedLoop parts(scenario);
+  } catch (const InputError& error) {
+    // "/pointer: message", or a message alone where no single field is to blame.
+    const std::string what = error.what();
+    const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
+    const bool field = colon != std::string::npos;
+    throw ScenarioError(fmt::format("{}: error: {}", file.string(), what),
+                        {{.file = file.string(),
+                          .pointer = field ? what.substr(0, colon) : "",
+                          .rule = "impossible",
+                          .message = field ? what.substr(colon + 2) : what}});
+  }
+}
+
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
   ExperimentResult result =
       options.transport == "direct" ? RunDirect(scenario, options) : RunLogged(scenario, options);
@@ -141,6 +160,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   LoggedRun logged;
   Digest digest;
   MeasureAccumulator measures;
+  FollowerAccumulator followers;
   std::vector<Sample>& samples = logged.result.samples;
   SampleDecoder decoder;
   RunLogReader reader(log);
@@ -162,6 +182,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
     }
     samples.push_back(*sample);
     measures.Add(*sample);
+    followers.Add(decoder.truth(), decoder.follower());
   }
   const RunLog& run = reader.run();
   logged.result.seed = run.scenario.seed;
@@ -169,6 +190,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   logged.result.digest = digest.Hex();
   logged.result.log = log;
   logged.result.measures = measures.Result();
+  logged.result.followers = followers.Result();
   logged.scenario = run.scenario;
   logged.scenario_text = run.scenario_text;
   logged.result.realtime = run.realtime;

@@ -9,6 +9,7 @@
 
 #include "scenario/scenario.h"
 #include "services/graph.h"
+#include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
 #include "services/recorder/realtime_figures.h"
@@ -54,9 +55,16 @@ struct ExperimentResult {
   std::vector<Restarts> restarts;
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
+  std::vector<FollowerMeasures> followers;  // nearest to the host first
   std::vector<Sample> samples;
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
+
+/// Makes every part of a run once, without running it: fields that are each within their range may
+/// not go together, and that should be told before any process is started.
+/// @param file as which the scenario is known to the user
+/// @throws ScenarioError with the rule "impossible"
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
 /// Runs a scenario to its end and reads the result from its log.
 /// @throws InputError for a transport or log that cannot be, Interrupted after Ctrl-C,

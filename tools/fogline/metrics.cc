@@ -33,14 +33,14 @@ int RunMetrics(const MetricsArguments& arguments) {
                                  {"complete", run.complete},       {"digest", run.result.digest}};
       row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
       if (run.result.realtime) row["realtime"] = RealtimeJson(*run.result.realtime);
-      row["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(run.result.measures));
+      row["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(run.result));
       rows.push_back(std::move(row));
       continue;
     }
     fmt::print("{}: {}, seed {}\n", run.result.log.string(), run.scenario.title, run.result.seed);
     if (run.result.realtime) fmt::print("{}", RealtimeText(*run.result.realtime));
     if (improvements[i]) fmt::print("  {:<32}{:>12.4f} %\n", "si_pct", *improvements[i]);
-    fmt::print("{}", MeasuresText(run.result.measures));
+    fmt::print("{}", MeasuresText(run.result));
   }
   if (arguments.json) PrintJson(rows.dump(2));
   if (!readable) return kBadInput;

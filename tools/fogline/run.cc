@@ -103,7 +103,7 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
         {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
   }
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
-  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result.measures));
+  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
   return json.dump(2);
 }
 
@@ -170,7 +170,7 @@ int Run(RunArguments& arguments) {
   if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
-  fmt::print("{}", MeasuresText(result.measures));
+  fmt::print("{}", MeasuresText(result));
   return kDone;
 }
 

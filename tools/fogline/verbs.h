@@ -25,6 +25,7 @@ void AddTable(CLI::App& app, Action& action);
 void AddSweep(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddMetrics(CLI::App& app, Action& action);
+void AddCompare(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddDigest(CLI::App& app, Action& action);
 void AddDiff(CLI::App& app, Action& action);

@@ -1,5 +1,6 @@
 // Checks that no step of the closed loop allocates memory after the first, nor do the measures: in
-// every shipped scenario, with every fog model, whoever drives; and in no step of the ACC, whatever
+// every shipped scenario, with every fog model, whoever drives, in one car or a column of vehicles
+// with whoever may be in them; and in no step of the ACC, whatever
 // path its solver takes, or of the models of vehicle, driver and follower. A program of its own,
 // because it replaces malloc. Exits with 1 and says what allocated.
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include "services/driver_models/fog_sight.h"
 #include "services/driver_models/human_driver.h"
 #include "services/follower_models/safety_response.h"
+#include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
 #include "services/vehicle/longitudinal_vehicle.h"
 #include "tests/property/acc/draw.h"
@@ -99,6 +101,7 @@ bool CheckModels() {
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   ClosedLoop loop(scenario);
   MeasureAccumulator measures;
+  FollowerAccumulator followers;
   SafetyImprovement improvement(scenario.measures.safety_floor_m);
   long after_first = 0;
   long after_last = 0;
@@ -106,6 +109,7 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   loop.Run(1, [&](const StepView& step) {
     const Sample sample = step.ToSample();
     measures.Add(sample);
+    followers.Add(step.truth, step.follower);
     improvement.Add(sample, sample);
     after_last = allocations;
     if (steps++ == 0) after_first = allocations;
@@ -143,11 +147,29 @@ bool CheckLoop(const Shipped& shipped) {
   return clean;
 }
 
+/// A column of vehicles behind the host, on a hill.
+bool CheckTraffic(const Shipped& shipped) {
+  Scenario scenario = shipped.scenario;
+  scenario.world.end_on_collision = false;
+  scenario.followers.count = 7;
+  scenario.followers.driver = FollowerDriver::kDrawn;
+  scenario.followers.style = FollowerStyle::kDrawn;
+  scenario.followers.safety_model = SafetyModelChoice::kReferenceHuman;
+  scenario.host_vehicle.model = VehicleModel::kLongitudinal;
+  scenario.follower_vehicle = {.model = VehicleModel::kLongitudinal, .car = CarKind::kCompact};
+  scenario.road.grade = {{0, 0}, {300, 0.05}};
+  std::int64_t steps = 0;
+  const long made = LoopAllocations(scenario, steps);
+  std::printf("%s, vehicles and people: %ld allocations in %ld steps\n", shipped.name.c_str(), made,
+              static_cast<long>(steps));
+  return made == 0 && steps > 100;
+}
+
 bool Check() {
   bool clean = CheckController();
   clean = CheckModels() && clean;
   const std::vector<Shipped> all = ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario");
-  for (const Shipped& shipped : all) clean = CheckLoop(shipped) && clean;
+  for (const Shipped& shipped : all) clean = CheckLoop(shipped) && CheckTraffic(shipped) && clean;
   clean = CheckHuman(all.front().scenario) && clean;
   // A program without any allocation would not be counting.
   return clean && all.size() >= 2 && allocations > 0;

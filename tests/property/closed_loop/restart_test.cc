@@ -15,6 +15,18 @@ std::string FreshDigest(const Scenario& scenario) {
   return DigestOf(loop);
 }
 
+void ChangeTraffic(Draw& draw, Scenario& scenario) {
+  if (draw.Chance(0.3)) scenario.followers.count = draw.Integer(1, 5);
+  scenario.followers.driver = static_cast<FollowerDriver>(draw.Integer(0, 2));
+  scenario.followers.style = static_cast<FollowerStyle>(draw.Integer(0, 3));
+  scenario.followers.safety_model = static_cast<SafetyModelChoice>(draw.Integer(0, 3));
+  scenario.host_vehicle.model = static_cast<VehicleModel>(draw.Integer(0, 1));
+  scenario.follower_vehicle.model = static_cast<VehicleModel>(draw.Integer(0, 1));
+  scenario.follower_vehicle.car = static_cast<CarKind>(draw.Integer(0, 2));
+  scenario.road.surface = static_cast<Surface>(draw.Integer(0, 2));
+  scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
+}
+
 /// A scenario that shares some parts with the one before it and differs in others, as in a sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
@@ -32,6 +44,7 @@ void Change(Draw& draw, Scenario& scenario) {
   if (draw.Chance(0.2)) scenario.step_s = draw.Uniform(0.05, 0.2);
   scenario.human.misjudges = draw.Chance(0.3);
   scenario.human.loses_awareness = draw.Chance(0.3);
+  ChangeTraffic(draw, scenario);
 }
 
 TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {

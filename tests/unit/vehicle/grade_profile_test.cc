@@ -19,6 +19,17 @@ TEST(GradeProfileTest, RisesBetweenPointsAndStaysOutside) {
   EXPECT_EQ(hill.GradeAt(1e6), -0.03);
 }
 
+TEST(GradeProfileTest, NamesThePlaceThatDoesNotComeAfterTheOneBefore) {
+  try {
+    GradeProfile({{0, 0}, {150, 0.1}, {120, 0}});
+    FAIL() << "was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "/road/grade/2/position_m: 120 m does not come after 150 m, the place before it; "
+                 "places must increase");
+  }
+}
+
 TEST(GradeProfileTest, RefusesPointsOutOfOrder) {
   EXPECT_THROW(GradeProfile({{10, 0}, {10, 0.1}}), std::invalid_argument);
   EXPECT_THROW(GradeProfile({{10, std::numeric_limits<double>::quiet_NaN()}}),

@@ -1,6 +1,10 @@
 // Commands to the world, as a test wants them.
 #pragma once
 
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "fogline/arbitration_t.hpp"
 #include "fogline/follower_command_t.hpp"
 
@@ -12,12 +16,16 @@ inline arbitration_t HostCommand(double acceleration_mps2) {
   return command;
 }
 
-inline follower_command_t FollowerCommand(double acceleration_mps2) {
+inline follower_command_t FollowerCommands(std::vector<double> accelerations_mps2) {
   follower_command_t command{};
-  command.num_followers = 1;
-  command.acceleration_mps2 = {acceleration_mps2};
-  command.safe_distance_m = {0.0};
+  command.num_followers = static_cast<std::int32_t>(accelerations_mps2.size());
+  command.safe_distance_m.assign(accelerations_mps2.size(), 0.0);
+  command.acceleration_mps2 = std::move(accelerations_mps2);
   return command;
+}
+
+inline follower_command_t FollowerCommand(double acceleration_mps2) {
+  return FollowerCommands({acceleration_mps2});
 }
 
 }  // namespace fogline

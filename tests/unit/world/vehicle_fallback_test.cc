@@ -1,5 +1,9 @@
 #include "services/world/vehicle_fallback.h"
 
+#include <cstddef>
+#include <optional>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/world/commands.h"
@@ -138,6 +142,67 @@ TEST_F(VehicleFallbackTest, GoesOnByItselfWhenTheArbitratorForgetsTheManoeuvre) 
   EXPECT_NEAR(Host(kOk, &host_), -1.25 - 0.2, 1e-12);
   EXPECT_EQ(fallback_.host().mode, arbitration_t::MINIMAL_RISK);
   EXPECT_TRUE(fallback_.host_stops_by_itself());
+}
+
+class SeveralFollowersTest : public testing::Test {
+ protected:
+  SeveralFollowersTest() {
+    Scenario scenario = SomeScenario();
+    scenario.followers.count = 3;
+    fallback_.emplace(scenario);
+    now_.num_followers = 3;
+    now_.follower_speed_mps = {21, 20, 19};
+    now_.follower_acceleration_mps2 = {-0.5, 0, 0.5};
+  }
+  const std::vector<double>& Step(InputState state, const follower_command_t* commands) {
+    fallback_->Step(now_, {kOk, &host_}, {state, commands});
+    return fallback_->followers().acceleration_mps2;
+  }
+
+  std::optional<VehicleFallback> fallback_;
+  truth_t now_ = Driving();
+  arbitration_t host_ = HostCommand(1.5);
+  follower_command_t commands_ = FollowerCommands({-1.5, 0.25, 1});
+};
+
+TEST_F(SeveralFollowersTest, EachGetItsOwnCommandAndKeepItWhileItIsStale) {
+  EXPECT_EQ(Step(kOk, &commands_), commands_.acceleration_mps2);
+  EXPECT_EQ(Step(kStale, &commands_), commands_.acceleration_mps2);
+  EXPECT_EQ(fallback_->followers().num_followers, 3);
+  EXPECT_FALSE(fallback_->follower_in_minimal_risk());
+}
+
+TEST_F(SeveralFollowersTest, StopEachFromItsOwnAccelerationWhenTheirCommandsAreLost) {
+  Step(kOk, &commands_);
+  const std::vector<double> stopping = Step(kLost, &commands_);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(stopping[i], now_.follower_acceleration_mps2[i] - 0.2, 1e-12) << i;
+  }
+  EXPECT_TRUE(fallback_->follower_in_minimal_risk());
+  EXPECT_FALSE(fallback_->host_in_minimal_risk());
+}
+
+TEST_F(SeveralFollowersTest, StopOnlyTheCarThatMessagesLeaveOut) {
+  Step(kOk, &commands_);
+  // WHEN messages come in time, but not for the last car
+  const follower_command_t two = FollowerCommands({-1, 0.5});
+  EXPECT_EQ(Step(kOk, &two), (std::vector<double>{-1, 0.5, 1})) << "its last command holds";
+  EXPECT_EQ(fallback_->follower_state(), kStale);
+  EXPECT_FALSE(fallback_->follower_in_minimal_risk());
+  // THEN it stops after as long as one whose command is lost, and the others go on
+  const std::vector<double> stopping = Step(kOk, &two);
+  EXPECT_EQ(stopping[0], -1);
+  EXPECT_EQ(stopping[1], 0.5);
+  EXPECT_NEAR(stopping[2], 0.5 - 0.2, 1e-12);
+  EXPECT_TRUE(fallback_->follower_in_minimal_risk());
+}
+
+TEST_F(SeveralFollowersTest, AllGoOnStoppingBehindAWorldThatWasKilled) {
+  fallback_->ResumeFollowers(now_);
+  const std::vector<double> stopping = Step(kOk, &commands_);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(stopping[i], now_.follower_acceleration_mps2[i] - 0.2, 1e-12) << i;
+  }
 }
 
 }  // namespace

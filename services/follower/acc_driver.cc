@@ -1,0 +1,16 @@
+#include "services/follower/acc_driver.h"
+
+namespace fogline {
+
+CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const Situation& now) {
+  const AccController::Output output = controller_.Step({
+      .distance_m = now.ahead->gap_m,
+      .relative_speed_mps = now.ahead->speed_mps - now.speed_mps,
+      .speed_mps = now.speed_mps,
+      .acceleration_mps2 = now.acceleration_mps2,
+      .has_target = true,
+  });
+  return {output.acceleration_mps2, output.safe_distance_m};
+}
+
+}  // namespace fogline

@@ -1,0 +1,24 @@
+// One driver of one car that follows another.
+#pragma once
+
+#include <cstdint>
+
+#include "services/driver_models/situation.h"
+
+namespace fogline {
+
+class CarDriver {
+ public:
+  struct Action {
+    double acceleration_mps2 = 0;
+    double safe_distance_m = 0;  // T_hw v + d_0, as this driver holds it safe at the present speed
+  };
+
+  virtual ~CarDriver() = default;
+
+  /// What to do in this step. Once per step, in order.
+  /// @param now the truth, with a car ahead
+  virtual Action Step(std::int64_t step, const Situation& now) = 0;
+};
+
+}  // namespace fogline

@@ -1,0 +1,64 @@
+// What happens to each of the cars that follow the host, in one pass and constant memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "scenario/traffic.h"
+#include "services/graph.h"
+
+namespace fogline {
+
+/// Measures of one following car; "ahead" is the car before it, for the first one the host.
+/// nullopt: the run has no step that the measure looks at.
+struct FollowerMeasures {
+  /// Smallest true gap to the car ahead, m.
+  std::optional<double> min_gap_m;
+  /// Smallest time to collision with it, s: gap / closing speed while it closes in (Hayward 1972).
+  std::optional<double> min_ttc_s;
+  /// Largest compromised safety CS, m, and the mean of CS over the steps in fog: what its gap lacks
+  /// of the dynamic safe distance of its own driver (Sourav & Cheng 2024).
+  std::optional<double> max_compromised_safety_m;
+  std::optional<double> mean_compromised_safety_fog_m;
+};
+
+/// Calls `visit(name, value, unit, description)` for each, as VisitMeasures() for those of the run.
+template <class Visitor>
+void VisitFollowerMeasures(const FollowerMeasures& m, Visitor&& visit) {
+  const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
+                          std::string_view description) { visit(name, value, unit, description); };
+  number("min_gap_m", m.min_gap_m, "m", "smallest gap to the car ahead");
+  number("min_ttc_s", m.min_ttc_s, "s", "smallest time to collision with it");
+  number("max_compromised_safety_m", m.max_compromised_safety_m, "m",
+         "largest shortfall of the safe distance");
+  number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
+         "mean shortfall of the safe distance in fog");
+}
+
+/// Collects the measures of all following cars, step by step. Add() allocates nothing.
+class FollowerAccumulator {
+ public:
+  /// One step. Where a run in real time lacks `commands` (no followers in it), safe distances are
+  /// unknown and the rest is counted.
+  void Add(const truth_t& truth, const follower_command_t& commands);
+
+  /// One entry for each following car that was there, nearest to the host first.
+  std::vector<FollowerMeasures> Result() const;
+
+ private:
+  struct Car {
+    FollowerMeasures measures;  // those that need no final division
+    double sum_fog_m = 0;       // of compromised safety
+    std::int64_t steps_fog = 0;
+  };
+  static void AddSafety(bool fog, double shortfall_m, Car& car);
+
+  std::array<Car, static_cast<std::size_t>(kMaxFollowers)> cars_;
+  std::size_t num_cars_ = 0;
+};
+
+}  // namespace fogline

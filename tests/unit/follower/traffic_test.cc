@@ -1,0 +1,185 @@
+// Several following cars, and the people in them.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scenario/loader.h"
+#include "services/follower/cast.h"
+#include "services/follower/follower.h"
+
+namespace fogline {
+namespace {
+
+// Cars behind a host of 20 m/s, all of the same speed as it, each 33 m behind the one before.
+truth_t Platoon(std::size_t cars) {
+  truth_t truth{};
+  truth.host_speed_mps = 20;
+  truth.num_followers = static_cast<std::int32_t>(cars);
+  truth.follower_position_m.assign(cars, 0);
+  truth.follower_speed_mps.assign(cars, 20);
+  truth.follower_acceleration_mps2.assign(cars, 0);
+  truth.follower_gap_m.assign(cars, 33);
+  return truth;
+}
+
+Scenario WithFollowers(std::int64_t count, FollowerDriver driver) {
+  Scenario scenario;
+  scenario.followers.count = count;
+  scenario.followers.driver = driver;
+  return scenario;
+}
+
+TEST(TrafficTest, GivesEachCarACommand) {
+  Follower follower(WithFollowers(5, FollowerDriver::kAcc));
+  const follower_command_t& command = follower.Step(Platoon(5));
+  EXPECT_EQ(command.num_followers, 5);
+  ASSERT_EQ(command.acceleration_mps2.size(), 5U);
+  ASSERT_EQ(command.safe_distance_m.size(), 5U);
+  EXPECT_EQ(command.acceleration_mps2, std::vector<double>(5, command.acceleration_mps2[0]));
+}
+
+TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
+  for (const FollowerDriver driver : {FollowerDriver::kAcc, FollowerDriver::kHuman}) {
+    // GIVEN three cars whose second is slower than the others
+    Follower follower(WithFollowers(3, driver));
+    Follower undisturbed(WithFollowers(3, driver));
+    truth_t truth = Platoon(3);
+    truth.follower_speed_mps[1] = 17;
+    // WHEN they have had time to see it
+    std::vector<double> now;
+    std::vector<double> otherwise;
+    for (int k = 0; k < 20; ++k) {
+      now = follower.Step(truth).acceleration_mps2;
+      otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
+      ++truth.header.step;
+    }
+    // THEN the third brakes for it, and the first does not know of it
+    EXPECT_LT(now[2], otherwise[2] - 0.1);
+    if (driver == FollowerDriver::kAcc) {
+      EXPECT_EQ(now[0], otherwise[0]);
+    }
+  }
+}
+
+TEST(TrafficTest, KeepsItsMessagesMemoryHoweverManyCars) {
+  Follower follower(WithFollowers(kMaxFollowers, FollowerDriver::kHuman));
+  const truth_t truth = Platoon(static_cast<std::size_t>(kMaxFollowers));
+  const double* const data = follower.Step(truth).acceleration_mps2.data();
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(follower.Step(truth).acceleration_mps2.data(), data);
+}
+
+TEST(PersonTest, HoldsSafeWhatHisStyleHoldsSafe) {
+  Scenario scenario = WithFollowers(3, FollowerDriver::kHuman);
+  scenario.followers.cars = {{FollowerDriver::kHuman, FollowerStyle::kAggressive},
+                             {FollowerDriver::kHuman, FollowerStyle::kNormal},
+                             {FollowerDriver::kHuman, FollowerStyle::kCautious}};
+  const follower_command_t command = Follower(scenario).Step(Platoon(3));
+  // T v + s_0 of each style at 20 m/s.
+  EXPECT_DOUBLE_EQ(command.safe_distance_m[0], 1.25 * 20 + 1);
+  EXPECT_DOUBLE_EQ(command.safe_distance_m[1], 1.45 * 20 + 2);
+  EXPECT_DOUBLE_EQ(command.safe_distance_m[2], 1.75 * 20 + 4);
+}
+
+TEST(PersonTest, ErrsForHimself) {
+  Follower follower(WithFollowers(2, FollowerDriver::kHuman));
+  const follower_command_t& command = follower.Step(Platoon(2));
+  EXPECT_NE(command.acceleration_mps2[0], command.acceleration_mps2[1])
+      << "the same style in the same place";
+}
+
+TEST(PersonTest, ErrsInTheSameWayUnderTheSameSeed) {
+  Scenario scenario = WithFollowers(2, FollowerDriver::kHuman);
+  const auto first = [&] { return Follower(scenario).Step(Platoon(2)).acceleration_mps2; };
+  const std::vector<double> one = first();
+  EXPECT_EQ(first(), one);
+  scenario.seed = 2;
+  EXPECT_NE(first(), one);
+}
+
+TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
+  // GIVEN a car that closes in with 20 m/s to a host at rest 30 m ahead: 1.5 s to a collision
+  truth_t truth = Platoon(1);
+  truth.host_speed_mps = 0;
+  truth.follower_gap_m = {30};
+  const auto hardest = [&](SafetyModelChoice choice) {
+    Scenario scenario = WithFollowers(1, FollowerDriver::kHuman);
+    scenario.followers.safety_model = choice;
+    Follower follower(scenario);
+    double least = 0;
+    for (int k = 0; k < 30; ++k) {
+      truth.header.step = k;
+      least = std::min(least, follower.Step(truth).acceleration_mps2[0]);
+    }
+    return least;
+  };
+  // THEN the reference human brakes with 0.774 g, and nobody less than without a model
+  EXPECT_LE(hardest(SafetyModelChoice::kReferenceHuman), -7.59);
+  EXPECT_LE(hardest(SafetyModelChoice::kRss), hardest(SafetyModelChoice::kNone));
+  EXPECT_LE(hardest(SafetyModelChoice::kFuzzy), hardest(SafetyModelChoice::kNone));
+}
+
+TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
+  Scenario scenario = WithFollowers(3, FollowerDriver::kAcc);
+  scenario.followers.cars = {{}, {FollowerDriver::kHuman, FollowerStyle::kCautious}};
+  scenario.step_s = 0.004;  // 1.1 s are 275 of them
+  scenario.follower.horizon_steps = 5;
+  try {
+    Follower follower(scenario);
+    FAIL() << "was taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              std::string("/step_s: 0.004 s is too short for a person in following car 1: human "
+                          "driver: the reaction time is longer than 254 steps"));
+  }
+}
+
+TEST(CastTest, IsThePapersWithoutASection) {
+  const Part part = PartOf(Scenario(), 0);
+  EXPECT_TRUE(part.has_acc);
+}
+
+TEST(CastTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
+  Scenario scenario = WithFollowers(4, FollowerDriver::kHuman);
+  scenario.followers.style = FollowerStyle::kCautious;
+  scenario.followers.cars = {{FollowerDriver::kAcc, FollowerStyle::kNormal},
+                             {FollowerDriver::kHuman, FollowerStyle::kAggressive}};
+  EXPECT_TRUE(PartOf(scenario, 0).has_acc);
+  EXPECT_FALSE(PartOf(scenario, 1).has_acc);
+  EXPECT_EQ(PartOf(scenario, 1).style, Style::kAggressive);
+  EXPECT_EQ(PartOf(scenario, 3).style, Style::kCautious);
+}
+
+TEST(CastTest, DrawsInProportionToTheShares) {
+  Scenario scenario = WithFollowers(kMaxFollowers, FollowerDriver::kDrawn);
+  scenario.followers.style = FollowerStyle::kDrawn;
+  scenario.followers.acc_share = 0.25;
+  scenario.followers.aggressive_share = 3;
+  constexpr int kSeeds = 200;
+  int acc = 0;
+  int aggressive = 0;
+  for (scenario.seed = 1; scenario.seed <= kSeeds; ++scenario.seed) {
+    for (std::size_t car = 0; car < kMaxFollowers; ++car) {
+      const Part part = PartOf(scenario, car);
+      acc += part.has_acc ? 1 : 0;
+      aggressive += part.style == Style::kAggressive ? 1 : 0;
+    }
+  }
+  // Of 6,400 cars a quarter, and three fifths; four standard deviations are 139 and 157.
+  EXPECT_NEAR(acc, 1600, 139);
+  EXPECT_NEAR(aggressive, 3840, 157);
+}
+
+TEST(CastTest, DrawsNobodyWithoutAShare) {
+  Scenario scenario = WithFollowers(kMaxFollowers, FollowerDriver::kDrawn);
+  for (const double share : {0.0, 1.0}) {
+    scenario.followers.acc_share = share;
+    for (std::size_t car = 0; car < kMaxFollowers; ++car) {
+      EXPECT_EQ(PartOf(scenario, car).has_acc, share == 1.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fogline

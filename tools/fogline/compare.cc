@@ -1,0 +1,222 @@
+// fogline compare: how a run's host drove beside a real car that was recorded behind the same
+// leader.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <ostream>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "scenario/csv.h"
+#include "scenario/csv_series.h"
+#include "scenario/file.h"
+#include "scenario/wording.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+struct CompareArguments {
+  std::filesystem::path log;
+  std::filesystem::path recording;
+  std::string speed_column = "Speed2";
+  std::string gap_column = "IVS1";
+  std::filesystem::path out;
+  bool json = false;
+};
+
+/// What was recorded of the real car.
+struct Recording {
+  std::vector<CsvNumber> times_s;
+  std::vector<CsvNumber> speeds_mps;
+  std::vector<CsvNumber> gaps_m;
+};
+
+[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
+  throw InputError(fmt::format("{}: error: {}", file.string(), why));
+}
+
+std::size_t FindColumn(const std::vector<std::string_view>& header, const std::string& name,
+                       const std::filesystem::path& file) {
+  const auto it = std::ranges::find(header, name);
+  if (it == header.end()) {
+    Refuse(file, fmt::format("no column {}; it has {}{}", QuoteShort(name), Shown(Names(header)),
+                             DidYouMean(Nearest(name, header))));
+  }
+  return static_cast<std::size_t>(it - header.begin());
+}
+
+Recording ReadRecording(const CompareArguments& arguments, const std::string& time_column) {
+  const std::filesystem::path& file = arguments.recording;
+  const FileText csv = ReadFile(file, kMaxFileBytes);
+  if (!csv.error.empty()) Refuse(file, csv.error);
+  const std::vector<std::string_view> header = CsvHeader(csv.text);
+  const auto column = [&](const std::string& name) { return FindColumn(header, name, file); };
+  auto columns = ReadCsvColumns(
+      csv.text, {column(time_column), column(arguments.speed_column), column(arguments.gap_column)},
+      [&](std::uint32_t offset, const std::string& why) {
+        const auto line = 1 + std::count(csv.text.begin(), csv.text.begin() + offset, '\n');
+        throw InputError(fmt::format("{}:{}: error: {}", file.string(), line, why));
+      });
+  return {std::move(columns[0]), std::move(columns[1]), std::move(columns[2])};
+}
+
+/// @throws InputError unless the recording's times ascend and span those of the run
+void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double end_s,
+                const std::filesystem::path& file) {
+  if (times_s.empty()) Refuse(file, "no rows");
+  const auto descent = std::ranges::adjacent_find(
+      times_s, [](const CsvNumber& a, const CsvNumber& b) { return b.value <= a.value; });
+  if (descent != times_s.end()) {
+    Refuse(file, fmt::format("time {} s is followed by {} s", descent->value, descent[1].value));
+  }
+  if (begin_s >= times_s.front().value - CsvSeries::kSameTime_s &&
+      end_s <= times_s.back().value + CsvSeries::kSameTime_s) {
+    return;
+  }
+  Refuse(file, fmt::format("has {} s to {} s, but the run is from {} s to {} s",
+                           times_s.front().value, times_s.back().value, begin_s, end_s));
+}
+
+/// Ours beside the recorded, of one quantity over all steps.
+class Differences {
+ public:
+  void Add(double ours, double recorded) {
+    const double difference = ours - recorded;
+    ++steps_;
+    ours_ += ours;
+    recorded_ += recorded;
+    squares_ += difference * difference;
+    largest_ = std::max(largest_, std::abs(difference));
+  }
+  std::int64_t steps() const { return steps_; }
+  double mean() const { return ours_ / Count(); }
+  double recorded_mean() const { return recorded_ / Count(); }
+  double rmse() const { return std::sqrt(squares_ / Count()); }
+  /// Root mean square without the mean difference, which a choice of headway makes.
+  double spread() const {
+    const double bias = mean() - recorded_mean();
+    return std::sqrt(std::max(0.0, squares_ / Count() - bias * bias));
+  }
+  double largest() const { return largest_; }
+
+ private:
+  double Count() const { return static_cast<double>(steps_); }
+
+  std::int64_t steps_ = 0;
+  double ours_ = 0;
+  double recorded_ = 0;
+  double squares_ = 0;
+  double largest_ = 0;
+};
+
+struct Comparison {
+  Differences speed_mps;
+  Differences gap_m;
+};
+
+/// @param out gets the values step by step as CSV; nullptr: nobody wants them
+Comparison Compare(const LoggedRun& run, const Recording& recording, std::ostream* out) {
+  const double start_s = run.scenario.lead.recorded.start_s;
+  CsvSeries speed_mps(recording.times_s, recording.speeds_mps);
+  CsvSeries gap_m(recording.times_s, recording.gaps_m);
+  Comparison comparison;
+  if (out != nullptr) *out << "time_s,speed_mps,recorded_speed_mps,gap_m,recorded_gap_m\n";
+  for (const Sample& sample : run.result.samples) {
+    const double recorded_mps = speed_mps.At(start_s + sample.time_s);
+    const double recorded_m = gap_m.At(start_s + sample.time_s);
+    comparison.speed_mps.Add(sample.host_speed_mps, recorded_mps);
+    comparison.gap_m.Add(sample.host_gap_m, recorded_m);
+    if (out != nullptr) {
+      *out << fmt::format("{},{},{},{},{}\n", sample.time_s, sample.host_speed_mps, recorded_mps,
+                          sample.host_gap_m, recorded_m);
+    }
+  }
+  return comparison;
+}
+
+void PrintText(const CompareArguments& arguments, const Comparison& comparison) {
+  fmt::print("{} beside {}, {} steps\n", arguments.log.string(), arguments.recording.string(),
+             comparison.speed_mps.steps());
+  fmt::print("  {:<12}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "recorded", "RMSE", "spread",
+             "largest");
+  const auto line = [](const char* name, const Differences& d) {
+    fmt::print("  {:<12}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", name, d.mean(),
+               d.recorded_mean(), d.rmse(), d.spread(), d.largest());
+  };
+  line("speed [m/s]", comparison.speed_mps);
+  line("gap [m]", comparison.gap_m);
+}
+
+nlohmann::ordered_json ToJson(const CompareArguments& arguments, const Comparison& comparison) {
+  const Differences& speed = comparison.speed_mps;
+  const Differences& gap = comparison.gap_m;
+  return {{"log", arguments.log.string()},
+          {"recording", arguments.recording.string()},
+          {"steps", speed.steps()},
+          {"speed_rmse_mps", speed.rmse()},
+          {"gap_rmse_m", gap.rmse()},
+          {"speed_spread_mps", speed.spread()},
+          {"gap_spread_m", gap.spread()},
+          {"largest_speed_difference_mps", speed.largest()},
+          {"largest_gap_difference_m", gap.largest()},
+          {"mean_speed_mps", speed.mean()},
+          {"recorded_mean_speed_mps", speed.recorded_mean()},
+          {"mean_gap_m", gap.mean()},
+          {"recorded_mean_gap_m", gap.recorded_mean()}};
+}
+
+int RunCompare(const CompareArguments& arguments) {
+  const LoggedRun run = ReadLoggedRun(arguments.log);
+  if (run.result.samples.empty()) Refuse(arguments.log, "no steps");
+  const RecordedSection& recorded = run.scenario.lead.recorded;
+  const Recording recording = ReadRecording(arguments, recorded.time_column);
+  CheckTimes(recording.times_s, recorded.start_s + run.result.samples.front().time_s,
+             recorded.start_s + run.result.samples.back().time_s, arguments.recording);
+  std::optional<std::ofstream> out;
+  if (!arguments.out.empty()) out.emplace(arguments.out);
+  const Comparison comparison = Compare(run, recording, out ? &*out : nullptr);
+  if (out && !out->flush()) Refuse(arguments.out, "--out: cannot write");
+  if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
+  if (arguments.json) {
+    PrintJson(ToJson(arguments, comparison).dump(2));
+  } else {
+    PrintText(arguments, comparison);
+  }
+  return run.complete ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void AddCompare(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "compare", "Compare a run's host with a real car recorded behind the same leader");
+  const auto arguments = std::make_shared<CompareArguments>();
+  verb->add_option("LOG", arguments->log, "Event log of a run behind the recorded leader")
+      ->required();
+  verb->add_option("RECORDING", arguments->recording,
+                   "CSV file with a header line; its time column and where the run begins in it "
+                   "are those of /lead/recorded of the log's scenario")
+      ->required();
+  verb->add_option("--speed-column", arguments->speed_column, "Speed of the real car, m/s")
+      ->capture_default_str();
+  verb->add_option("--gap-column", arguments->gap_column,
+                   "Its gap to the leader, bumper to bumper, m")
+      ->capture_default_str();
+  verb->add_option("--out", arguments->out, "Write both step by step into this CSV file");
+  verb->add_flag("--json", arguments->json, "Print as JSON");
+  verb->footer(
+      "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
+      "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"
+      "Examples:\n"
+      "  fogline run scenario/recorded_lead.json --log lead.lcm\n"
+      "  fogline compare lead.lcm ../shared/data/acc_platoon_a.csv");
+  verb->callback([&action, arguments] { action = [arguments] { return RunCompare(*arguments); }; });
+}
+
+}  // namespace fogline
