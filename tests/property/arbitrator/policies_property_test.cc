@@ -155,7 +155,8 @@ TEST_P(EveryPolicyProperty, DecidesTheSameAgain) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTheTable, EveryPolicyProperty, testing::Range<std::size_t>(0, 8),
+INSTANTIATE_TEST_SUITE_P(OfTheTable, EveryPolicyProperty,
+                         testing::Range<std::size_t>(0, ChoiceNames<Policy>::kNames.size()),
                          [](const auto& row) {
                            return std::string(ChoiceNames<Policy>::kNames[row.param]);
                          });
