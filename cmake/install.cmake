@@ -9,11 +9,11 @@ foreach(service IN LISTS FOGLINE_SERVICES)
 endforeach()
 install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
-foreach(part IN ITEMS lcmtypes scenario runtime)
+# The scenario names policies and conflict measures, so it brings them and what they are made of.
+foreach(part IN ITEMS lcmtypes scenario runtime policies conflict driver_models driver)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
+  install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib)
 endforeach()
-install(TARGETS fogline_lcmtypes fogline_scenario fogline_runtime EXPORT fogline-targets
-  ARCHIVE DESTINATION lib)
 install(EXPORT fogline-targets NAMESPACE fogline:: DESTINATION lib/cmake/fogline)
 install(FILES services/graph.h DESTINATION include/services)
 install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING PATTERN "*.h")

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "scenario/engagement.h"
@@ -187,12 +189,29 @@ struct DriverSection {
   }
 };
 
-enum class Policy { kTraded, kAutomation };
+/// Who may drive: a row of the table in services/policies/policies.cc, in its order. A row needs no
+/// enumerator; these are the two that are spoken of elsewhere.
+enum class Policy : std::uint8_t { kNone, kTraded };
 template <>
 struct ChoiceNames<Policy> {
-  static constexpr std::array<std::string_view, 2> kNames{"traded", "automation"};
-  static constexpr std::array<std::string_view, 2> kDocs{
-      "the human drives while DoC >= threshold", "lambda_A = 1 throughout: no traded control"};
+  static const std::span<const std::string_view> kNames;
+  static const std::span<const std::string_view> kDocs;
+};
+
+/// A measure of conflict: a row of the first table in services/conflict/measures.cc.
+enum class MeasureChoice : std::uint8_t { kDoc };
+template <>
+struct ChoiceNames<MeasureChoice> {
+  static const std::span<const std::string_view> kNames;
+  static const std::span<const std::string_view> kDocs;
+};
+
+/// A measure of who is wrong: a row of the second one.
+enum class BlameChoice : std::uint8_t { kNis };
+template <>
+struct ChoiceNames<BlameChoice> {
+  static const std::span<const std::string_view> kNames;
+  static const std::span<const std::string_view> kDocs;
 };
 
 enum class ConflictReading { kMeanOfAbsolute, kAbsoluteOfMean };
@@ -223,6 +242,12 @@ struct ArbitratorSection {
   std::int64_t window_steps = 8;
   MissingLidar missing_lidar = MissingLidar::kHold;
   double missing_conflict_m = 10.0;
+  MeasureChoice measure = MeasureChoice::kDoc;
+  double measure_slope = 10.0;
+  double measure_centre = 0.5;
+  double measure_offset_m = 0.0;
+  BlameChoice blame = BlameChoice::kNis;
+  double blame_threshold = 0.999;
   TransferSection transfer;
   AdaptiveSection adaptive;
   BayesSection bayes;
@@ -262,6 +287,35 @@ struct ArbitratorSection {
                  "What a step without radar or LiDAR value counts as.");
     visit.Number("missing_conflict_m", self.missing_conflict_m,
                  {.min = 0, .max = 1000, .unit = "m", .doc = "For missing_lidar conflict."});
+    visit.Choice("measure", self.measure,
+                 "What the DoC is made of: z as above, or the score of another measure.");
+    visit.Number("measure_slope", self.measure_slope,
+                 {.min = 1e-6,
+                  .max = 1e6,
+                  .unit = "",
+                  .doc = "Slope of the DoC over the score, for any measure but doc.",
+                  .source = "chosen for scores in [0, 1]; the paper's number"});
+    visit.Number("measure_centre", self.measure_centre,
+                 {.min = -1e6,
+                  .max = 1e6,
+                  .unit = "",
+                  .doc = "Score at which DoC is 1/2, for any measure but doc.",
+                  .source = "chosen for scores in [0, 1]"});
+    visit.Number("measure_offset_m", self.measure_offset_m,
+                 {.min = -10,
+                  .max = 10,
+                  .unit = "m",
+                  .doc = "Radar - LiDAR without a fault, as far as it is known; taken off for any "
+                         "measure but doc, and for blame.",
+                  .source = "0: calibrated sensors"});
+    visit.Choice("blame", self.blame,
+                 "Which sensor is wrong, for policies that drop one: isolate, availability.");
+    visit.Number("blame_threshold", self.blame_threshold,
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "Blame from which on the more blamed sensor is dropped.",
+                  .source = "chosen for nis: one step in 1000 drops a sensor without fault"});
     visit.Section("transfer", self.transfer, "How authority goes from one to the other.");
     visit.Section("adaptive", self.adaptive, "For policy adaptive.");
     visit.Section("bayes", self.bayes, "For policy bayes.");

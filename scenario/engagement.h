@@ -35,6 +35,7 @@ struct TransferSection {
   TransferProfile profile = TransferProfile::kStep;
   double duration_s = 2.0;
   double jerk_mps3 = 2.0;
+  double yield_mps2 = 3.5;
   Hysteresis hysteresis = Hysteresis::kNone;
   double band = 0.2;
   double sprt_alpha = 0.01;
@@ -60,6 +61,13 @@ struct TransferSection {
                   .unit = "m/s3",
                   .doc = "For jerk_limited: how fast the command may change after a transfer.",
                   .source = "below 2.5, the limit of ISO 15622 above 20 m/s"});
+    visit.Number("yield_mps2", self.yield_mps2,
+                 {.min = 0,
+                  .max = 20,
+                  .unit = "m/s2",
+                  .doc = "For jerk_limited and gate: whoever drives and brakes harder than this is "
+                         "obeyed at once, smooth or not.",
+                  .source = "ISO 15622: an ACC never brakes harder above 20 m/s"});
     visit.Choice("hysteresis", self.hysteresis, "What keeps authority from going to and fro.");
     visit.Number("band", self.band,
                  {.min = 0,

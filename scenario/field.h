@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace fogline {
@@ -56,7 +57,9 @@ struct NeedSpec {
 };
 
 /// Names of an enumeration's values in their order, as they stand in the file. Specialise for each
-/// enumeration: `static constexpr std::array kNames{...}` and, same size, `kDocs`.
+/// enumeration: `static constexpr std::array kNames{...}` and, same size, `kDocs`. Where the values
+/// are the rows of a table elsewhere, which alone knows their number, both are declared here as
+/// `static const std::span<const std::string_view>`, and defined beside that table.
 template <class Enum>
 struct ChoiceNames;
 

@@ -1,6 +1,7 @@
 // ScenarioSchema: a visitor that writes the JSON schema (draft-07) of every field.
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -83,14 +84,15 @@ class SchemaBuilder {
   }
   template <class Enum>
   void Choice(std::string_view name, const Enum& value, std::string_view doc) {
-    using Names = ChoiceNames<Enum>;
+    const std::span<const std::string_view> names = ChoiceNames<Enum>::kNames;
+    const std::span<const std::string_view> docs = ChoiceNames<Enum>::kDocs;
     Add(name,
         {{"type", "string"},
          {"title", name},
          {"description", doc},
-         {"enum", Names::kNames},
-         {"enumDescriptions", Names::kDocs}},
-        Names::kNames[static_cast<std::size_t>(value)]);
+         {"enum", std::vector(names.begin(), names.end())},
+         {"enumDescriptions", std::vector(docs.begin(), docs.end())}},
+        names[static_cast<std::size_t>(value)]);
   }
   void Numbers(std::string_view name, const std::vector<double>&, const NumberSpec& spec,
                const ListSpec& list) {

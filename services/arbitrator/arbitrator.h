@@ -1,46 +1,67 @@
-// Decides who drives the host, in every step anew: the automation, or the human driver while the
-// sensors disagree. It judges neither offer; what it passes on is one of the two, unchanged.
+// Decides who drives the host, in every step anew. What it sends is made of the two offers and of
+// nothing else; it judges neither.
+//
+//     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
+//     DoC, situation -> policy -> wish                            services/policies
+//     wish -> SteadyWish -> authority that is wanted              steady_wish.h
+//     wanted -> (a driver who must be asked) -> granted           see Choose()
+//     granted, offers -> Transfer -> authority, command           transfer.h
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "scenario/scenario.h"
-#include "services/arbitrator/conflict.h"
+#include "services/arbitrator/conflict_meter.h"
+#include "services/arbitrator/steady_wish.h"
+#include "services/arbitrator/transfer.h"
 #include "services/graph.h"
+#include "services/policies/policy.h"
 
 namespace fogline {
 
-/// Traded control of Sourav & Cheng 2024:
+/// With the defaults the traded control of Sourav & Cheng 2024:
 ///
 ///     lambda_A = 1 if 0 <= DoC < threshold, else 0        lambda_H = 1 - lambda_A
 ///     a = lambda_H a_H + lambda_A a_A
-///
-/// with the Degree of Conflict of conflict.h. Under policy `automation` lambda_A is 1 throughout,
-/// and the DoC is there to look at.
 class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// The host's command for the step that begins here. Once per step, in order. Only the sensors
-  /// and the two offers decide; ego and track are there for policies that weigh more than conflict.
-  /// The result is valid until the next call.
+  /// Whether the scenario's policy looks around: Hear() is then called before every Step().
+  static bool Demands(const Scenario& scenario);
+  /// What a perfect rear sensor and a visibility meter would tell of this step. Nothing else of the
+  /// truth is looked at.
+  void Hear(const truth_t& truth);
+
+  /// The host's command for the step that begins here. Once per step, in order. The result is valid
+  /// until the next call.
   const arbitration_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar,
                             const track_t& track, const accel_command_t& automation,
                             const driver_command_t& driver);
 
-  /// The two halves of a Step: the sensors' values take their place in the window, ...
-  void Observe(const radar_t& radar, const lidar_t& lidar);
-  /// ... and what the window holds decides between the offers. In real time a step may be decided
-  /// without new values of the sensors.
-  const arbitration_t& Choose(const header_t& header, const accel_command_t& automation,
-                              const driver_command_t& driver);
+  /// The two halves of a Step: the sensors' values are added to the conflict, ...
+  void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
+    meter_.Observe(radar, lidar, track);
+  }
+  /// ... and a decision on it is taken. In real time a step may be decided without new values of
+  /// the sensors.
+  const arbitration_t& Choose(const ego_t& ego, const track_t& track,
+                              const accel_command_t& automation, const driver_command_t& driver);
+
+  /// Whether the last decision wants the human to drive, also where the transfer is still under
+  /// way.
+  bool wants_human() const { return wanted_ >= 0.5; }
+  /// Another command was sent than the last decision's: the next one goes on from it.
+  void Overrule(const arbitration_t& sent);
 
  private:
-  std::optional<double> Difference(const radar_t& radar, const lidar_t& lidar);
-
-  ArbitratorSection section_;
-  ConflictWindow window_;
-  std::optional<double> last_difference_m_;  // of the last step with both values
+  double threshold_;
+  ConflictMeter meter_;
+  std::unique_ptr<EngagementPolicy> policy_;
+  SteadyWish steady_;
+  Transfer transfer_;
+  Surroundings surroundings_;
+  double wanted_ = 0;  // lambda_H
   arbitration_t out_{};
 };
 

@@ -13,6 +13,13 @@ Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
 }
 
+// What stands for a message that has never come.
+template <class M>
+const M& OrNone(const Heard<M>& input) {
+  static const M kNone{};
+  return input.newest != nullptr ? *input.newest : kNone;
+}
+
 }  // namespace
 
 FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
@@ -27,8 +34,10 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   const std::int64_t known = pairs_.newest();
   const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
   // A pair counts once, however often it is the newest.
-  if (pairs_.newest() > known) arbitrator_.Observe(pairs_.radar(), pairs_.lidar());
-  if (pairs_.has_pair()) Regular(header, inputs);
+  if (pairs_.newest() > known) {
+    arbitrator_.Observe(pairs_.radar(), pairs_.lidar(), OrNone(inputs.track));
+  }
+  if (pairs_.has_pair()) Regular(inputs);
   decision_ = Judge(inputs, pairs);
   switch (decision_) {
     case Decision::kRegular:
@@ -47,6 +56,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
       break;
   }
   out_.header = header;
+  if (decision_ != Decision::kRegular) arbitrator_.Overrule(out_);
   last_mps2_ = out_.acceleration_mps2;
   last_mode_ = out_.mode;
   return out_;
@@ -54,19 +64,14 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
 
 // The regular decision on the pairs that have been. Offers that are not there are not used for it,
 // only passed on; Judge() sees to it that none of those is.
-void FailsafeArbitrator::Regular(const header_t& header, const ArbitratorInputs& inputs) {
-  static const accel_command_t kNoAutomation{};
-  static const driver_command_t kNoDriver{};
-  const auto or_none = [](const auto* message, const auto& none) -> const auto& {
-    return message != nullptr ? *message : none;
-  };
-  out_ = arbitrator_.Choose(header, or_none(inputs.automation.newest, kNoAutomation),
-                            or_none(inputs.driver.newest, kNoDriver));
+void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs) {
+  out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track), OrNone(inputs.automation),
+                            OrNone(inputs.driver));
 }
 
 Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
   if (minimal_risk_.begun() || demanded_) return Decision::kMinimalRisk;
-  const bool disputed = pairs_.has_pair() && out_.mode == arbitration_t::HUMAN;
+  const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();
   return Decide(AutomationOffer(inputs, pairs), OfferOf(inputs.driver.state),
                 disputed ? kDisputed : kCalm);
 }

@@ -29,6 +29,10 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
+  /// As the Arbitrator's; while nothing is heard, the last that was holds.
+  static bool Demands(const Scenario& scenario) { return Arbitrator::Demands(scenario); }
+  void Hear(const truth_t& truth) { arbitrator_.Hear(truth); }
+
   /// The host's command for the step of `header`. Once per decision; steps may be left out. Valid
   /// until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK and both authorities
   /// are 0; the conflict is that of the last pairs of sensor values, whatever their age.
@@ -48,7 +52,7 @@ class FailsafeArbitrator {
   Decision decision() const { return decision_; }
 
  private:
-  void Regular(const header_t& header, const ArbitratorInputs& inputs);
+  void Regular(const ArbitratorInputs& inputs);
   Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
   void Stop(const ego_t& ego);

@@ -1,6 +1,8 @@
 #include "services/conflict/measures.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <utility>
 
 #include "services/conflict/binned_belief.h"
@@ -139,6 +141,22 @@ constexpr BlameMeasureRow kBlameMeasures[] = {
      kUnit, "evidence of a mode", MakeBlame<LidarModeBlame>},
 };
 
+// A column of either table, for the scenario.
+template <auto kMember, class Row, std::size_t kRows>
+consteval auto Column(const Row (&rows)[kRows]) {
+  std::array<std::string_view, kRows> column;
+  std::ranges::transform(rows, column.begin(), kMember);
+  return column;
+}
+
+constexpr auto kConflictNames = Column<&ConflictMeasureRow::name>(kConflictMeasures);
+constexpr auto kConflictDocs = Column<&ConflictMeasureRow::definition>(kConflictMeasures);
+constexpr auto kBlameNames = Column<&BlameMeasureRow::name>(kBlameMeasures);
+constexpr auto kBlameDocs = Column<&BlameMeasureRow::definition>(kBlameMeasures);
+// The defaults of the scenario.
+static_assert(kConflictNames[static_cast<std::size_t>(MeasureChoice::kDoc)] == "doc");
+static_assert(kBlameNames[static_cast<std::size_t>(BlameChoice::kNis)] == "nis");
+
 template <class Row>
 const Row* Find(std::span<const Row> rows, std::string_view name) {
   const auto found = std::ranges::find(rows, name, &Row::name);
@@ -146,6 +164,12 @@ const Row* Find(std::span<const Row> rows, std::string_view name) {
 }
 
 }  // namespace
+
+using Names = std::span<const std::string_view>;
+constinit const Names ChoiceNames<MeasureChoice>::kNames = kConflictNames;
+constinit const Names ChoiceNames<MeasureChoice>::kDocs = kConflictDocs;
+constinit const Names ChoiceNames<BlameChoice>::kNames = kBlameNames;
+constinit const Names ChoiceNames<BlameChoice>::kDocs = kBlameDocs;
 
 std::span<const ConflictMeasureRow> ConflictMeasures() { return kConflictMeasures; }
 std::span<const BlameMeasureRow> BlameMeasures() { return kBlameMeasures; }

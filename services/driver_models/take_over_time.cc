@@ -66,4 +66,10 @@ double TakeOverTime::LateProbability() const {
   return UpperTail((lead_s_ - location_) / scale_) / UpperTail(-location_ / scale_);
 }
 
+double TakeOverTime::Quantile(double probability) const {
+  if (!normal_) return std::exp(location_ + scale_ * UpperQuantile(1.0 - probability));
+  const double above_0 = UpperTail(-location_ / scale_);  // what is below is drawn again
+  return location_ + scale_ * UpperQuantile((1.0 - probability) * above_0);
+}
+
 }  // namespace fogline

@@ -31,6 +31,9 @@ class TakeOverTime {
   /// P(T > t) exactly.
   double LateProbability() const;
 
+  /// The time in s that T exceeds with probability 1 - `probability`, in (0, 1).
+  double Quantile(double probability) const;
+
  private:
   bool normal_ = false;  // else log-normal
   double lead_s_;

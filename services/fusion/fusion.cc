@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 
 #include "services/fusion/line_of_sight.h"
+#include "services/policies/evidence.h"
+#include "services/policies/policies.h"
 
 namespace fogline {
 namespace {
@@ -39,20 +41,28 @@ Fusion::Fusion(const Scenario& scenario)
       radar_offset_m_(scenario.radar.lateral_offset_m),
       lidar_offset_m_(scenario.lidar.lateral_offset_m),
       initial_speed_variance_(Square(scenario.fusion.initial_speed_std_mps)),
-      initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {}
+      initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {
+  const PolicyRow& policy = RowOf(scenario.arbitrator.policy);
+  if (policy.trusts) policy_ = policy.make(scenario);
+}
+
+bool Fusion::Demands(const Scenario& scenario) {
+  return RowOf(scenario.arbitrator.policy).needs_true_gap;
+}
 
 const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar) {
   out_.header = ego.header;
   for (const Value value : {kRadarRange, kRadarRangeRate, kLidarRange}) {
     Record(value, 0, 0, track_t::ABSENT);
   }
+  if (started_) ekf_.Predict(ego.acceleration_mps2);
+  const Trust trust = policy_ ? Judge(radar, lidar) : Trust{};
   if (started_) {
-    ekf_.Predict(ego.acceleration_mps2);
-    if (radar.valid) CorrectByRadar(radar);
-    if (lidar.valid) CorrectByLidar(lidar);
-  } else if (radar.valid && StartFromRadar(radar)) {
-    if (lidar.valid) CorrectByLidar(lidar);
-  } else if (lidar.valid) {
+    if (radar.valid) CorrectByRadar(radar, trust.radar);
+    if (lidar.valid) CorrectByLidar(lidar, trust.lidar);
+  } else if (radar.valid && trust.radar && StartFromRadar(radar)) {
+    if (lidar.valid) CorrectByLidar(lidar, trust.lidar);
+  } else if (lidar.valid && trust.lidar) {
     StartFromLidar(lidar);
   }
   if (started_) Report(ego.acceleration_mps2);
@@ -91,24 +101,39 @@ bool Fusion::StartFromLidar(const lidar_t& lidar) {
   return started_ = true;
 }
 
-void Fusion::CorrectByRadar(const radar_t& radar) {
+Trust Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
+  Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
+  if (started_) {
+    const LineOfSight sight(ekf_.state()[0], radar_offset_m_);
+    evidence.prediction = {
+        .valid = true,
+        .range_m = sight.range_m(),
+        .std_m = std::sqrt(ekf_.InnovationVariance(sight.RangeJacobian(), /*noise_variance=*/0))};
+  }
+  return policy_->TrustIn({.evidence = evidence, .true_gap_m = true_gap_m_});
+}
+
+void Fusion::CorrectByRadar(const radar_t& radar, bool trusted) {
   const LineOfSight before(ekf_.state()[0], radar_offset_m_);
-  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()});
+  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()}, trusted);
   const LineOfSight after(ekf_.state()[0], radar_offset_m_);
   const double relative_speed = ekf_.state()[1];
-  Correct(kRadarRangeRate, {radar.range_rate_mps, after.RangeRate(relative_speed),
-                            after.RangeRateJacobian(relative_speed)});
+  Correct(kRadarRangeRate,
+          {radar.range_rate_mps, after.RangeRate(relative_speed),
+           after.RangeRateJacobian(relative_speed)},
+          trusted);
 }
 
-void Fusion::CorrectByLidar(const lidar_t& lidar) {
+void Fusion::CorrectByLidar(const lidar_t& lidar, bool trusted) {
   const LineOfSight sight(ekf_.state()[0], lidar_offset_m_);
-  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()});
+  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()}, trusted);
 }
 
-void Fusion::Correct(Value value, const Comparison& comparison) {
+void Fusion::Correct(Value value, const Comparison& comparison, bool trusted) {
   const double noise = noise_variance_[value];
   const double innovation = comparison.measured - comparison.predicted;
   const double variance = ekf_.InnovationVariance(comparison.jacobian, noise);
+  if (!trusted) return Record(value, innovation, variance, track_t::DISTRUSTED);
   const bool refused = gating_ && !gates_[value].Admits(Square(innovation) / variance);
   Record(value, innovation, variance, refused ? track_t::GATED : track_t::USED);
   if (!refused) ekf_.Correct(comparison.jacobian, innovation, noise);

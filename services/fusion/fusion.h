@@ -5,11 +5,14 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <optional>
 
 #include "scenario/scenario.h"
 #include "services/fusion/ekf.h"
 #include "services/fusion/gate.h"
 #include "services/graph.h"
+#include "services/policies/policy.h"
 
 namespace fogline {
 
@@ -20,9 +23,18 @@ namespace fogline {
 ///
 /// The noise that it assumes is that of the scenario's section `fusion`. What the sensors state
 /// of themselves (range_std_m and its kind) is left alone: a sensor deceived by fog does not know.
+///
+/// A policy with a say in the fusion (services/policies) judges each step's values against the
+/// prediction first. A sensor that it does not trust is compared, and corrects nothing.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
+
+  /// Whether the scenario's policy wants to know the truth: Hear() is then called before every
+  /// Step().
+  static bool Demands(const Scenario& scenario);
+  /// The gap is for the policy alone; nothing else of the truth is looked at.
+  void Hear(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Once per step, in order, beginning with the first: `ego` has the
   /// host's acceleration during the step that ended here. The result is valid until the next call.
@@ -44,9 +56,11 @@ class Fusion {
   /// Begin the track with this measurement; false if the target is too far to the side for that.
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
-  void CorrectByRadar(const radar_t& radar);
-  void CorrectByLidar(const lidar_t& lidar);
-  void Correct(Value value, const Comparison& comparison);
+  /// What the policy thinks of the values of this step. @pre the filter has predicted
+  Trust Judge(const radar_t& radar, const lidar_t& lidar);
+  void CorrectByRadar(const radar_t& radar, bool trusted);
+  void CorrectByLidar(const lidar_t& lidar, bool trusted);
+  void Correct(Value value, const Comparison& comparison, bool trusted);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);
 
@@ -58,6 +72,8 @@ class Fusion {
   double lidar_offset_m_;
   double initial_speed_variance_;
   double initial_acceleration_variance_;
+  std::unique_ptr<EngagementPolicy> policy_;  // none if it has no say here
+  std::optional<double> true_gap_m_;
   bool started_ = false;
   track_t out_{};
 };

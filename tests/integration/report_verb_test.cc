@@ -83,7 +83,7 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
   };
   const Outcome report = Report(
       {log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
-       log("c.lcm", "/arbitrator/policy=automation"), "--output", folder.File("report.html")});
+       log("c.lcm", "/arbitrator/policy=none"), "--output", folder.File("report.html")});
   ASSERT_EQ(report.code, 0) << report.err;
   const nlohmann::json runs = DataOf(Read(folder.File("report.html")))["runs"];
   ASSERT_EQ(runs.size(), 3U);
@@ -96,7 +96,7 @@ TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
   const ScratchFolder folder;
   const std::string page = folder.File("report.html");
   const Outcome report =
-      Report({Log(folder, "none.lcm", {"--set", "/arbitrator/policy=automation"}),
+      Report({Log(folder, "none.lcm", {"--set", "/arbitrator/policy=none"}),
               Log(folder, "a.lcm", {}), Log(folder, "b.lcm", {}),
               Log(folder, "c.lcm", {"--seed", "2"}), "-o", page});
   ASSERT_EQ(report.code, 0) << report.err;
@@ -150,8 +150,8 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--seeds", "9:1"}),
               StartsWith("fogline report: error: --seeds 9:1: neither A:B"));
   EXPECT_THAT(
-      error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=automation"}),
-      HasSubstr("/arbitrator/policy is automation: no threshold matters"));
+      error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=none"}),
+      HasSubstr("/arbitrator/policy is none: no threshold matters"));
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {

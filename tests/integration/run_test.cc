@@ -98,7 +98,7 @@ TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
   const auto run =
       RunPaper(folder.File("crash.lcm"),
                {"--transport", "udpm", "--set", "/lead/profile=emergency_brake", "--set",
-                "/arbitrator/policy=automation", "--set", "/acc/min_acceleration_mps2=-0.1"});
+                "/arbitrator/policy=none", "--set", "/acc/min_acceleration_mps2=-0.1"});
   EXPECT_EQ(run["metrics"]["collision"], 1);
   EXPECT_GT(run["metrics"]["collision_time_s"], 10.0);
   EXPECT_LT(run["steps"], 500);

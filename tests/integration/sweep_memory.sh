@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 # Prints the peak resident memory in KiB. One run for each row: nobody but the automation drives.
 peak() {
   /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
-    --set /arbitrator/policy=automation --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2
+    --set /arbitrator/policy=none --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2
   [ "$(wc -l <"$folder/$1.csv")" -eq $(($1 + 1)) ]
   cat "$folder/peak"
 }

@@ -77,8 +77,8 @@ std::string ErrorOf(const std::vector<std::string>& more) {
 }
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
-  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=automation"}),
-            "scenario/paper.json: error: /arbitrator/policy is automation: no threshold matters\n");
+  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
+            "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters\n");
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),
             "fogline table: error: --set /arbitrator/threshold: the thresholds are those of "
             "--thresholds\n");

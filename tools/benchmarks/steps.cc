@@ -123,7 +123,7 @@ BENCHMARK(AccUnconstrainedStep);
 void AccConstrainedStep(benchmark::State& state) {
   Scenario scenario = Paper();
   scenario.lead.profile = LeadProfile::kEmergencyBrake;
-  scenario.arbitrator.policy = Policy::kAutomation;
+  scenario.arbitrator.policy = Policy::kNone;
   Acc acc(scenario);
   double iterations = 0;
   Replay(state, HardSteps(scenario), [&](const Recorded& in) {

@@ -29,7 +29,7 @@ double Residual(const Statistics& reached, const std::optional<double>& target,
 
 Objective::Objective(CalibrationProblem problem)
     : problem_(std::move(problem)), thresholds_{.pointer = "/arbitrator/threshold", .values = {}} {
-  if (problem_.scenario.arbitrator.policy == Policy::kAutomation) {
+  if (problem_.scenario.arbitrator.policy == Policy::kNone) {
     throw InputError(
         "error: /arbitrator/policy: without traded control there is no table to meet; "
         "--set /arbitrator/policy=traded");

@@ -56,7 +56,7 @@ void AddMetrics(CLI::App& app, Action& action) {
   verb->add_flag("--json", arguments->json, "Print as JSON");
   verb->footer(
       "The safety improvement SI appears for runs whose pair without traded control (policy\n"
-      "automation) is among the logs.\n\nExamples:\n  fogline metrics logs/paper-1.lcm\n"
+      "none) is among the logs.\n\nExamples:\n  fogline metrics logs/paper-1.lcm\n"
       "  fogline metrics logs/paper-table/*.lcm --json");
   verb->callback([&action, arguments] { action = [arguments] { return RunMetrics(*arguments); }; });
 }

@@ -14,7 +14,7 @@ std::string CommonPart(Scenario scenario) {
 }  // namespace
 
 Scenario WithoutTradedControl(Scenario scenario) {
-  scenario.arbitrator.policy = Policy::kAutomation;
+  scenario.arbitrator.policy = Policy::kNone;
   return scenario;
 }
 
@@ -23,9 +23,9 @@ std::vector<std::optional<double>> SafetyImprovements(std::span<const LoggedRun>
   for (const LoggedRun& run : runs) common.push_back(CommonPart(run.scenario));
   std::vector<std::optional<double>> improvements(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].scenario.arbitrator.policy == Policy::kAutomation) continue;
+    if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
-      if (runs[j].scenario.arbitrator.policy != Policy::kAutomation || common[i] != common[j])
+      if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j])
         continue;
       improvements[i] = SafetyImprovementPct(runs[j].result.samples, runs[i].result.samples,
                                              runs[i].scenario.measures.safety_floor_m);

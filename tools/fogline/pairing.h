@@ -13,7 +13,7 @@ namespace fogline {
 Scenario WithoutTradedControl(Scenario scenario);
 
 /// SI in % of every run that has its pair among `runs` (same scenario and seed apart from the
-/// arbitrator, policy automation); nullopt for the others.
+/// arbitrator, policy none); nullopt for the others.
 std::vector<std::optional<double>> SafetyImprovements(std::span<const LoggedRun> runs);
 
 }  // namespace fogline

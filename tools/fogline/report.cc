@@ -61,15 +61,23 @@ bool HaveOneSeed(std::span<const LoggedRun> runs) {
 
 std::string LogNameOf(const LoggedRun& run) { return run.result.log.filename().string(); }
 
+std::string NameOf(const ArbitratorSection& arbitrator) {
+  if (arbitrator.policy == Policy::kNone) return "without traded control";
+  std::string name;
+  if (arbitrator.policy != Policy::kTraded) {
+    const auto row = static_cast<std::size_t>(arbitrator.policy);
+    name = fmt::format("{}, ", ChoiceNames<Policy>::kNames[row]);
+  }
+  return name + fmt::format("threshold {:g}", arbitrator.threshold);
+}
+
 /// By what tells the runs apart: who may drive, then the seed, then the log.
 std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
   for (const LoggedRun& run : runs) {
     const ArbitratorSection& arbitrator = run.scenario.arbitrator;
-    std::string name = arbitrator.policy == Policy::kAutomation
-                           ? "without traded control"
-                           : fmt::format("threshold {:g}", arbitrator.threshold);
+    std::string name = NameOf(arbitrator);
     if (with_seed) name += fmt::format(", seed {}", run.result.seed);
     names.push_back(std::move(name));
   }
@@ -133,7 +141,7 @@ std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
     }
   }
   std::stable_partition(runs.begin(), runs.end(), [](const LoggedRun& run) {
-    return run.scenario.arbitrator.policy == Policy::kAutomation;
+    return run.scenario.arbitrator.policy == Policy::kNone;
   });
   return runs;
 }

@@ -10,9 +10,9 @@
 namespace fogline {
 
 void RequireTradedControl(const Scenario& scenario, const std::filesystem::path& file) {
-  if (scenario.arbitrator.policy == Policy::kAutomation) {
+  if (scenario.arbitrator.policy == Policy::kNone) {
     throw InputError(fmt::format(
-        "{}: error: /arbitrator/policy is automation: no threshold matters", file.string()));
+        "{}: error: /arbitrator/policy is none: no threshold matters", file.string()));
   }
 }
 

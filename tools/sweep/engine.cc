@@ -65,8 +65,8 @@ void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
 
 SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
-  if (baseline_.empty() && policy != Policy::kAutomation) {
-    scenario_.arbitrator.policy = Policy::kAutomation;
+  if (baseline_.empty() && policy != Policy::kNone) {
+    scenario_.arbitrator.policy = Policy::kNone;
     Run([this](const StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
@@ -77,7 +77,7 @@ SweepRow SweepWorker::ComputeRow() {
     const Sample sample = step.ToSample();
     measures.Add(sample);
     // Where one of the pair ended early, SI is over the steps of both.
-    if (policy != Policy::kAutomation && i < baseline_.size()) {
+    if (policy != Policy::kNone && i < baseline_.size()) {
       improvement.Add(baseline_[i++], sample);
     }
   });

@@ -132,6 +132,8 @@ bool CheckHuman(Scenario scenario) {
 bool CheckLoop(const Shipped& shipped) {
   bool clean = true;
   Scenario scenario = shipped.scenario;
+  scenario.arbitrator.transfer = {
+      .profile = TransferProfile::kSigmoid, .hysteresis = Hysteresis::kSprt, .gate = true};
   for (std::size_t fog = 0; fog < ChoiceNames<FogModel>::kNames.size(); ++fog) {
     scenario.fog.model = static_cast<FogModel>(fog);
     for (std::size_t policy = 0; policy < ChoiceNames<Policy>::kNames.size(); ++policy) {

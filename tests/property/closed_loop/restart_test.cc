@@ -32,7 +32,10 @@ void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);
   scenario.fog.model = static_cast<FogModel>(draw.Integer(0, 2));
-  scenario.arbitrator.policy = draw.Chance(0.5) ? Policy::kAutomation : Policy::kTraded;
+  scenario.arbitrator.policy = static_cast<Policy>(
+      draw.Integer(0, static_cast<std::int64_t>(ChoiceNames<Policy>::kNames.size()) - 1));
+  scenario.arbitrator.transfer.profile = static_cast<TransferProfile>(draw.Integer(0, 3));
+  scenario.arbitrator.transfer.gate = draw.Chance(0.3);
   scenario.arbitrator.threshold = draw.Uniform(0, 1);
   scenario.arbitrator.window_steps = draw.Integer(1, 20);
   // Short gaps, so that the active-set solver has something to remember.

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/policies/policies.h"
+
 namespace fogline {
 namespace {
 
@@ -126,9 +128,9 @@ TEST(ArbitratorTest, ThresholdOneCallsTheHumanOnlyWhereDocRoundsToOne) {
   EXPECT_EQ(Step(arbitrator, Differing(5)).lambda_human, 1);
 }
 
-TEST(ArbitratorTest, PolicyAutomationNeverCallsTheHumanAndStillMeasures) {
+TEST(ArbitratorTest, PolicyNoneNeverCallsTheHumanAndStillMeasures) {
   Scenario scenario;
-  scenario.arbitrator.policy = Policy::kAutomation;
+  scenario.arbitrator.policy = Policy::kNone;
   scenario.arbitrator.threshold = 0;
   Arbitrator arbitrator(scenario);
   const arbitration_t& out = Step(arbitrator, Differing(2));
@@ -190,6 +192,85 @@ TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
   const arbitration_t& out = Step(arbitrator, WithoutRadar());
   EXPECT_NEAR(out.conflict_m, 11.0 / 3, kRoundingOfRange_m);
   EXPECT_EQ(out.mode, arbitration_t::HUMAN);
+}
+
+// ---- what policies and transfers make of it
+// ------------------------------------------------------
+
+Scenario WithPolicy(std::string_view name) {
+  Scenario scenario;
+  scenario.arbitrator.policy = FindPolicy(name).value();
+  scenario.arbitrator.window_steps = 1;
+  return scenario;
+}
+
+TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
+  Arbitrator arbitrator(WithPolicy("blend"));
+  const arbitration_t& out = Step(arbitrator, Differing(1));  // DoC 1/2, half-way from 0.2 to 0.8
+  EXPECT_EQ(out.lambda_human, 0.5);
+  EXPECT_EQ(out.lambda_automation, 0.5);
+  EXPECT_NEAR(out.acceleration_mps2, (kAutomation_mps2 + kHuman_mps2) / 2, 1e-15);
+  EXPECT_EQ(out.threshold, 0.5);
+  EXPECT_EQ(out.mode, arbitration_t::HUMAN) << "both have half: his is the mode";
+}
+
+TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
+  Scenario scenario = WithPolicy("traded");
+  scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
+  scenario.arbitrator.transfer.duration_s = 1;
+  Arbitrator arbitrator(scenario);
+  for (int k = 1; k <= 10; ++k) {
+    const arbitration_t& out = Step(arbitrator, Differing(2));
+    EXPECT_NEAR(out.lambda_human, k / 10.0, 1e-12);
+    EXPECT_EQ(out.mode, k < 5 ? arbitration_t::AUTOMATION : arbitration_t::HUMAN);
+    EXPECT_TRUE(arbitrator.wants_human());
+  }
+}
+
+TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
+  for (const PolicyRow& row : Policies()) {
+    EXPECT_EQ(Arbitrator::Demands(WithPolicy(row.name)), row.needs_surroundings) << row.name;
+  }
+  // GIVEN dense fog and a follower that closes in
+  truth_t truth{};
+  truth.fog_visibility_m = 50;
+  truth.num_followers = 1;
+  truth.follower_gap_m = {20};
+  truth.follower_speed_mps = {24};
+  Messages m = Differing(0);
+  m.ego.speed_mps = 20;
+  m.driver.readiness = 1;
+  Arbitrator arbitrator(WithPolicy("adaptive"));
+  EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
+  // WHEN it is heard of THEN the threshold is lower, by 5 m/50 m and 0.5 s/5 s
+  arbitrator.Hear(truth);
+  EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
+}
+
+TEST(ArbitratorTest, ADegreeOfConflictCanBeMadeOfAnyMeasure) {
+  Scenario scenario = WithPolicy("traded");
+  scenario.arbitrator.measure =
+      static_cast<MeasureChoice>(FindConflictMeasure("nis") - ConflictMeasures().data());
+  scenario.arbitrator.measure_slope = 1;
+  scenario.arbitrator.measure_centre = 6.63;
+  Arbitrator arbitrator(scenario);
+  Messages m = Differing(0.5);
+  m.radar.range_std_m = m.lidar.range_std_m = 0.1;
+  const arbitration_t& out = Step(arbitrator, m);
+  EXPECT_NEAR(out.conflict_m, 12.5, 1e-9);  // 0.25/0.02
+  EXPECT_EQ(out.doc, DegreeOfConflict(out.conflict_m, 1, 6.63));
+  EXPECT_EQ(out.mode, arbitration_t::HUMAN);
+}
+
+TEST(ArbitratorTest, GoesOnFromACommandThatWasNotItsOwn) {
+  Scenario scenario = WithPolicy("traded");
+  scenario.arbitrator.transfer.profile = TransferProfile::kJerkLimited;
+  scenario.arbitrator.transfer.jerk_mps3 = 2;
+  Arbitrator arbitrator(scenario);
+  arbitration_t sent = Step(arbitrator, Differing(0));
+  sent.acceleration_mps2 = -3;
+  arbitrator.Overrule(sent);
+  EXPECT_NEAR(Step(arbitrator, Differing(2)).acceleration_mps2, -2.8, 1e-12);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(ObjectiveTest, StopsWhenAsked) {
 
 TEST(ObjectiveTest, NeedsTradedControl) {
   CalibrationProblem problem = ShortProblem();
-  problem.scenario.arbitrator.policy = Policy::kAutomation;
+  problem.scenario.arbitrator.policy = Policy::kNone;
   try {
     const Objective objective(problem);
     FAIL() << "accepted";

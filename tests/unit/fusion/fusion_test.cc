@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/policies/policies.h"
+
 namespace fogline {
 namespace {
 
@@ -259,6 +261,70 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   for (int i = 0; i < 50; ++i) Step(fusion, At(k++, range, 0));
   // THEN the estimate is in front again
   EXPECT_NEAR(Step(fusion, At(k, range, 0)).state[0], 15, 0.05);
+}
+
+// ---- policies with a say in the fusion
+// ------------------------------------------------------------
+
+Scenario WithPolicy(std::string_view name) {
+  Scenario scenario;
+  scenario.arbitrator.policy = FindPolicy(name).value();
+  return scenario;
+}
+
+TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
+  Fusion believing(WithPolicy("traded"));
+  Fusion isolating(WithPolicy("isolate"));
+  int k = 0;
+  for (; k < 20; ++k) {
+    Step(believing, At(k));
+    Step(isolating, At(k));
+  }
+  // WHEN the LiDAR sees the fog THEN the radar's range is what the track keeps to
+  Messages fog = At(k);
+  fog.lidar.range_m = 4;
+  EXPECT_LT(Step(believing, fog).state[0], 29);
+  const track_t& track = Step(isolating, fog);
+  EXPECT_NEAR(track.state[0], 30, 1e-9);
+  EXPECT_EQ(track.usage[0], track_t::USED);
+  EXPECT_EQ(track.usage[1], track_t::USED);
+  EXPECT_EQ(track.usage[2], track_t::DISTRUSTED);
+  EXPECT_NEAR(track.innovation[2], -26, 1e-9);
+  EXPECT_GT(track.innovation_variance[2], 0);
+  // WHEN it sees the car again THEN it is used again
+  EXPECT_EQ(Step(isolating, At(++k)).usage[2], track_t::USED);
+}
+
+TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
+  Fusion fusion(WithPolicy("isolate"));
+  int k = 0;
+  for (; k < 20; ++k) Step(fusion, At(k));
+  Messages ghost = At(k);
+  ghost.radar.range_m = 60;
+  ghost.radar.range_rate_mps = 15;
+  const track_t& track = Step(fusion, ghost);
+  EXPECT_EQ(track.usage[0], track_t::DISTRUSTED);
+  EXPECT_EQ(track.usage[1], track_t::DISTRUSTED) << "the whole radar";
+  EXPECT_EQ(track.usage[2], track_t::USED);
+  EXPECT_NEAR(track.state[0], 30, 1e-9);
+}
+
+TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
+  for (const PolicyRow& row : Policies()) {
+    EXPECT_EQ(Fusion::Demands(WithPolicy(row.name)), row.name == "oracle") << row.name;
+  }
+  Fusion fusion(WithPolicy("oracle"));
+  truth_t truth{};
+  truth.host_gap_m = 30;
+  for (int k = 0; k < 20; ++k) {
+    Messages m = At(k, 31);
+    m.lidar.range_m = 29.9;
+    fusion.Hear(truth);
+    const track_t& track = Step(fusion, m);
+    EXPECT_EQ(track.state[0], 29.9);
+    EXPECT_EQ(track.usage[2], track_t::USED);
+    EXPECT_NE(track.usage[0], track_t::USED);
+  }
 }
 
 }  // namespace

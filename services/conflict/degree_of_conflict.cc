@@ -1,4 +1,4 @@
-#include "services/arbitrator/conflict.h"
+#include "services/conflict/degree_of_conflict.h"
 
 #include <cmath>
 

@@ -1,0 +1,45 @@
+// The Degree of Conflict in every step: from the sensors' values to a number in [0, 1].
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "scenario/scenario.h"
+#include "services/conflict/conflict_measure.h"
+#include "services/conflict/degree_of_conflict.h"
+#include "services/graph.h"
+#include "services/policies/evidence.h"
+
+namespace fogline {
+
+/// DoC = 1/(1 + exp(-slope (x - centre))) of what the scenario's measure says of the conflict: of z
+/// (degree_of_conflict.h), as the paper has it, or of the score x of any other row of
+/// services/conflict/measures.cc.
+class ConflictMeter {
+ public:
+  explicit ConflictMeter(const Scenario& scenario);
+
+  /// The values of a step. `track` is the witness of measures that need one; it is left out unless
+  /// it is of the same step.
+  void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track);
+
+  /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
+  double conflict() const { return measure_ ? score_ : window_.Conflict(section_.conflict); }
+  /// DoC of such a conflict.
+  double DocOf(double conflict) const {
+    return measure_ ? DegreeOfConflict(conflict, section_.measure_slope, section_.measure_centre)
+                    : DegreeOfConflict(conflict, section_.doc_slope_per_m, section_.doc_centre_m);
+  }
+
+ private:
+  std::optional<double> Difference(const radar_t& radar, const lidar_t& lidar);
+
+  ArbitratorSection section_;
+  ConflictWindow window_;
+  std::optional<double> last_difference_m_;  // of the last step with both values
+  Witness witness_;
+  std::unique_ptr<ConflictMeasure> measure_;  // none for doc
+  double score_ = 0;
+};
+
+}  // namespace fogline

@@ -1,0 +1,54 @@
+#include "services/arbitrator/steady_wish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fogline {
+namespace {
+
+// ln(p/(1 - p)). Beyond 1e-12 from 0 or 1, where a DoC has been rounded, p counts as this near.
+double LogOdds(double probability) {
+  constexpr double kNearest = 1e-12;
+  const double p = std::clamp(probability, kNearest, 1 - kNearest);
+  return std::log(p / (1 - p));
+}
+
+// Rounding of a quotient of two times that divide evenly.
+constexpr double kRounding = 1e-9;
+
+}  // namespace
+
+SteadyWish::SteadyWish(const TransferSection& section, double step_s)
+    : section_(section),
+      plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0),
+      accept_human_(std::log((1 - section.sprt_beta) / section.sprt_alpha)),
+      accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
+      dwell_steps_(static_cast<std::int64_t>(std::ceil(section.min_dwell_s / step_s - kRounding))),
+      steps_since_change_(dwell_steps_) {}
+
+double SteadyWish::PutOff(const Wish& wish, double doc) {
+  decided_human_ = HumanByHysteresis(wish, doc);
+  ++steps_since_change_;
+  if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_) {
+    wanted_human_ = decided_human_;
+    steps_since_change_ = 0;
+  }
+  return wanted_human_ ? 1 : 0;
+}
+
+bool SteadyWish::HumanByHysteresis(const Wish& wish, double doc) {
+  switch (section_.hysteresis) {
+    case Hysteresis::kNone:
+      break;
+    case Hysteresis::kBand:
+      return !(doc < wish.threshold - (decided_human_ ? section_.band : 0));
+    case Hysteresis::kSprt:
+      evidence_ += LogOdds(doc) - LogOdds(wish.threshold);
+      if (evidence_ < accept_human_ && evidence_ > accept_automation_) return decided_human_;
+      return std::exchange(evidence_, 0.0) > 0;
+  }
+  return wish.lambda_human > 0;
+}
+
+}  // namespace fogline

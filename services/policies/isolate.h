@@ -1,0 +1,21 @@
+// Policy `isolate`: reject the sensor, keep the automation. The rival that every hand-over has to
+// beat.
+#pragma once
+
+#include "services/policies/isolation.h"
+
+namespace fogline {
+
+/// Fault isolation: the fusion goes on without the sensor that is to blame, and nobody takes over.
+class Isolate final : public EngagementPolicy {
+ public:
+  explicit Isolate(const Scenario& scenario) : isolation_(scenario.arbitrator) {}
+
+  Trust TrustIn(const FusionView& view) override { return isolation_.Judge(view.evidence); }
+  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view); }
+
+ private:
+  Isolation isolation_;
+};
+
+}  // namespace fogline

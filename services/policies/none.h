@@ -1,0 +1,16 @@
+// Policy `none`: the run that the others are compared with.
+#pragma once
+
+#include "services/policies/policy.h"
+
+namespace fogline {
+
+/// lambda_A = 1 throughout.
+class None final : public EngagementPolicy {
+ public:
+  explicit None(const Scenario&) {}
+
+  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view); }
+};
+
+}  // namespace fogline

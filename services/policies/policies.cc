@@ -1,0 +1,62 @@
+#include "services/policies/policies.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "services/policies/adaptive.h"
+#include "services/policies/availability.h"
+#include "services/policies/bayes.h"
+#include "services/policies/blend.h"
+#include "services/policies/isolate.h"
+#include "services/policies/none.h"
+#include "services/policies/oracle.h"
+#include "services/policies/traded.h"
+
+namespace fogline {
+namespace {
+
+// One row a policy. Scenario files, their schema and every list of policies have this order.
+constexpr std::array kPolicies{
+    RowFor<None>("none", "lambda_A = 1 throughout: no traded control"),
+    RowFor<Traded>("traded", "the human drives while DoC >= threshold"),
+    RowFor<Isolate>("isolate", "the automation drives, without the sensor that is to blame"),
+    RowFor<Oracle>("oracle", "the automation drives, on the sensor that is nearer to the truth"),
+    RowFor<Blend>("blend", "both drive, the human in proportion to the conflict"),
+    RowFor<Adaptive>("adaptive", "as traded, with a threshold that moves with the situation"),
+    RowFor<Bayes>("bayes", "as traded, with the threshold of least expected cost"),
+    RowFor<Availability>("availability",
+                         "as traded, if the driver can be there in time; else as "
+                         "isolate"),
+};
+
+// The rows that code knows by name.
+static_assert(kPolicies[static_cast<std::size_t>(Policy::kNone)].name == "none");
+static_assert(kPolicies[static_cast<std::size_t>(Policy::kTraded)].name == "traded");
+
+template <auto kMember>
+consteval auto Column() {
+  std::array<std::string_view, kPolicies.size()> column;
+  std::ranges::transform(kPolicies, column.begin(), kMember);
+  return column;
+}
+
+constexpr auto kNameColumn = Column<&PolicyRow::name>();
+constexpr auto kDocColumn = Column<&PolicyRow::doc>();
+
+}  // namespace
+
+constinit const std::span<const std::string_view> ChoiceNames<Policy>::kNames = kNameColumn;
+constinit const std::span<const std::string_view> ChoiceNames<Policy>::kDocs = kDocColumn;
+
+std::span<const PolicyRow> Policies() { return kPolicies; }
+
+const PolicyRow& RowOf(Policy policy) { return kPolicies[static_cast<std::size_t>(policy)]; }
+
+std::optional<Policy> FindPolicy(std::string_view name) {
+  const auto found = std::ranges::find(kPolicies, name, &PolicyRow::name);
+  if (found == kPolicies.end()) return std::nullopt;
+  return static_cast<Policy>(found - kPolicies.begin());
+}
+
+}  // namespace fogline

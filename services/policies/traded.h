@@ -1,0 +1,16 @@
+// Policy `traded`: the paper's.
+#pragma once
+
+#include "services/policies/policy.h"
+
+namespace fogline {
+
+/// lambda_A = 1 if 0 <= DoC < DoC_th, else 0 (Sourav & Cheng 2024).
+class Traded final : public EngagementPolicy {
+ public:
+  explicit Traded(const Scenario&) {}
+
+  Wish Decide(const ArbitratorView& view) override { return Compare(view.doc, view.threshold); }
+};
+
+}  // namespace fogline

@@ -1,0 +1,92 @@
+#include "services/arbitrator/conflict_meter.h"
+
+#include <gtest/gtest.h>
+
+#include "services/conflict/measures.h"
+
+namespace fogline {
+namespace {
+
+struct Messages {
+  radar_t radar{};
+  lidar_t lidar{};
+  track_t track{};
+};
+
+// Radar at 40 m and LiDAR at 38 m, each with 0.1 m; a prediction of 39.9 m with 0.05 m.
+Messages Differing() {
+  Messages m;
+  m.radar.valid = m.lidar.valid = 1;
+  m.radar.range_m = 40;
+  m.lidar.range_m = 38;
+  m.radar.range_std_m = m.lidar.range_std_m = 0.1;
+  m.track.valid = 1;
+  m.track.usage[0] = m.track.usage[2] = track_t::USED;
+  m.track.innovation[0] = 0.1;
+  m.track.innovation_variance[0] = 0.05 * 0.05 + 0.4 * 0.4;
+  return m;
+}
+
+Scenario With(std::string_view measure) {
+  Scenario scenario;
+  scenario.fusion.radar_range_std_m = 0.4;
+  scenario.arbitrator.measure =
+      static_cast<MeasureChoice>(FindConflictMeasure(measure) - ConflictMeasures().data());
+  return scenario;
+}
+
+TEST(ConflictMeterTest, GivesEachMeasureTheEvidenceOfTheMessages) {
+  const Messages m = Differing();
+  const Evidence evidence{
+      .radar = {true, 40, 0.1}, .lidar = {true, 38, 0.1}, .prediction = {true, 39.9, 0.05}};
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    if (row.name == "doc") continue;
+    const Scenario scenario = With(row.name);
+    ConflictMeter meter(scenario);
+    meter.Observe(m.radar, m.lidar, m.track);
+    const auto measure = row.make(ConflictParametersOf(scenario.arbitrator));
+    // A variance that was added and taken off again.
+    EXPECT_NEAR(meter.conflict(), measure->Step(evidence), 1e-9 * (1 + meter.conflict()))
+        << row.name;
+  }
+}
+
+TEST(ConflictMeterTest, MakesADegreeOfConflictOfAnyScore) {
+  Scenario scenario = With("nis");
+  scenario.arbitrator.measure_slope = 0.5;
+  scenario.arbitrator.measure_centre = 10;
+  const Messages m = Differing();
+  ConflictMeter meter(scenario);
+  meter.Observe(m.radar, m.lidar, m.track);
+  EXPECT_NEAR(meter.conflict(), 200, 1e-9);  // 2^2/(0.1^2 + 0.1^2)
+  EXPECT_EQ(meter.DocOf(10), 0.5);
+  EXPECT_EQ(meter.DocOf(12), DegreeOfConflict(12, 0.5, 10));
+}
+
+TEST(ConflictMeterTest, TakesNoWitnessOfAnotherStep) {
+  Messages m = Differing();
+  ConflictMeter meter(With("witness_nis"));
+  m.radar.header.step = m.lidar.header.step = 5;
+  m.track.header.step = 4;
+  meter.Observe(m.radar, m.lidar, m.track);
+  EXPECT_EQ(meter.conflict(), 0);
+  m.track.header.step = 5;
+  meter.Observe(m.radar, m.lidar, m.track);
+  EXPECT_GT(meter.conflict(), 100);
+}
+
+TEST(ConflictMeterTest, TakesTheKnownOffsetOffAllMeasuresButThePapers) {
+  Scenario scenario = With("nis");
+  scenario.arbitrator.measure_offset_m = 2;
+  const Messages m = Differing();
+  ConflictMeter meter(scenario);
+  meter.Observe(m.radar, m.lidar, m.track);
+  EXPECT_EQ(meter.conflict(), 0);
+  scenario.arbitrator.measure = MeasureChoice::kDoc;
+  ConflictMeter paper(scenario);
+  paper.Observe(m.radar, m.lidar, m.track);
+  EXPECT_EQ(paper.conflict(), 2);
+}
+
+}  // namespace
+}  // namespace fogline
