@@ -184,7 +184,7 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
   // GIVEN a driver whose awareness depends on the arbitrator, who reads his command
   WatchedRun watched({}, kSteps, kPace,
                      {"--set", "/human/loses_awareness=true", "--set", "/human/misjudges=true",
-                      "--set", "/arbitrator/threshold=0.2", "--set", "/fog/start_s=5"});
+                      "--set", "/arbitrator/threshold=0.5", "--set", "/fog/start_s=5"});
   const std::vector<std::string> both{"driver", "arbitrator"};
   watched.WaitForStep(70);
   watched.Signal("driver", SIGKILL);
