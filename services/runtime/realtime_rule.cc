@@ -92,7 +92,7 @@ TimePoint RealtimeRule::Fire(TimePoint now) {
     const bool all =
         std::ranges::all_of(needed, [step](const Input& input) { return input.ring.Has(step); });
     if (!all) continue;
-    const TimePoint due = std::ranges::max(needed, {}, &Input::heard).heard;
+    const TimePoint due = std::ranges::max_element(needed, {}, &Input::heard)->heard;
     ComputeDue(step, due, now);
   }
   return now + kHeartbeat;

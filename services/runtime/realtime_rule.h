@@ -2,8 +2,8 @@
 // does not ask for it (by the time it came it would be old) but leaves the step out, and counts it,
 // as soon as a newer one is complete. When it was held up itself it computes every step that is
 // complete, in order: a filter needs them all, and so does the log. What comes after its step is
-// over is late: it is counted and never used.
-// An input that is read on demand is neither waited for nor judged.
+// over is late: it is counted and never used. An input that is read on demand is neither waited for
+// nor judged.
 //
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
