@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/minimal_risk/modes.h"
+
 namespace fogline {
 
 double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
@@ -45,10 +47,11 @@ bool VehicleFallback::follower_in_minimal_risk() const {
 
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
   if (Usable(host.state)) {
-    if (commanded_ && host.newest->mode != arbitration_t::MINIMAL_RISK) {
-      host_.BeginMinimalRisk(now.host_acceleration_mps2);
-    }
-    if (host.newest->mode == arbitration_t::MINIMAL_RISK) commanded_ = true;
+    const std::int8_t mode = host.newest->mode;
+    const bool stops = InMinimalRisk(mode);
+    if (EndsMinimalRisk(mode, host_out_.mode)) commanded_ = false;
+    if (commanded_ && !stops) host_.BeginMinimalRisk(now.host_acceleration_mps2);
+    if (stops) commanded_ = true;
     host_out_ = *host.newest;
   }
   host_out_.header = now.header;

@@ -48,7 +48,8 @@ class CarFallback {
 ///
 /// Once the arbitrator has commanded the host's minimal risk manoeuvre the vehicle remembers it: it
 /// goes on with that command as long as it comes, and by itself when it stays away or when another
-/// arbitrator, which knows nothing of it, commands anything else.
+/// arbitrator, which knows nothing of it, commands anything else. Only a driver who was asked and
+/// has come (mode RECOVERING) ends it.
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);
@@ -94,7 +95,7 @@ class VehicleFallback {
   CarFallback host_;
   std::vector<FollowingCar> followers_;
   InputState follower_state_ = InputState::kAwaited;
-  bool commanded_ = false;  // by the arbitrator, at least once
+  bool commanded_ = false;  // by the arbitrator
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };
