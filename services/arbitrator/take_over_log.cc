@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
+#include "services/minimal_risk/modes.h"
+
 namespace fogline {
 namespace {
 
 const TakeOverStateInfo* StateOf(std::int8_t mode) {
   const auto* info = std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode);
   return info == kTakeOverStates.end() ? nullptr : info;
-}
-
-bool HumanDrives(std::int8_t mode) {
-  return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }
 
 /// What the table says of a change of state, and for changes that it does not have - of drivers who

@@ -1,4 +1,4 @@
-// Which modes of a host command mean that nobody drives, and which ends that.
+// Who drives in which mode of a host command, and who does not.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,13 @@ constexpr bool InMinimalRisk(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode >= arbitration_t::MRM_COMFORT;
 }
 
-/// A driver who was asked and comes late ends the manoeuvre, until the car stands; nothing else
-/// does.
-constexpr bool EndsMinimalRisk(std::int8_t mode, std::int8_t before) {
-  return mode == arbitration_t::RECOVERING && before != arbitration_t::MINIMAL_RISK &&
-         before != arbitration_t::MRM_DONE;
+/// In these nothing but the end of the run changes that.
+constexpr bool IsLocked(std::int8_t mode) {
+  return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
+}
+
+constexpr bool HumanDrives(std::int8_t mode) {
+  return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }
 
 }  // namespace fogline

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "services/minimal_risk/modes.h"
-
 namespace fogline {
 
 double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
@@ -49,7 +47,7 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   if (Usable(host.state)) {
     const std::int8_t mode = host.newest->mode;
     const bool stops = InMinimalRisk(mode);
-    if (EndsMinimalRisk(mode, host_out_.mode)) commanded_ = false;
+    if (mode == arbitration_t::RECOVERING && !IsLocked(host_out_.mode)) commanded_ = false;
     if (commanded_ && !stops) host_.BeginMinimalRisk(now.host_acceleration_mps2);
     if (stops) commanded_ = true;
     host_out_ = *host.newest;

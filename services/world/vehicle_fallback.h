@@ -12,6 +12,7 @@
 #include "fogline/truth_t.hpp"
 #include "scenario/scenario.h"
 #include "services/minimal_risk/minimal_risk.h"
+#include "services/minimal_risk/modes.h"
 #include "services/runtime/input_state.h"
 
 namespace fogline {
@@ -68,8 +69,10 @@ class VehicleFallback {
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
-  /// The host is in the manoeuvre, by its own or by the arbitrator's command.
-  bool host_in_minimal_risk() const { return commanded_ || host_.in_minimal_risk(); }
+  /// The host is in a manoeuvre that nobody ends, by its own or by the arbitrator's command.
+  bool host_in_minimal_risk() const {
+    return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
+  }
   /// The vehicle itself does it: the arbitrator is to be told.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Any of the following cars is in the manoeuvre.
