@@ -93,9 +93,7 @@ bool TakeOver::Severe(const track_t* track) const {
 void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs) {
   out_.state = row.next;
   out_.authority = row.authority;
-  if (row.next == TakeOverState::kDemand) {
-    Ask(step);
-  }
+  if (row.next == TakeOverState::kDemand) Ask(step);
   request_->Enter(row.next, step);
   if (row.next == TakeOverState::kRecovering) before_transfer_mps2_ = inputs.applied_mps2;
   const bool stage =
