@@ -3,6 +3,12 @@
 #include "services/policies/policies.h"
 
 namespace fogline {
+namespace {
+
+// Authority from which on the human is the one who drives.
+constexpr double kHalf = 0.5;
+
+}  // namespace
 
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
@@ -11,6 +17,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
       steady_(scenario.arbitrator.transfer, scenario.step_s),
       transfer_(scenario.arbitrator.transfer, scenario.step_s) {
   out_.threshold = threshold_;
+  if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
 bool Arbitrator::Demands(const Scenario& scenario) {
@@ -47,23 +54,52 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
                                      .driver = driver,
                                      .surroundings = surroundings_});
   out_.threshold = wish.threshold;
-  wanted_ = steady_.Step(wish, out_.doc);
-  // What is wanted is granted at once: the paper's driver is always at it. One who must be asked
-  // stands here, between the two.
-  const double granted = wanted_;
-  const Transfer::State state = transfer_.Step(
-      granted, {automation.acceleration_mps2, driver.acceleration_mps2}, ego.acceleration_mps2);
+  const double wanted = steady_.Step(wish, out_.doc);
+  Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
+  // The paper's driver is always at it: what is wanted is granted at once.
+  granted_ = wanted;
+  if (take_over_ && !Ask(wanted >= kHalf, ego, track, driver, offers)) return out_;
+  const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
   // Who has more authority; the human where both have half.
-  out_.mode = state.lambda_human < 0.5 ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
+  out_.mode = state.lambda_human < kHalf ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
+  if (take_over_) out_.mode = InfoOf(take_over_->outcome().state).mode;
+  sent_mps2_ = out_.acceleration_mps2;
   return out_;
+}
+
+bool Arbitrator::Ask(bool wanted, const ego_t& ego, const track_t& track,
+                     const driver_command_t& driver, Transfer::Offers& offers) {
+  const bool manoeuvre_ran = take_over_->in_manoeuvre();
+  const TakeOverOutcome& asked =
+      take_over_->Step(ego.header, {.human_wanted = wanted || !automation_there_,
+                                    .automation_mps2 = offers.automation_mps2,
+                                    .human_mps2 = offers.human_mps2,
+                                    .readiness = driver.readiness,
+                                    .speed_mps = ego.speed_mps,
+                                    .applied_mps2 = sent_mps2_.value_or(ego.acceleration_mps2),
+                                    .track = &track});
+  granted_ = asked.authority == Authority::kHuman ? 1 : 0;
+  if (take_over_->in_manoeuvre()) {
+    out_.lambda_automation = 0;
+    out_.lambda_human = 0;
+    out_.acceleration_mps2 = asked.acceleration_mps2;
+    out_.mode = InfoOf(asked.state).mode;
+    Overrule(out_);
+    return false;
+  }
+  if (granted_ == 0) offers.automation_mps2 = asked.acceleration_mps2;
+  // Who ends a manoeuvre has the wheel at once: the automation is off and has no share to give.
+  if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});
+  return true;
 }
 
 void Arbitrator::Overrule(const arbitration_t& sent) {
   out_.lambda_human = sent.lambda_human;
   transfer_.Overrule({sent.lambda_human, sent.acceleration_mps2});
+  sent_mps2_ = sent.acceleration_mps2;
 }
 
 }  // namespace fogline

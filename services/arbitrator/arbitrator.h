@@ -4,15 +4,17 @@
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
 //     DoC, situation -> policy -> wish                            services/policies
 //     wish -> SteadyWish -> authority that is wanted              steady_wish.h
-//     wanted -> (a driver who must be asked) -> granted           see Choose()
+//     wanted -> TakeOver, if the driver must be asked -> granted  take_over.h
 //     granted, offers -> Transfer -> authority, command           transfer.h
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "scenario/scenario.h"
 #include "services/arbitrator/conflict_meter.h"
 #include "services/arbitrator/steady_wish.h"
+#include "services/arbitrator/take_over.h"
 #include "services/arbitrator/transfer.h"
 #include "services/graph.h"
 #include "services/policies/policy.h"
@@ -49,19 +51,36 @@ class Arbitrator {
                               const accel_command_t& automation, const driver_command_t& driver);
 
   /// Whether the last decision wants the human to drive, also where the transfer is still under
-  /// way.
-  bool wants_human() const { return wanted_ >= 0.5; }
+  /// way. Of a driver who must be asked: whether he has the wheel.
+  bool wants_human() const { return granted_ >= 0.5; }
+  /// The driver must be asked, and has not taken over.
+  bool must_ask() const { return take_over_ && !wants_human(); }
+  /// A request stands, or the host is in the manoeuvre of a driver who did not come. The manoeuvre
+  /// needs no input but the odometry.
+  bool asks() const {
+    return must_ask() && take_over_->outcome().state != TakeOverState::kAutomated;
+  }
+  bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
+  /// An automation that is not there does not get the wheel back from a driver who was asked.
+  void SetAutomationThere(bool there) { automation_there_ = there; }
   /// Another command was sent than the last decision's: the next one goes on from it.
   void Overrule(const arbitration_t& sent);
 
  private:
+  /// What becomes of the wish for the human if he must be asked. @return whether anybody drives
+  bool Ask(bool wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
+           Transfer::Offers& offers);
+
   double threshold_;
   ConflictMeter meter_;
   std::unique_ptr<EngagementPolicy> policy_;
   SteadyWish steady_;
   Transfer transfer_;
   Surroundings surroundings_;
-  double wanted_ = 0;  // lambda_H
+  std::optional<TakeOver> take_over_;  // only of a driver who must be asked
+  bool automation_there_ = true;
+  double granted_ = 0;               // lambda_H, where the transfer ends
+  std::optional<double> sent_mps2_;  // command of the step before
   arbitration_t out_{};
 };
 

@@ -20,6 +20,13 @@ const M& OrNone(const Heard<M>& input) {
   return input.newest != nullptr ? *input.newest : kNone;
 }
 
+// Or that is too old: the offer of somebody who is gone, and his readiness.
+template <class M>
+const M& UsableOrNone(const Heard<M>& input) {
+  static const M kNone{};
+  return Usable(input.state) ? *input.newest : kNone;
+}
+
 }  // namespace
 
 FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
@@ -37,12 +44,13 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   if (pairs_.newest() > known) {
     arbitrator_.Observe(pairs_.radar(), pairs_.lidar(), OrNone(inputs.track));
   }
-  if (pairs_.has_pair()) Regular(inputs);
+  if (pairs_.has_pair()) Regular(inputs, AutomationOffer(inputs, pairs));
   decision_ = Judge(inputs, pairs);
   switch (decision_) {
     case Decision::kRegular:
       break;
     case Decision::kAutomation:
+      if (arbitrator_.asks()) break;  // nor is he relied on while he is asked
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
@@ -64,21 +72,27 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
 
 // The regular decision on the pairs that have been. Offers that are not there are not used for it,
 // only passed on; Judge() sees to it that none of those is.
-void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs) {
-  out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track), OrNone(inputs.automation),
-                            OrNone(inputs.driver));
+void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automation) {
+  arbitrator_.SetAutomationThere(automation != kGone);
+  out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track),
+                            UsableOrNone(inputs.automation), UsableOrNone(inputs.driver));
 }
 
 Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
-  if (minimal_risk_.begun() || demanded_) return Decision::kMinimalRisk;
+  if (minimal_risk_.begun()) return Decision::kMinimalRisk;
+  if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
+  if (demanded_) return Decision::kMinimalRisk;
+  const Offer automation = AutomationOffer(inputs, pairs);
+  // There is no time to ask anybody when the automation has failed.
+  const bool unasked = automation == kGone && arbitrator_.must_ask();
+  const Offer human = unasked ? kGone : OfferOf(inputs.driver.state);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();
-  return Decide(AutomationOffer(inputs, pairs), OfferOf(inputs.driver.state),
-                disputed ? kDisputed : kCalm);
+  return Decide(automation, human, disputed ? kDisputed : kCalm);
 }
 
 void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
   out_.mode = mode;
-  out_.lambda_human = mode == arbitration_t::HUMAN ? 1 : 0;
+  out_.lambda_human = HumanDrives(mode) ? 1 : 0;
   out_.lambda_automation = 1 - out_.lambda_human;
   out_.acceleration_mps2 = acceleration_mps2;
 }

@@ -10,6 +10,7 @@
 #include "services/arbitrator/sensor_pairs.h"
 #include "services/graph.h"
 #include "services/minimal_risk/minimal_risk.h"
+#include "services/minimal_risk/modes.h"
 #include "services/runtime/input_state.h"
 
 namespace fogline {
@@ -44,15 +45,13 @@ class FailsafeArbitrator {
 
   /// What it does instead of its regular work, "" if it does that.
   std::string_view fallback() const { return FallbackText(decision_); }
-  /// Cars that are in a minimal risk manoeuvre, bits of status_t.
-  std::int8_t minimal_risk() const {
-    return minimal_risk_.begun() ? status_t::HOST : std::int8_t{0};
-  }
+  /// Cars that are in a minimal risk manoeuvre that nobody ends, bits of status_t.
+  std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
   /// Which row of the table the last step took.
   Decision decision() const { return decision_; }
 
  private:
-  void Regular(const ArbitratorInputs& inputs);
+  void Regular(const ArbitratorInputs& inputs, Offer automation);
   Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
   void Stop(const ego_t& ego);

@@ -20,13 +20,13 @@ void MinimalRisk::Begin(double acceleration_mps2) {
   acceleration_mps2_ = acceleration_mps2;
 }
 
-double MinimalRisk::Step(double speed_mps) {
+double MinimalRisk::Step(double speed_mps, double deceleration_mps2) {
   const double change = limits_.jerk_mps3 * step_s_;
   if (speed_mps == 0.0 && acceleration_mps2_ <= change) {
     acceleration_mps2_ = 0.0;  // stands, and is not about to drive off
     return acceleration_mps2_;
   }
-  const double strongest = -std::min(limits_.deceleration_mps2, Releasable(speed_mps));
+  const double strongest = -std::min(deceleration_mps2, Releasable(speed_mps));
   acceleration_mps2_ =
       std::clamp(strongest, acceleration_mps2_ - change, acceleration_mps2_ + change);
   return acceleration_mps2_;

@@ -33,7 +33,11 @@ class MinimalRisk {
 
   /// The acceleration for the step that begins here. Once per step. @pre begun()
   /// @param speed_mps measured now, at least 0
-  double Step(double speed_mps);
+  double Step(double speed_mps) { return Step(speed_mps, limits_.deceleration_mps2); }
+  /// The same with another deceleration d, which may change from step to step: the manoeuvre goes
+  /// on within the limit on jerk.
+  /// @param deceleration_mps2 above 0, at most that of the limits
+  double Step(double speed_mps, double deceleration_mps2);
 
  private:
   /// r(v).

@@ -45,10 +45,11 @@ bool VehicleFallback::follower_in_minimal_risk() const {
 
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
   if (Usable(host.state)) {
-    if (commanded_ && host.newest->mode != arbitration_t::MINIMAL_RISK) {
-      host_.BeginMinimalRisk(now.host_acceleration_mps2);
-    }
-    if (host.newest->mode == arbitration_t::MINIMAL_RISK) commanded_ = true;
+    const std::int8_t mode = host.newest->mode;
+    const bool stops = InMinimalRisk(mode);
+    if (mode == arbitration_t::RECOVERING && !IsLocked(host_out_.mode)) commanded_ = false;
+    if (commanded_ && !stops) host_.BeginMinimalRisk(now.host_acceleration_mps2);
+    if (stops) commanded_ = true;
     host_out_ = *host.newest;
   }
   host_out_.header = now.header;

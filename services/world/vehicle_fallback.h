@@ -12,6 +12,7 @@
 #include "fogline/truth_t.hpp"
 #include "scenario/scenario.h"
 #include "services/minimal_risk/minimal_risk.h"
+#include "services/minimal_risk/modes.h"
 #include "services/runtime/input_state.h"
 
 namespace fogline {
@@ -48,7 +49,8 @@ class CarFallback {
 ///
 /// Once the arbitrator has commanded the host's minimal risk manoeuvre the vehicle remembers it: it
 /// goes on with that command as long as it comes, and by itself when it stays away or when another
-/// arbitrator, which knows nothing of it, commands anything else.
+/// arbitrator, which knows nothing of it, commands anything else. Only a driver who was asked and
+/// has come (mode RECOVERING) ends it.
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);
@@ -67,8 +69,10 @@ class VehicleFallback {
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
-  /// The host is in the manoeuvre, by its own or by the arbitrator's command.
-  bool host_in_minimal_risk() const { return commanded_ || host_.in_minimal_risk(); }
+  /// The host is in a manoeuvre that nobody ends, by its own or by the arbitrator's command.
+  bool host_in_minimal_risk() const {
+    return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
+  }
   /// The vehicle itself does it: the arbitrator is to be told.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Any of the following cars is in the manoeuvre.
@@ -94,7 +98,7 @@ class VehicleFallback {
   CarFallback host_;
   std::vector<FollowingCar> followers_;
   InputState follower_state_ = InputState::kAwaited;
-  bool commanded_ = false;  // by the arbitrator, at least once
+  bool commanded_ = false;  // by the arbitrator
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };

@@ -32,7 +32,7 @@ int Main(int argc, char** argv) {
   Action action;
   for (const auto add :
        {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddCompare, AddReport, AddDigest,
-        AddDiff, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
+        AddDiff, AddEvents, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
     add(app, action);
   }
   try {

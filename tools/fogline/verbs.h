@@ -28,6 +28,7 @@ void AddMetrics(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddDigest(CLI::App& app, Action& action);
+void AddEvents(CLI::App& app, Action& action);
 void AddDiff(CLI::App& app, Action& action);
 void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);

@@ -144,6 +144,38 @@ TEST_F(VehicleFallbackTest, GoesOnByItselfWhenTheArbitratorForgetsTheManoeuvre) 
   EXPECT_TRUE(fallback_.host_stops_by_itself());
 }
 
+TEST_F(VehicleFallbackTest, RemembersTheManoeuvreOfADriverWhoDidNotCome) {
+  arbitration_t command = MinimalRiskCommand(-1.25);
+  command.mode = arbitration_t::MRM_COMFORT;
+  EXPECT_EQ(Host(kOk, &command), -1.25);
+  EXPECT_FALSE(fallback_.host_in_minimal_risk()) << "he may still come";
+  Host(kOk, &host_);
+  EXPECT_TRUE(fallback_.host_stops_by_itself());
+}
+
+TEST_F(VehicleFallbackTest, ObeysADriverWhoComesDuringTheManoeuvre) {
+  arbitration_t command = MinimalRiskCommand(-1.25);
+  command.mode = arbitration_t::MRM_EMERGENCY;
+  Host(kOk, &command);
+  host_.mode = arbitration_t::RECOVERING;
+  EXPECT_EQ(Host(kOk, &host_), 1.5);
+  EXPECT_FALSE(fallback_.host_in_minimal_risk());
+  host_.mode = arbitration_t::HUMAN;
+  EXPECT_EQ(Host(kOk, &host_), 1.5);
+}
+
+TEST_F(VehicleFallbackTest, LetsNoDriverEndTheLockOrAManoeuvreAfterFailure) {
+  for (const std::int8_t mode : {arbitration_t::MRM_DONE, arbitration_t::MINIMAL_RISK}) {
+    VehicleFallback fallback(SomeScenario());
+    arbitration_t command = MinimalRiskCommand(0);
+    command.mode = mode;
+    fallback.Step(now_, {kOk, &command}, {kOk, &follower_});
+    host_.mode = arbitration_t::RECOVERING;
+    fallback.Step(now_, {kOk, &host_}, {kOk, &follower_});
+    EXPECT_TRUE(fallback.host_stops_by_itself()) << static_cast<int>(mode);
+  }
+}
+
 class SeveralFollowersTest : public testing::Test {
  protected:
   SeveralFollowersTest() {

@@ -1,0 +1,192 @@
+// What becomes of a request to take over: the whole state machine, as one table.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "fogline/arbitration_t.hpp"
+
+namespace fogline {
+
+enum class TakeOverState : std::uint8_t {
+  kAutomated,
+  kDemand,        // the driver is asked
+  kUrgentDemand,  // he is asked urgently
+  kHandover,      // he has acknowledged; his readiness is awaited
+  kRecovering,    // he drives, and has just come
+  kManual,
+  kMrmComfort,    // minimal risk manoeuvre, first stage
+  kMrmEmergency,  // second stage
+  kMrmDone,       // stands, and stays so until the end of the run
+  kMrmFailed,     // the brake does not bring it to a standstill
+};
+
+/// What a step can find. Several may hold in one step; then the first row of the table decides.
+enum class TakeOverEvent : std::uint8_t {
+  kWanted,        // the policy wants the human to drive
+  kCalm,          // it does not
+  kEscalation,    // escalation_s after the request
+  kAcknowledged,  // the driver has answered within lead_s
+  kReady,         // he has answered, be it late, and his readiness is at least required_readiness
+  kDeadline,      // lead_s after the request
+  kSevere,        // time to collision with the preceding car, by the track, below severe_ttc_s
+  kRecovered,     // recovery_s after the transfer
+  kStandstill,
+  kOverdue,  // the stage of the manoeuvre takes longer than its brake can need
+};
+
+/// The events of a step, a bit each.
+using TakeOverEvents = std::uint16_t;
+constexpr TakeOverEvents Bit(TakeOverEvent event) {
+  return static_cast<TakeOverEvents>(1U << static_cast<unsigned>(event));
+}
+
+enum class TakeOverGuard : std::uint8_t {
+  kAny,
+  kFresh,  // there has been no minimal risk manoeuvre in this run
+};
+
+/// Who has authority, and by that what acceleration is applied.
+enum class Authority : std::uint8_t {
+  kAutomation,  // its offer
+  kEasing,      // the automation's offer, but it does not accelerate
+  kHuman,       // his offer
+  kComfort,     // nobody: the manoeuvre with comfort_deceleration_mps2
+  kHard,        // nobody: the manoeuvre with emergency_deceleration_mps2
+};
+
+struct TakeOverRow {
+  TakeOverState state;
+  TakeOverEvent event;
+  TakeOverGuard guard;
+  TakeOverState next;
+  Authority authority;  // from this step on
+  std::string_view logged;
+};
+
+// clang-format off
+namespace take_over_internal {
+using enum TakeOverState;
+using enum TakeOverEvent;
+using enum TakeOverGuard;
+using enum Authority;
+using Row = TakeOverRow;
+
+/// Rows of a state stand in the order in which they are looked at. Where no row applies the state
+/// stays, and with it the authority. Sources, by paragraph of UN R157:
+///   - Only deactivation or the manoeuvre ends a request (5.4.4): that the policy has changed its
+///     mind does not.
+///   - No manoeuvre within lead_s of the request (5.4.4.1) unless it is severe (5.4.4.1.1).
+///   - A driver who comes late ends the manoeuvre, until the car stands (5.5.2, 5.5.3), in either
+///     stage: whoever is there and able may always drive. SUMO's ToC device has it so, too.
+///   - After any manoeuvre, also one that he has ended, the automation is not activated again
+///     before the next run cycle (5.5.5). What stands stays: driving off (5.5.4) is a new run.
+///   - The manoeuvre only escalates (Autoware's mrm_handler).
+inline constexpr std::array kTakeOverTable{
+    //  state          event          guard   next           authority    logged
+    Row{kAutomated,    kWanted,       kAny,   kDemand,       kEasing,     "request to take over"},
+
+    Row{kDemand,       kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
+    Row{kDemand,       kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
+    Row{kDemand,       kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
+    Row{kDemand,       kEscalation,   kAny,   kUrgentDemand, kEasing,     "escalation"},
+
+    Row{kUrgentDemand, kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
+    Row{kUrgentDemand, kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
+    Row{kUrgentDemand, kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
+
+    Row{kHandover,     kReady,        kAny,   kRecovering,   kHuman,      "transfer to the driver"},
+    Row{kHandover,     kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
+    Row{kHandover,     kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
+
+    Row{kRecovering,   kRecovered,    kAny,   kManual,       kHuman,      "driver recovered"},
+
+    Row{kManual,       kCalm,         kFresh, kAutomated,    kAutomation, "return to automation"},
+
+    Row{kMrmComfort,   kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
+    Row{kMrmComfort,   kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmComfort,   kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
+    Row{kMrmComfort,   kOverdue,      kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
+
+    Row{kMrmEmergency, kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
+    Row{kMrmEmergency, kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmEmergency, kOverdue,      kAny,   kMrmFailed,    kHard,       "manoeuvre fails"},
+
+    Row{kMrmFailed,    kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
+    Row{kMrmFailed,    kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+};
+}  // namespace take_over_internal
+// clang-format on
+
+using take_over_internal::kTakeOverTable;
+
+/// The row by which a step leaves `state`, nullptr if it stays.
+/// @param manoeuvred there has been a minimal risk manoeuvre in this run
+constexpr const TakeOverRow* TakeOverRowOf(TakeOverState state, TakeOverEvents events,
+                                           bool manoeuvred) {
+  const auto* row = std::ranges::find_if(kTakeOverTable, [&](const TakeOverRow& r) {
+    return r.state == state && (events & Bit(r.event)) != 0 &&
+           (r.guard == TakeOverGuard::kAny || !manoeuvred);
+  });
+  return row == kTakeOverTable.end() ? nullptr : row;
+}
+
+/// How a state is called, and which mode of HOST_COMMAND says that the host is in it.
+struct TakeOverStateInfo {
+  TakeOverState state;
+  std::int8_t mode;
+  std::string_view name;
+};
+
+inline constexpr std::array kTakeOverStates{
+    TakeOverStateInfo{TakeOverState::kAutomated, arbitration_t::AUTOMATION, "AUTOMATED"},
+    TakeOverStateInfo{TakeOverState::kDemand, arbitration_t::REQUEST, "DEMAND"},
+    TakeOverStateInfo{TakeOverState::kUrgentDemand, arbitration_t::REQUEST_URGENT, "DEMAND_URGENT"},
+    TakeOverStateInfo{TakeOverState::kHandover, arbitration_t::HANDOVER, "HANDOVER"},
+    TakeOverStateInfo{TakeOverState::kRecovering, arbitration_t::RECOVERING, "RECOVERING"},
+    TakeOverStateInfo{TakeOverState::kManual, arbitration_t::HUMAN, "MANUAL"},
+    TakeOverStateInfo{TakeOverState::kMrmComfort, arbitration_t::MRM_COMFORT, "MRM_COMFORT"},
+    TakeOverStateInfo{TakeOverState::kMrmEmergency, arbitration_t::MRM_EMERGENCY, "MRM_EMERGENCY"},
+    TakeOverStateInfo{TakeOverState::kMrmDone, arbitration_t::MRM_DONE, "MRM_DONE"},
+    TakeOverStateInfo{TakeOverState::kMrmFailed, arbitration_t::MRM_FAILED, "MRM_FAILED"},
+};
+
+constexpr const TakeOverStateInfo& InfoOf(TakeOverState state) {
+  return kTakeOverStates[static_cast<std::size_t>(state)];
+}
+
+/// Who has authority in a state: what the rows that lead there say.
+constexpr Authority AuthorityOf(TakeOverState state) {
+  return std::ranges::find(kTakeOverTable, state, &TakeOverRow::next)->authority;
+}
+
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kTakeOverStates.size(); ++i) {
+        const TakeOverState state = kTakeOverStates[i].state;
+        if (state != static_cast<TakeOverState>(i)) return false;
+        if (std::ranges::count(kTakeOverTable, state, &TakeOverRow::next) == 0) return false;
+      }
+      return true;
+    }(),
+    "kTakeOverStates has each state at its place, and kTakeOverTable leads to each");
+
+static_assert(
+    [] {
+      const auto same_change = [](const TakeOverRow& a, const TakeOverRow& b) {
+        return a.state == b.state ? a.next == b.next : false;
+      };
+      for (const TakeOverRow& a : kTakeOverTable) {
+        if (a.authority != AuthorityOf(a.next)) return false;
+        for (const TakeOverRow& b : kTakeOverTable) {
+          if (same_change(a, b) && a.logged != b.logged) return false;
+        }
+      }
+      return true;
+    }(),
+    "a state has one authority whatever led there, and a change of state tells what is logged");
+
+}  // namespace fogline

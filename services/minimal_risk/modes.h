@@ -1,0 +1,25 @@
+// Who drives in which mode of a host command, and who does not.
+#pragma once
+
+#include <cstdint>
+
+#include "fogline/arbitration_t.hpp"
+
+namespace fogline {
+
+/// The host stops, or stands after that, in whichever manoeuvre: of a run in real time whose inputs
+/// have failed, or of a driver who was asked and did not come.
+constexpr bool InMinimalRisk(std::int8_t mode) {
+  return mode == arbitration_t::MINIMAL_RISK || mode >= arbitration_t::MRM_COMFORT;
+}
+
+/// In these nothing but the end of the run changes that.
+constexpr bool IsLocked(std::int8_t mode) {
+  return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
+}
+
+constexpr bool HumanDrives(std::int8_t mode) {
+  return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
+}
+
+}  // namespace fogline

@@ -1,0 +1,134 @@
+// The fallback in the closed loop of the shipped scenarios, with drivers who come and who do not.
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "services/arbitrator/take_over_log.h"
+#include "tests/property/closed_loop/shipped.h"
+
+namespace fogline::test {
+namespace {
+
+constexpr double kRounding = 1e-9;
+
+struct Driven {
+  std::vector<arbitration_t> commands;
+  std::vector<double> automation_mps2;
+  std::vector<double> human_mps2;
+  TakeOverLog log;
+};
+
+Driven Drive(const Scenario& scenario) {
+  Driven driven;
+  ClosedLoop loop(scenario);
+  loop.Run(0, [&](const StepView& step) {
+    driven.commands.push_back(step.host);
+    driven.automation_mps2.push_back(step.acc.acceleration_mps2);
+    driven.human_mps2.push_back(step.driver.acceleration_mps2);
+    driven.log.Add(step.host);
+  });
+  return driven;
+}
+
+TakeOverState StateOf(std::int8_t mode) {
+  return std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode)->state;
+}
+
+bool IsInTable(TakeOverState from, TakeOverState to) {
+  return std::ranges::any_of(
+      kTakeOverTable, [&](const TakeOverRow& row) { return row.state == from && row.next == to; });
+}
+
+// What a log shows of the rules: the table's changes, whose command it is, the manoeuvre's limits.
+void ExpectTheRules(const Scenario& scenario, const Driven& driven) {
+  const TakeOverSection& section = scenario.arbitrator.take_over;
+  TakeOverState before = TakeOverState::kAutomated;
+  double last_mps2 = 0;
+  for (std::size_t k = 0; k < driven.commands.size(); ++k) {
+    const arbitration_t& command = driven.commands[k];
+    const TakeOverState state = StateOf(command.mode);
+    ASSERT_TRUE(state == before || IsInTable(before, state)) << "step " << k;
+    const Authority authority = AuthorityOf(state);
+    const double change = section.jerk_mps3 * scenario.step_s + kRounding;
+    switch (authority) {
+      case Authority::kAutomation:
+        ASSERT_EQ(command.acceleration_mps2, driven.automation_mps2[k]) << k;
+        break;
+      case Authority::kEasing:
+        ASSERT_LE(command.acceleration_mps2, driven.automation_mps2[k]) << k;
+        ASSERT_LE(command.acceleration_mps2, std::max(0.0, last_mps2 - change) + kRounding) << k;
+        break;
+      case Authority::kHuman:
+        ASSERT_EQ(command.acceleration_mps2, driven.human_mps2[k]) << k;
+        break;
+      default:
+        ASSERT_EQ(command.lambda_automation + command.lambda_human, 0) << k;
+        ASSERT_LE(std::abs(command.acceleration_mps2 - last_mps2), change) << k;
+        ASSERT_GE(command.acceleration_mps2,
+                  std::min(-section.emergency_deceleration_mps2, last_mps2) - kRounding);
+    }
+    before = state;
+    last_mps2 = command.acceleration_mps2;
+  }
+}
+
+class TakeOverLoopTest : public testing::Test {
+ protected:
+  Scenario Paper() {
+    Scenario scenario = LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {});
+    scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
+    return scenario;
+  }
+};
+
+TEST_F(TakeOverLoopTest, KeepsTheRulesWhoeverComes) {
+  int requests = 0;
+  int manoeuvres = 0;
+  for (std::int64_t seed = 1; seed <= 10; ++seed) {
+    for (const double absent : {0.0, 0.5}) {
+      Scenario scenario = Paper();
+      scenario.seed = seed;
+      scenario.arbitrator.take_over.absent_probability = absent;
+      const Driven driven = Drive(scenario);
+      ExpectTheRules(scenario, driven);
+      ASSERT_FALSE(HasFatalFailure()) << "seed " << seed;
+      for (const TakeOverRequest& request : driven.log.requests()) {
+        ++requests;
+        if (request.manoeuvre) ++manoeuvres;
+      }
+    }
+  }
+  EXPECT_GT(requests, 20);
+  EXPECT_GT(manoeuvres, 3);
+}
+
+TEST_F(TakeOverLoopTest, StandsAtTheEndIfNobodyComes) {
+  Scenario scenario = Paper();
+  scenario.arbitrator.take_over.absent_probability = 1;
+  const Driven driven = Drive(scenario);
+  ExpectTheRules(scenario, driven);
+  ASSERT_EQ(driven.log.requests().size(), 1U);
+  const TakeOverRequest& request = driven.log.requests().front();
+  ASSERT_TRUE(request.manoeuvre && request.standstill);
+  EXPECT_EQ(*request.manoeuvre - request.requested, 100) << "10 s, and nothing severe before";
+  EXPECT_EQ(driven.commands.back().mode, arbitration_t::MRM_DONE);
+  EXPECT_EQ(driven.commands.back().acceleration_mps2, 0);
+}
+
+TEST_F(TakeOverLoopTest, ChangesNothingWhereTheDriverIsAlwaysAtIt) {
+  Scenario scenario = Paper();
+  ClosedLoop asked(scenario);
+  scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
+  ClosedLoop plain(scenario);
+  const std::string digest = DigestOf(plain);
+  scenario.arbitrator.take_over.lead_s = 1;
+  scenario.arbitrator.take_over.absent_probability = 1;
+  plain.Restart(scenario);
+  EXPECT_EQ(DigestOf(plain), digest);
+  EXPECT_NE(DigestOf(asked), digest);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,141 @@
+// The fallback for a driver who must be asked, in real time, where inputs fail as well.
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "services/arbitrator/failsafe_arbitrator.h"
+
+namespace fogline {
+namespace {
+
+Scenario Asking() {
+  Scenario scenario;
+  scenario.arbitrator.window_steps = 1;
+  scenario.arbitrator.take_over = {.mode = TakeOverMode::kRequested,
+                                   .lead_s = 3,
+                                   .escalation_s = 1,
+                                   .time = {.mean_s = 2, .std_s = 1e-3},
+                                   .recovery_s = 1};
+  return scenario;
+}
+
+class FailsafeTakeOverTest : public testing::Test {
+ protected:
+  FailsafeTakeOverTest() {
+    radar_.valid = lidar_.valid = 1;
+    radar_.range_m = 37;
+    lidar_.range_m = 32;  // they disagree
+    ego_.speed_mps = 20;
+    automation_.acceleration_mps2 = 0.2;
+    driver_.acceleration_mps2 = -0.4;
+    driver_.readiness = 1;
+    inputs_ = {.ego = {InputState::kOk, &ego_},
+               .radar = {InputState::kOk, &radar_},
+               .lidar = {InputState::kOk, &lidar_},
+               .track = {InputState::kOk, &track_},
+               .automation = {InputState::kOk, &automation_},
+               .driver = {InputState::kOk, &driver_}};
+  }
+
+  const arbitration_t& Step() {
+    const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
+    ++step_;
+    ego_.header = radar_.header = lidar_.header = header;
+    return last_ = arbitrator_.Step(header, inputs_);
+  }
+  /// Until a mode, at most for a minute.
+  void StepUntil(std::int8_t mode) {
+    for (int k = 0; k < 600 && Step().mode != mode; ++k) {
+    }
+    ASSERT_EQ(last_.mode, mode);
+  }
+  void Agree() { radar_.range_m = lidar_.range_m; }
+
+  FailsafeArbitrator arbitrator_{Asking()};
+  ego_t ego_{};
+  radar_t radar_{};
+  lidar_t lidar_{};
+  track_t track_{};
+  accel_command_t automation_{};
+  driver_command_t driver_{};
+  ArbitratorInputs inputs_;
+  arbitration_t last_{};
+  std::int64_t step_ = 0;
+};
+
+TEST_F(FailsafeTakeOverTest, AsksHandsOverAndReturnsWhileEverythingIsThere) {
+  EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
+  StepUntil(arbitration_t::HANDOVER);
+  StepUntil(arbitration_t::RECOVERING);
+  EXPECT_EQ(last_.acceleration_mps2, -0.4);
+  EXPECT_EQ(last_.lambda_human, 1);
+  Agree();
+  StepUntil(arbitration_t::AUTOMATION);
+  EXPECT_EQ(last_.acceleration_mps2, 0.2);
+  EXPECT_EQ(arbitrator_.minimal_risk(), 0);
+}
+
+TEST_F(FailsafeTakeOverTest, StopsForADriverWhoseCommandIsLostWhileHeIsAsked) {
+  Step();
+  inputs_.driver.state = InputState::kLost;  // his last message, ready and all, is still there
+  StepUntil(arbitration_t::MRM_COMFORT);
+  EXPECT_EQ(step_ - 1, 30) << "3 s after the request";
+  EXPECT_EQ(last_.lambda_automation + last_.lambda_human, 0);
+  EXPECT_EQ(arbitrator_.minimal_risk(), 0) << "he may still come";
+}
+
+TEST_F(FailsafeTakeOverTest, GoesOnStoppingWhateverElseIsLost) {
+  Step();
+  inputs_.driver.state = InputState::kLost;
+  StepUntil(arbitration_t::MRM_COMFORT);
+  inputs_.automation.state = inputs_.track.state = inputs_.radar.state = InputState::kLost;
+  const double before_mps2 = last_.acceleration_mps2;
+  EXPECT_EQ(Step().mode, arbitration_t::MRM_COMFORT);
+  EXPECT_NEAR(last_.acceleration_mps2, before_mps2 - 0.25, 1e-12);
+  ego_.speed_mps = 0;
+  StepUntil(arbitration_t::MRM_DONE);
+  EXPECT_NE(arbitrator_.minimal_risk(), 0);
+  inputs_.driver.state = inputs_.automation.state = InputState::kOk;
+  arbitrator_.DemandMinimalRisk();
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step().mode, arbitration_t::MRM_DONE);
+}
+
+TEST_F(FailsafeTakeOverTest, StopsAtOnceWhenTheAutomationIsLostAndNobodyHasBeenAsked) {
+  Agree();
+  EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
+  inputs_.automation.state = InputState::kLost;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
+  EXPECT_NE(arbitrator_.minimal_risk(), 0);
+}
+
+TEST_F(FailsafeTakeOverTest, LeavesTheWheelToADriverWhoHasItWhenTheAutomationIsLost) {
+  StepUntil(arbitration_t::RECOVERING);
+  inputs_.automation.state = InputState::kLost;
+  Agree();
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_EQ(Step().lambda_human, 1);
+    ASSERT_EQ(last_.acceleration_mps2, -0.4);
+  }
+  inputs_.automation.state = InputState::kOk;
+  StepUntil(arbitration_t::AUTOMATION);
+}
+
+TEST_F(FailsafeTakeOverTest, StopsAtOnceWhenTheDriverWhoHasTheWheelIsLostAndIsWanted) {
+  StepUntil(arbitration_t::RECOVERING);
+  inputs_.driver.state = InputState::kLost;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
+}
+
+TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvre) {
+  driver_.readiness = 0;
+  Step();
+  StepUntil(arbitration_t::MRM_COMFORT);
+  for (int k = 0; k < 10; ++k) Step();
+  driver_.readiness = 1;
+  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
+  EXPECT_EQ(last_.acceleration_mps2, -0.4);
+  EXPECT_EQ(arbitrator_.minimal_risk(), 0);
+}
+
+}  // namespace
+}  // namespace fogline

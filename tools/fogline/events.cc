@@ -1,0 +1,141 @@
+// fogline events: who drove when, and what became of every request to take over, from logs alone.
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/arbitrator/take_over_log.h"
+#include "services/recorder/run_log.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+struct EventsArguments {
+  std::vector<std::filesystem::path> logs;
+  bool json = false;
+};
+
+struct RunEvents {
+  RunLog run;
+  TakeOverLog log;
+};
+
+RunEvents ReadEvents(const std::filesystem::path& file) {
+  RunLogReader reader(file);
+  RunEvents events;
+  arbitration_t command{};
+  while (const StepMessages* messages = reader.Next()) {
+    const Bytes bytes = (*messages)[IndexOf<arbitration_t>()];
+    if (!bytes.empty() && Decode(bytes, command)) events.log.Add(command);
+  }
+  events.run = reader.run();
+  return events;
+}
+
+// A request's times by what they are called.
+using RequestTime = std::pair<const char*, std::optional<std::int64_t>>;
+std::array<RequestTime, 7> TimesOf(const TakeOverRequest& request) {
+  return {{{"requested", request.requested},
+           {"escalated", request.escalated},
+           {"acknowledged", request.acknowledged},
+           {"transferred", request.transferred},
+           {"effective", request.effective},
+           {"manoeuvre", request.manoeuvre},
+           {"standstill", request.standstill}}};
+}
+
+nlohmann::ordered_json EventsJson(const RunEvents& events) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const TakeOverEntry& entry : events.log.entries()) {
+    rows.push_back({{"step", entry.step},
+                    {"time_s", static_cast<double>(entry.utime) / 1e6},
+                    {"event", entry.logged},
+                    {"from", NameOfMode(entry.from)},
+                    {"to", NameOfMode(entry.to)}});
+  }
+  return rows;
+}
+
+nlohmann::ordered_json RequestsJson(const RunEvents& events) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const TakeOverRequest& request : events.log.requests()) {
+    nlohmann::ordered_json row;
+    for (const auto& [name, step] : TimesOf(request)) {
+      const double time_s = static_cast<double>(step.value_or(0)) * events.run.scenario.step_s;
+      row[fmt::format("{}_s", name)] = step ? nlohmann::ordered_json(time_s) : nullptr;
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void PrintText(const std::filesystem::path& file, const RunEvents& events) {
+  fmt::print("{}: {}, seed {}\n", file.string(), events.run.scenario.title,
+             events.run.scenario.seed);
+  for (const TakeOverEntry& entry : events.log.entries()) {
+    fmt::print("{:>8}{:>10.2f} s  {:<42}{}", entry.step, static_cast<double>(entry.utime) / 1e6,
+               entry.logged, NameOfMode(entry.from));
+    fmt::print("{}\n", entry.from == entry.to ? "" : fmt::format(" -> {}", NameOfMode(entry.to)));
+  }
+  int number = 0;
+  for (const TakeOverRequest& request : events.log.requests()) {
+    fmt::print("  request {}:", ++number);
+    for (const auto& [name, step] : TimesOf(request)) {
+      if (!step) continue;
+      fmt::print(" {} {:.2f} s", name, static_cast<double>(*step) * events.run.scenario.step_s);
+    }
+    fmt::print("\n");
+  }
+}
+
+int RunEventsVerb(const EventsArguments& arguments) {
+  auto rows = nlohmann::ordered_json::array();
+  bool complete = true;
+  for (const std::filesystem::path& file : arguments.logs) {
+    const RunEvents events = ReadEvents(file);
+    complete = complete && events.run.complete;
+    if (!events.run.note.empty()) fmt::print(stderr, "{}: {}\n", file.string(), events.run.note);
+    if (arguments.json) {
+      rows.push_back({{"log", file.string()},
+                      {"title", events.run.scenario.title},
+                      {"seed", events.run.scenario.seed},
+                      {"complete", events.run.complete},
+                      {"events", EventsJson(events)},
+                      {"requests", RequestsJson(events)}});
+    } else {
+      PrintText(file, events);
+    }
+  }
+  if (arguments.json) PrintJson(rows.dump(2));
+  return complete ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void AddEvents(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("events", "List who drove when, and every request to do so");
+  const auto arguments = std::make_shared<EventsArguments>();
+  verb->add_option("LOG", arguments->logs, "Event logs")->required();
+  verb->add_flag("--json", arguments->json, "Print as JSON");
+  verb->footer(
+      "What a data recorder would keep: changes of state, requests to take over and their\n"
+      "escalation, acknowledgements, transfers, first effective inputs, manoeuvres. Then the "
+      "times\n"
+      "of each request, from the start of the run. Where the driver need not be asked X
+      "mode instant) there are transfers and nothing else. Exit code 1 when a log is not "
+      "complete.\n"
+      "\nExamples:\n"
+      "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
+      "logs/asked.lcm\n"
+      "  fogline events logs/asked.lcm\n"
+      "  fogline events logs/*.lcm --json | jq '.[].requests[] | .transferred_s - .requested_s'");
+  verb->callback(
+      [&action, arguments] { action = [arguments] { return RunEventsVerb(*arguments); }; });
+}
+
+}  // namespace fogline
