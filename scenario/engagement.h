@@ -33,7 +33,7 @@ struct ChoiceNames<Hysteresis> {
 /// How authority goes from one driver to the other.
 struct TransferSection {
   TransferProfile profile = TransferProfile::kStep;
-  double duration_s = 2.0;
+  double duration_s = 0.25;
   double jerk_mps3 = 2.0;
   double yield_mps2 = 3.5;
   Hysteresis hysteresis = Hysteresis::kNone;
@@ -49,12 +49,15 @@ struct TransferSection {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Choice("profile", self.profile, "How authorities and command change at a transfer.");
-    visit.Number("duration_s", self.duration_s,
-                 {.min = 0.01,
-                  .max = 60,
-                  .unit = "s",
-                  .doc = "For linear and sigmoid.",
-                  .source = "chosen; 1 to 3 s in shared-control studies"});
+    visit.Number(
+        "duration_s", self.duration_s,
+        {.min = 0.01,
+         .max = 60,
+         .unit = "s",
+         .doc = "For linear and sigmoid.",
+         .source =
+             "chosen: costs less than 3 points of SI in paper.json; 1 to 2 s, usual in shared "
+             "control, cost 9 to 23"});
     visit.Number("jerk_mps3", self.jerk_mps3,
                  {.min = 0.05,
                   .max = 100,

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenario/control.h"
@@ -34,8 +35,22 @@ struct PublishedRow {
   }
 };
 
+/// Thresholds and parameters of the measures (services/measures), with where they come from.
 struct MeasuresSection {
   double safety_floor_m = 0.001;
+  double critical_ttc_s = 2.0;
+  double picud_braking_mps2 = 3.3;
+  double picud_reaction_s = 1.0;
+  double rss_response_s = 0.5;
+  double rss_acceleration_mps2 = 2.0;
+  double rss_least_braking_mps2 = 6.0;
+  double rss_most_braking_mps2 = 8.0;
+  double madr_mean_mps2 = 8.45;
+  double madr_std_mps2 = 1.40;
+  double madr_least_mps2 = 4.23;
+  double madr_most_mps2 = 12.68;
+  double handover_s = 3.0;
+  double lidar_tolerance_m = 0.1;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
@@ -46,6 +61,64 @@ struct MeasuresSection {
                   .doc = "SI looks at fog steps whose compromised safety without traded control is "
                          "above this.",
                   .source = "keeps the ratio away from 0/0"});
+    visit.Number("critical_ttc_s", self.critical_ttc_s,
+                 {.min = 0.1,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "TTC*: TET and TIT look at steps whose time to collision is at most this.",
+                  .source = "CommonRoad-CriMe: 2 s; 1.5 to 4 s are in use"});
+    visit.Number("picud_braking_mps2", self.picud_braking_mps2,
+                 {.min = 0.5,
+                  .max = 12,
+                  .unit = "m/s2",
+                  .doc = "Braking of both cars in PICUD.",
+                  .source = "3.3 in the literature on PICUD"});
+    visit.Number("picud_reaction_s", self.picud_reaction_s,
+                 {.min = 0,
+                  .max = 5,
+                  .unit = "s",
+                  .doc = "Reaction time of the car behind in PICUD.",
+                  .source = "1 s in the literature on PICUD"});
+    const auto rss = [&](std::string_view name, auto& value, double least, double most,
+                         std::string_view unit, std::string_view doc, std::string_view source) {
+      visit.Number(name, value,
+                   {.min = least, .max = most, .unit = unit, .doc = doc, .source = source});
+    };
+    rss("rss_response_s", self.rss_response_s, 0, 5, "s", "RSS: response time of the car behind.",
+        "chosen: ad-rss-lib's set (1 s; 3.5, 4 and 8 m/s2) demands 66 m at 20 m/s, this one 22 m");
+    rss("rss_acceleration_mps2", self.rss_acceleration_mps2, 0, 10, "m/s2",
+        "RSS: acceleration of the car behind until it responds.", "chosen, as rss_response_s");
+    rss("rss_least_braking_mps2", self.rss_least_braking_mps2, 0.5, 12, "m/s2",
+        "RSS: braking that the car behind answers with at least.", "chosen, as rss_response_s");
+    rss("rss_most_braking_mps2", self.rss_most_braking_mps2, 0.5, 12, "m/s2",
+        "RSS: strongest braking of the car ahead.", "ad-rss-lib: 8");
+    const auto madr = [&](std::string_view name, auto& value, double least, double most,
+                          std::string_view doc) {
+      visit.Number(name, value,
+                   {.min = least,
+                    .max = most,
+                    .unit = "m/s2",
+                    .doc = doc,
+                    .source = "Cunto & Saccomanno 2008, as CommonRoad-CriMe has it"});
+    };
+    madr("madr_mean_mps2", self.madr_mean_mps2, 0.1, 20,
+         "CPI: mean of a car's maximum available deceleration.");
+    madr("madr_std_mps2", self.madr_std_mps2, 0.01, 10, "CPI: its standard deviation.");
+    madr("madr_least_mps2", self.madr_least_mps2, 0, 10, "CPI: no car has less.");
+    madr("madr_most_mps2", self.madr_most_mps2, 10, 30, "CPI: no car has more.");
+    visit.Number("handover_s", self.handover_s,
+                 {.min = 0.01,
+                  .max = 60,
+                  .unit = "s",
+                  .doc = "How long after a change of the authorities jerk counts as that of the "
+                         "hand-over.",
+                  .source = "chosen: the longest ramp or gate by default, 2 s, and a car's lag"});
+    visit.Number("lidar_tolerance_m", self.lidar_tolerance_m,
+                 {.min = 1e-3,
+                  .max = 100,
+                  .unit = "m",
+                  .doc = "Error of a distance from which on it counts as wrong.",
+                  .source = "chosen: three times the accuracy of a Velodyne VLP-16, 3 cm"});
   }
 };
 

@@ -10,6 +10,10 @@ namespace fogline {
 namespace {
 
 constexpr double kPercent = 100.0;
+constexpr double kSecondsPerMinute = 60.0;
+
+// Times are whole microseconds: two that differ by less are the same.
+constexpr double kSameTime_s = 0.5e-6;
 
 bool HumanDrives(const Sample& sample) { return sample.lambda_human > 0; }
 
@@ -45,14 +49,24 @@ std::optional<double> MeasureAccumulator::Mean::Value() const {
   return sum / static_cast<double>(count);
 }
 
+MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
+    : handover_s_(scenario.measures.handover_s),
+      host_(scenario.measures),
+      follower_(scenario.measures),
+      detection_(scenario) {}
+
+// AddMotion() before AddAuthority(): a jerk belongs to the transfers before its step, for what is
+// commanded in a step shows in the next.
 void MeasureAccumulator::Add(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
   ++measures_.steps;
   measures_.duration_s = sample.time_s - first_time_s_;
   AddSafety(sample);
-  AddAuthority(sample);
+  AddPairs(sample);
   AddMotion(sample);
+  AddAuthority(sample);
   AddSensing(sample);
+  detection_.Add(sample);
   previous_ = sample;
 }
 
@@ -68,15 +82,26 @@ void MeasureAccumulator::AddSafety(const Sample& sample) {
   }
 }
 
+void MeasureAccumulator::AddPairs(const Sample& sample) {
+  const double since_s = previous_ ? sample.time_s - previous_->time_s : 0;
+  host_.Add({sample.host_gap_m, sample.host_speed_mps, sample.preceding_speed_mps}, since_s);
+  follower_.Add({sample.follower_gap_m, sample.follower_speed_mps, sample.host_speed_mps}, since_s);
+}
+
 void MeasureAccumulator::AddAuthority(const Sample& sample) {
   if (!sample.fog_present) human_in_clear_air_.Add(HumanDrives(sample) ? 1 : 0);
   if (!previous_) return;
   if (HumanDrives(*previous_)) measures_.human_time_s += sample.time_s - previous_->time_s;
-  if (HumanDrives(sample) != HumanDrives(*previous_)) {
-    ++measures_.transfers;
-    measures_.max_handover_jump_mps2 = std::max(
-        measures_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
-  }
+  if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
+  if (HumanDrives(sample) != HumanDrives(*previous_)) AddTransfer(sample);
+}
+
+void MeasureAccumulator::AddTransfer(const Sample& sample) {
+  ++measures_.transfers;
+  measures_.max_handover_jump_mps2 = std::max(
+      measures_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
+  if (transferred_s_) Lower(measures_.min_dwell_s, sample.time_s - *transferred_s_);
+  transferred_s_ = sample.time_s;
 }
 
 // The acceleration at step 0 is a convention, not one that was applied.
@@ -88,6 +113,9 @@ void MeasureAccumulator::AddMotion(const Sample& sample) {
                            (sample.time_s - previous_->time_s);
   Raise(measures_.max_abs_jerk_mps3, std::abs(jerk_mps3));
   squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
+  if (authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s) {
+    Raise(measures_.max_handover_jerk_mps3, std::abs(jerk_mps3));
+  }
 }
 
 void MeasureAccumulator::AddSensing(const Sample& sample) {
@@ -106,11 +134,18 @@ RunMeasures MeasureAccumulator::Result() const {
   if (const auto share = human_in_clear_air_.Value()) result.rhe_pct = kPercent * *share;
   result.rms_jerk_mps3 = Root(squared_jerk_m2ps6_.Value());
   result.rms_fusion_error_m = Root(squared_fusion_error_m2_.Value());
+  result.host = host_.Result();
+  result.follower = follower_.Result();
+  result.detection = detection_.Result();
+  if (measures_.duration_s > 0) {
+    result.transfers_pmin =
+        kSecondsPerMinute * static_cast<double>(measures_.transfers) / measures_.duration_s;
+  }
   return result;
 }
 
-RunMeasures Measure(std::span<const Sample> samples) {
-  MeasureAccumulator accumulator;
+RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario) {
+  MeasureAccumulator accumulator(scenario);
   for (const Sample& sample : samples) accumulator.Add(sample);
   return accumulator.Result();
 }

@@ -2,12 +2,16 @@
 // in this process and a log of a million messages go the same way.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 
+#include "scenario/scenario.h"
+#include "services/measures/detection.h"
 #include "services/measures/sample.h"
+#include "services/measures/surrogate.h"
 
 namespace fogline {
 
@@ -23,6 +27,10 @@ struct RunMeasures {
   std::optional<double> min_host_gap_m;
   /// Smallest true gap from the first following car to the host, m.
   std::optional<double> min_follower_gap_m;
+  /// Surrogate measures of the host behind the preceding car, and of the first following car behind
+  /// the host.
+  PairMeasures host;
+  PairMeasures follower;
   /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
@@ -39,9 +47,19 @@ struct RunMeasures {
   double human_time_s = 0;
   /// Hand-overs in either direction: the human drives in one of two successive steps only.
   std::int64_t transfers = 0;
+  /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
+  std::optional<double> transfers_pmin;
+  /// Least time between two hand-overs, s; nullopt with less than two.
+  std::optional<double> min_dwell_s;
   /// Largest change of the commanded acceleration from the step before a hand-over to the step of
   /// it, m/s2; 0 without a hand-over.
   double max_handover_jump_mps2 = 0;
+  /// Largest |jerk| of the host within `handover_s` after a change of the authorities, m/s3;
+  /// nullopt without one. A ramp of the authorities counts from its first step to `handover_s`
+  /// after its last.
+  std::optional<double> max_handover_jerk_mps3;
+  /// Time under the wrong controller, detection delay, false alarms.
+  DetectionMeasures detection;
 
   /// Largest |acceleration| of the host, applied, m/s2. Step 0 has none.
   std::optional<double> max_abs_acceleration_mps2;
@@ -75,6 +93,11 @@ double CompromisedSafety(const Sample& sample);
 /// Collects the measures of a run, sample by sample, in order of steps.
 class MeasureAccumulator {
  public:
+  /// Of a run of this scenario: its section `measures`, and how its LiDAR is mounted.
+  explicit MeasureAccumulator(const Scenario& scenario);
+  /// Of a run of a scenario with the defaults.
+  MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
+
   void Add(const Sample& sample);
 
   /// Measures of the samples so far.
@@ -90,21 +113,29 @@ class MeasureAccumulator {
   };
 
   void AddSafety(const Sample& sample);
+  void AddPairs(const Sample& sample);
   void AddAuthority(const Sample& sample);
+  void AddTransfer(const Sample& sample);
   void AddMotion(const Sample& sample);
   void AddSensing(const Sample& sample);
 
+  double handover_s_;
+  PairAccumulator host_;
+  PairAccumulator follower_;
+  DetectionAccumulator detection_;
   RunMeasures measures_;  // those that need no final division
   Mean compromised_safety_fog_m_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
   Mean human_in_clear_air_;  // 1 or 0 in each step
   double first_time_s_ = 0;
+  std::optional<double> authority_changed_s_;  // last
+  std::optional<double> transferred_s_;        // last
   std::optional<Sample> previous_;
 };
 
-/// Measures of a whole run.
-RunMeasures Measure(std::span<const Sample> samples);
+/// Measures of a whole run of a scenario.
+RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
 
 /// Safety improvement SI of a run with traded control over its pair without (same scenario, same
 /// seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
@@ -152,14 +183,47 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "largest shortfall of the following car's safe distance");
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
+  const auto pair = [&](const std::array<std::string_view, 8>& names, const PairMeasures& of) {
+    number(names[0], of.min_ttc_s, "s", "smallest time to collision (Hayward 1972)");
+    number(names[1], of.tet_s, "s",
+           "time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
+    number(names[2], of.tit_s2, "s2", "integral of TTC* - TTC over it (Minderhoud & Bovy 2001)");
+    number(names[3], of.min_headway_s, "s", "smallest time headway, bumper to bumper");
+    number(names[4], of.max_drac_mps2, "m/s2",
+           "largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
+    number(names[5], of.min_picud_m, "m",
+           "smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
+    number(names[6], of.min_rss_margin_m, "m",
+           "smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
+    number(names[7], of.cpi, "", "crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
+  };
+  pair({"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
+        "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
+       m.host);
+  pair({"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
+        "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
+        "follower_cpi"},
+       m.follower);
   count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
   number("collision_time_s", m.collision_time_s, "s", "time of the first collision");
   number("rhe_pct", m.rhe_pct, "%",
          "redundant human engagement: share of clear air in which the human drives");
   number("human_time_s", m.human_time_s, "s", "time during which the human drives");
   count("transfers", m.transfers, "", "hand-overs in either direction");
+  number("transfers_pmin", m.transfers_pmin, "1/min", "hand-overs per minute");
+  number("min_dwell_s", m.min_dwell_s, "s", "smallest time between two hand-overs");
   number("max_handover_jump_mps2", m.max_handover_jump_mps2, "m/s2",
          "largest jump of the commanded acceleration at a hand-over");
+  number("max_handover_jerk_mps3", m.max_handover_jerk_mps3, "m/s3",
+         "largest jerk of the host within measures.handover_s after a change of the authorities");
+  number("wrong_human_s", m.detection.wrong_human_s, "s",
+         "time, weighed by authority, of the human while the LiDAR is right");
+  number("wrong_automation_s", m.detection.wrong_automation_s, "s",
+         "the same of the automation while LiDAR and fusion are deceived");
+  number("detection_delay_s", m.detection.detection_delay_s, "s",
+         "from the LiDAR's first deception to DoC >= threshold");
+  number("false_alarms_ph", m.detection.false_alarms_ph, "1/h",
+         "alarms that begin in clear air, per hour of it");
   number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
          "largest acceleration or braking of the host");
   number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");

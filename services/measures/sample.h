@@ -29,6 +29,7 @@ struct Sample {
   double acc_acceleration_mps2 = 0;     // a_A offered
   double driver_acceleration_mps2 = 0;  // a_H offered
   double command_mps2 = 0;              // a commanded for the step that begins here
+  double lambda_automation = 1;
   double lambda_human = 0;
   double conflict_m = 0;
   double doc = 0;
@@ -68,6 +69,7 @@ inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar
       .acc_acceleration_mps2 = acc.acceleration_mps2,
       .driver_acceleration_mps2 = driver.acceleration_mps2,
       .command_mps2 = host.acceleration_mps2,
+      .lambda_automation = host.lambda_automation,
       .lambda_human = host.lambda_human,
       .conflict_m = host.conflict_m,
       .doc = host.doc,

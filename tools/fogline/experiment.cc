@@ -88,7 +88,7 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   ExperimentResult result;
   Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
-  MeasureAccumulator measures;
+  MeasureAccumulator measures(scenario);
   FollowerAccumulator followers;
   result.samples.reserve(static_cast<std::size_t>(scenario.steps));
   const TimePoint began = Clock::now();
@@ -159,7 +159,6 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   LoggedRun logged;
   Digest digest;
-  MeasureAccumulator measures;
   FollowerAccumulator followers;
   std::vector<Sample>& samples = logged.result.samples;
   SampleDecoder decoder;
@@ -181,7 +180,6 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
                       log.string(), reader.run().steps - 1));
     }
     samples.push_back(*sample);
-    measures.Add(*sample);
     followers.Add(decoder.truth(), decoder.follower());
   }
   const RunLog& run = reader.run();
@@ -189,7 +187,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   logged.result.steps = run.steps;
   logged.result.digest = digest.Hex();
   logged.result.log = log;
-  logged.result.measures = measures.Result();
+  logged.result.measures = Measure(samples, run.scenario);
   logged.result.followers = followers.Result();
   logged.scenario = run.scenario;
   logged.scenario_text = run.scenario_text;

@@ -31,8 +31,8 @@ int Main(int argc, char** argv) {
       "  fogline table --help");
   Action action;
   for (const auto add :
-       {AddRun, AddTable, AddSweep, AddCalibrate, AddMetrics, AddCompare, AddReport, AddDigest,
-        AddDiff, AddEvents, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
+       {AddRun, AddTable, AddSweep, AddCalibrate, AddStudy, AddMetrics, AddCompare, AddReport,
+        AddDigest, AddDiff, AddEvents, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
     add(app, action);
   }
   try {

@@ -9,6 +9,9 @@ set(assets
   kCurvesJs=curves.js
   kFrontJs=front.js
   kPageJs=page.js
+  kStudyHtml=study.html
+  kStudyCss=study.css
+  kStudyJs=study.js
   kUplotJs=uplot/uPlot.iife.min.js
   kUplotCss=uplot/uPlot.min.css
   kUplotLicense=uplot/LICENSE)

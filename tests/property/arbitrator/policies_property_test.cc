@@ -1,6 +1,8 @@
 // What holds with every policy, every profile of transfer and whatever the inputs are.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +19,7 @@ namespace fogline::test {
 namespace {
 
 constexpr double kRounding = 1e-9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Enum>
 Enum AnyChoice(Draw& draw) {
@@ -119,11 +122,14 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
+      // The gate's own limit lies on the way too.
+      const TransferSection& transfer = scenario.arbitrator.transfer;
+      const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
           std::minmax({in.automation.acceleration_mps2, in.driver.acceleration_mps2,
                        k == 0 ? in.ego.acceleration_mps2 : previous});
-      ASSERT_GE(out.acceleration_mps2, low - kRounding);
-      ASSERT_LE(out.acceleration_mps2, high + kRounding);
+      ASSERT_GE(out.acceleration_mps2, std::min(low, gate_mps2) - kRounding);
+      ASSERT_LE(out.acceleration_mps2, std::max(high, -gate_mps2) + kRounding);
       previous = out.acceleration_mps2;
     }
   }

@@ -14,18 +14,18 @@ constexpr Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_mps2 = 1.0};
 // Sums of a few tens of changes.
 constexpr double kRounding = 1e-12;
 
-// Authorities and commands of `steps` steps in which `wanted` is wanted.
-std::vector<Transfer::State> Run(Transfer& transfer, double wanted, int steps,
-                                 const Transfer::Offers& offers = kOffers) {
+// Authorities and commands of `count` steps in which `wanted` is wanted.
+std::vector<Transfer::State> Steps(Transfer& transfer, double wanted, int count,
+                                   const Transfer::Offers& offers = kOffers) {
   std::vector<Transfer::State> states;
-  for (int i = 0; i < steps; ++i) states.push_back(transfer.Step(wanted, offers, -0.5));
+  for (int i = 0; i < count; ++i) states.push_back(transfer.Step(wanted, offers, -0.5));
   return states;
 }
 
 TEST(TransferTest, StepHandsOverAtOnceAndPassesTheOfferOnBitByBit) {
   Transfer transfer(TransferSection{}, kStep_s);
-  EXPECT_EQ(Run(transfer, 0, 1)[0].acceleration_mps2, -0.5);
-  const Transfer::State state = Run(transfer, 1, 1)[0];
+  EXPECT_EQ(Steps(transfer, 0, 1)[0].acceleration_mps2, -0.5);
+  const Transfer::State state = Steps(transfer, 1, 1)[0];
   EXPECT_EQ(state.lambda_human, 1);
   EXPECT_EQ(state.acceleration_mps2, 1.0);
 }
@@ -35,13 +35,13 @@ TEST(TransferTest, PassesAnOfferOnWhateverTheOtherOneIs) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {
     Transfer transfer({.profile = profile}, kStep_s);
-    EXPECT_EQ(Run(transfer, 0, 1, {-0.5, kNone})[0].acceleration_mps2, -0.5);
+    EXPECT_EQ(Steps(transfer, 0, 1, {-0.5, kNone})[0].acceleration_mps2, -0.5);
   }
 }
 
 TEST(TransferTest, LinearTakesItsDurationThereAndBack) {
   Transfer transfer({.profile = TransferProfile::kLinear, .duration_s = 2}, kStep_s);
-  const auto there = Run(transfer, 1, 21);
+  const auto there = Steps(transfer, 1, 21);
   for (int i = 0; i < 20; ++i) {
     EXPECT_NEAR(there[static_cast<std::size_t>(i)].lambda_human, (i + 1) / 20.0, kRounding);
     EXPECT_NEAR(there[static_cast<std::size_t>(i)].acceleration_mps2, -0.5 + 1.5 * (i + 1) / 20.0,
@@ -49,7 +49,7 @@ TEST(TransferTest, LinearTakesItsDurationThereAndBack) {
   }
   EXPECT_EQ(there[20].lambda_human, 1);
   EXPECT_EQ(there[20].acceleration_mps2, 1.0);
-  const auto back = Run(transfer, 0, 21);
+  const auto back = Steps(transfer, 0, 21);
   EXPECT_NEAR(back[9].lambda_human, 0.5, kRounding);
   EXPECT_EQ(back[20].lambda_human, 0);
   EXPECT_EQ(back[20].acceleration_mps2, -0.5);
@@ -57,7 +57,7 @@ TEST(TransferTest, LinearTakesItsDurationThereAndBack) {
 
 TEST(TransferTest, SigmoidIsSymmetricSteepestInTheMiddleAndEndsExactly) {
   Transfer transfer({.profile = TransferProfile::kSigmoid, .duration_s = 2}, kStep_s);
-  const auto there = Run(transfer, 1, 21);
+  const auto there = Steps(transfer, 1, 21);
   for (std::size_t i = 0; i < 19; ++i) {
     EXPECT_NEAR(there[i].lambda_human + there[18 - i].lambda_human, 1, 1e-9);
   }
@@ -70,32 +70,32 @@ TEST(TransferTest, SigmoidIsSymmetricSteepestInTheMiddleAndEndsExactly) {
 TEST(TransferTest, RampsTurnRoundWhereTheyAre) {
   for (const TransferProfile profile : {TransferProfile::kLinear, TransferProfile::kSigmoid}) {
     Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
-    const double half_way = Run(transfer, 1, 4).back().lambda_human;
-    const double back = Run(transfer, 0, 1)[0].lambda_human;
+    const double half_way = Steps(transfer, 1, 4).back().lambda_human;
+    const double back = Steps(transfer, 0, 1)[0].lambda_human;
     EXPECT_LT(back, half_way);
     EXPECT_GT(back, 0);
-    EXPECT_EQ(Run(transfer, 0, 4).back().lambda_human, 0);
+    EXPECT_EQ(Steps(transfer, 0, 4).back().lambda_human, 0);
   }
 }
 
 TEST(TransferTest, RampsFollowSharedAuthorityToItsValue) {
   for (const TransferProfile profile : {TransferProfile::kLinear, TransferProfile::kSigmoid}) {
     Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
-    EXPECT_EQ(Run(transfer, 0.3, 20).back().lambda_human, 0.3);
+    EXPECT_EQ(Steps(transfer, 0.3, 20).back().lambda_human, 0.3);
   }
 }
 
 TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
   Transfer transfer({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
-  Run(transfer, 0, 3);
-  const auto states = Run(transfer, 1, 10);
+  Steps(transfer, 0, 3);
+  const auto states = Steps(transfer, 1, 10);
   EXPECT_EQ(states[0].lambda_human, 1);
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_NEAR(states[i].acceleration_mps2, -0.5 + 0.2 * static_cast<double>(i + 1), kRounding);
   }
   EXPECT_EQ(states[7].acceleration_mps2, 1.0);
   // WHEN it has caught up THEN the command is free again.
-  EXPECT_EQ(Run(transfer, 1, 1, {-0.5, -3.0})[0].acceleration_mps2, -3.0);
+  EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -3.0})[0].acceleration_mps2, -3.0);
 }
 
 TEST(TransferTest, TheFirstCommandGoesOnFromWhatTheHostDoes) {
@@ -107,10 +107,10 @@ TEST(TransferTest, EmergencyBrakingIsObeyedAtOnce) {
   for (const bool gate : {false, true}) {
     Transfer transfer({.profile = TransferProfile::kJerkLimited, .yield_mps2 = 3.5, .gate = gate},
                       kStep_s);
-    Run(transfer, 0, 3);
-    Run(transfer, 1, 2);
-    EXPECT_EQ(Run(transfer, 1, 1, {-0.5, -4.0})[0].acceleration_mps2, -4.0);
-    EXPECT_EQ(Run(transfer, 1, 1, {-0.5, 0.0})[0].acceleration_mps2, 0.0)
+    Steps(transfer, 0, 3);
+    Steps(transfer, 1, 2);
+    EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -4.0})[0].acceleration_mps2, -4.0);
+    EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, 0.0})[0].acceleration_mps2, 0.0)
         << "nothing lingers of it";
   }
 }
@@ -118,13 +118,13 @@ TEST(TransferTest, EmergencyBrakingIsObeyedAtOnce) {
 TEST(TransferTest, GateLimitsAccelerationForItsTimeAndJerkUntilTheCommandHasCaughtUp) {
   Transfer transfer(
       {.gate = true, .gate_s = 3, .gate_acceleration_mps2 = 0.5, .gate_jerk_mps3 = 0.5}, kStep_s);
-  Run(transfer, 0, 3);
-  const auto gated = Run(transfer, 1, 30);
+  Steps(transfer, 0, 3);
+  const auto gated = Steps(transfer, 1, 30);
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_NEAR(gated[i].acceleration_mps2, -0.5 + 0.05 * static_cast<double>(i + 1), kRounding);
   }
   for (std::size_t i = 20; i < 30; ++i) EXPECT_NEAR(gated[i].acceleration_mps2, 0.5, kRounding);
-  const auto free = Run(transfer, 1, 11);
+  const auto free = Steps(transfer, 1, 11);
   EXPECT_NEAR(free[0].acceleration_mps2, 0.55, kRounding);
   EXPECT_EQ(free[10].acceleration_mps2, 1.0);
 }
@@ -132,12 +132,12 @@ TEST(TransferTest, GateLimitsAccelerationForItsTimeAndJerkUntilTheCommandHasCaug
 TEST(TransferTest, GoesOnFromWhatWasDecidedElsewhere) {
   Transfer ramp({.profile = TransferProfile::kLinear, .duration_s = 1}, kStep_s);
   ramp.Overrule({.lambda_human = 1, .acceleration_mps2 = 1});
-  EXPECT_NEAR(Run(ramp, 0, 1)[0].lambda_human, 0.9, kRounding);
+  EXPECT_NEAR(Steps(ramp, 0, 1)[0].lambda_human, 0.9, kRounding);
 
   Transfer limited({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
-  Run(limited, 0, 1);
+  Steps(limited, 0, 1);
   limited.Overrule({.lambda_human = 0, .acceleration_mps2 = -3});
-  EXPECT_NEAR(Run(limited, 1, 1)[0].acceleration_mps2, -2.8, kRounding);
+  EXPECT_NEAR(Steps(limited, 1, 1)[0].acceleration_mps2, -2.8, kRounding);
 }
 
 }  // namespace

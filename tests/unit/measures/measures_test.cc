@@ -200,6 +200,51 @@ TEST(MeasureTest, JumpOfTheCommandCountsOnlyAtHandOvers) {
   EXPECT_EQ(Measure(run).max_handover_jump_mps2, 0);
 }
 
+TEST(MeasureTest, CountsHandOversPerMinuteAndTheLeastTimeBetweenTwo) {
+  auto run = QuietRun(13);  // 6 s
+  EXPECT_EQ(Measure(run).transfers_pmin, 0);
+  for (std::size_t k : {2, 3, 4, 5, 10, 11, 12}) run[k].lambda_human = 1;
+  const RunMeasures m = Measure(run);
+  EXPECT_EQ(m.transfers_pmin, 30);        // 3 in 6 s
+  EXPECT_EQ(m.min_dwell_s, 4 * kStep_s);  // steps 2 to 6
+  for (std::size_t k = 0; k < 10; ++k) run[k].lambda_human = 0;
+  EXPECT_EQ(Measure(run).min_dwell_s, std::nullopt);
+  EXPECT_EQ(Measure(QuietRun(1)).transfers_pmin, std::nullopt);
+}
+
+TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
+  Scenario scenario;
+  scenario.measures.handover_s = 2 * kStep_s;
+  auto run = QuietRun(10);
+  const std::array<double, 10> acceleration{0, 0, 3, 3, 2, 2, 4, 4, 4, 4};
+  for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
+  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
+  // The command of step 3 shows at step 4; two steps belong to it. The jump to step 2 was before
+  // it, that to step 6 comes after.
+  for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_human = 1;
+  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 2);
+  // A ramp lasts: authority that still changes at step 4 takes step 6 in.
+  run[3].lambda_human = 0.5;
+  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 4);
+}
+
+TEST(MeasureTest, MeasuresBothPairsOfCars) {
+  auto run = QuietRun(3);
+  for (Sample& sample : run) {
+    sample.preceding_speed_mps = 20;
+    sample.host_speed_mps = 20;
+    sample.follower_speed_mps = 20;
+  }
+  run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind
+  run[2].preceding_speed_mps = 10;
+  const RunMeasures m = Measure(run);
+  EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
+  EXPECT_EQ(m.host.min_ttc_s, 3);
+  EXPECT_EQ(m.host.min_headway_s, 1.5);
+  EXPECT_EQ(m.follower.min_headway_s, 1.6);
+  EXPECT_EQ(m.follower.tet_s, 0);
+}
+
 TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   auto run = QuietRun(5);
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
@@ -255,7 +300,8 @@ TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
 
 TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
   const std::map<std::string_view, std::string_view> suffixes{
-      {"m", "_m"}, {"s", "_s"}, {"%", "_pct"}, {"m/s2", "_mps2"}, {"m/s3", "_mps3"}};
+      {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"},
+      {"m/s2", "_mps2"}, {"m/s3", "_mps3"}, {"1/min", "_pmin"}, {"1/h", "_ph"}};
   std::set<std::string_view> names;
   const auto check = [&](std::string_view name, auto value, std::string_view unit,
                          std::string_view description) {
@@ -269,7 +315,7 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
     }
   };
   VisitMeasures(RunMeasures(), check);
-  EXPECT_EQ(names.size(), 19U);
+  EXPECT_EQ(names.size(), 42U);
 }
 
 }  // namespace

@@ -1,0 +1,184 @@
+// fogline study: the paper's open questions, answered with numbers.
+#include "tools/study/study.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "scenario/loader.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/progress.h"
+#include "tools/fogline/verbs.h"
+#include "tools/report/study_page.h"
+#include "tools/sweep/engine.h"
+#include "tools/sweep/whole_file.h"
+
+namespace fogline {
+namespace {
+
+/// The name that stands for every study.
+constexpr std::string_view kAll = "all";
+
+struct StudyArguments {
+  std::string name;
+  std::filesystem::path out = "studies";
+  std::filesystem::path scenarios = "scenario";
+  std::string seeds;
+  int jobs = AllCores();
+  bool json = false;
+};
+
+/// A study that has been made.
+struct Made {
+  const Study* study;
+  SeedRange seeds;
+  StudyResult result;
+};
+
+std::string Names() {
+  std::string names;
+  for (const Study& study : Studies()) names += fmt::format("{}, ", study.name);
+  return names + std::string(kAll);
+}
+
+/// @throws InputError
+std::vector<const Study*> Chosen(const std::string& name) {
+  std::vector<const Study*> chosen;
+  for (const Study& study : Studies()) {
+    if (name == kAll || name == study.name) chosen.push_back(&study);
+  }
+  if (chosen.empty()) {
+    throw InputError(fmt::format("error: no study \"{}\"; there are {}", name, Names()));
+  }
+  return chosen;
+}
+
+Made Make(const Study& study, const StudyArguments& arguments) {
+  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : ParseSeeds(arguments.seeds);
+  std::optional<Progress> progress;
+  const StudyContext context{.scenarios = arguments.scenarios,
+                             .seeds = seeds,
+                             .jobs = arguments.jobs,
+                             .progress = [&](std::int64_t done, std::int64_t total) {
+                               if (!progress)
+                                 progress.emplace(fmt::format("{}: unit", study.name), total);
+                               progress->Show(done);
+                               return !WasInterrupted();
+                             }};
+  Made made{.study = &study, .seeds = seeds, .result = {}};
+  try {
+    made.result = study.run(context);
+  } catch (const StudyStopped&) {
+    throw Interrupted(
+        fmt::format("interrupted in study {}; its files are not written", study.name));
+  }
+  StudySection& section = made.result.section;
+  section.name = study.name;
+  section.title = study.title;
+  section.question = study.question;
+  return made;
+}
+
+void Write(const std::filesystem::path& path, const std::string& content) {
+  MakeFolderOf(path);
+  WholeFile file(path);
+  file.Write(content);
+  file.Finish();
+}
+
+/// What a reader types to make the same again. Neither the folder nor the number of threads is part
+/// of it: files do not depend on them.
+std::string CommandOf(const StudyArguments& arguments) {
+  std::string command = fmt::format("fogline study {}", arguments.name);
+  if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);
+  return command;
+}
+
+std::string ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
+                   const std::filesystem::path& page) {
+  nlohmann::ordered_json json{{"command", CommandOf(arguments)},
+                              {"report", page.string()},
+                              {"studies", nlohmann::ordered_json::array()}};
+  for (const Made& made : all) {
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const StudyFile& file : made.result.files) {
+      files.push_back((arguments.out / file.name).string());
+    }
+    json["studies"].push_back({{"name", made.study->name},
+                               {"seeds", fmt::format("{}:{}", made.seeds.first, made.seeds.last)},
+                               {"runs", made.result.runs},
+                               {"findings", made.result.section.findings},
+                               {"files", std::move(files)}});
+  }
+  return json.dump(2);
+}
+
+void PrintText(const StudyArguments& arguments, const Made& made) {
+  fmt::print("{} ({} runs)\n", made.study->title, made.result.runs);
+  for (const std::string& finding : made.result.section.findings) fmt::print("  {}\n", finding);
+  for (const StudyFile& file : made.result.files) {
+    fmt::print("{}\n", (arguments.out / file.name).string());
+  }
+}
+
+int RunStudy(const StudyArguments& arguments) {
+  const std::vector<const Study*> chosen = Chosen(arguments.name);
+  if (!arguments.seeds.empty()) ParseSeeds(arguments.seeds);
+  WatchInterrupts();
+  std::vector<Made> all;
+  std::vector<StudySection> sections;
+  for (const Study* study : chosen) {
+    const Made& made = all.emplace_back(Make(*study, arguments));
+    for (const StudyFile& file : made.result.files) Write(arguments.out / file.name, file.content);
+    sections.push_back(made.result.section);
+    if (!arguments.json) PrintText(arguments, made);
+  }
+  const std::string stem = arguments.name == kAll ? "studies" : arguments.name;
+  const std::filesystem::path page = arguments.out / (stem + ".html");
+  Write(page, MakeStudyPage(CommandOf(arguments), sections));
+  Write(arguments.out / (stem + ".md"), MakeStudyText(CommandOf(arguments), sections));
+  fmt::print("{}\n", arguments.json ? ToJson(arguments, all, page) : page.string());
+  return kDone;
+}
+
+}  // namespace
+
+void AddStudy(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("study", "Answer an open question with runs and intervals");
+  const auto arguments = std::make_shared<StudyArguments>();
+  verb->add_option("NAME", arguments->name, fmt::format("One of {}", Names()))->required();
+  verb->add_option("--out", arguments->out, "Folder for the files, which are replaced")
+      ->capture_default_str();
+  verb->add_option("--seeds", arguments->seeds,
+                   "Seeds A:B, both included (default: the study's own number)");
+  verb->add_option("--jobs", arguments->jobs, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  verb->add_option("--scenarios", arguments->scenarios,
+                   "Folder with paper.json and dense_fog.json, which the studies vary")
+      ->capture_default_str();
+  verb->add_flag("--json", arguments->json, "Print findings and files as JSON");
+  std::string table;
+  for (const Study& study : Studies()) {
+    table += fmt::format("  {:<11}{} ({} seeds)\n", study.name, study.title, study.seeds.count());
+  }
+  verb->footer(fmt::format(
+      "Studies:\n{}\n"
+      "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with findings, figures and tables (of "
+      "all:\n"
+      "studies.html, studies.md). Findings are made from the numbers. Equal seeds have equal "
+      "noise\n"
+      "in all variants, and differences are paired; intervals are those of 95 %. The files do not\n"
+      "depend on --jobs.\n\n"
+      "Examples:\n  fogline study policy\n"
+      "  fogline study conflict --seeds 1:20 --out /tmp/conflict\n"
+      "  fogline study all --out docs/studies",
+      table));
+  verb->callback([&action, arguments] { action = [arguments] { return RunStudy(*arguments); }; });
+}
+
+}  // namespace fogline

@@ -1,0 +1,145 @@
+#include "tools/report/study_page.h"
+
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/report/assets.h"
+#include "tools/report/html.h"
+
+namespace fogline {
+namespace {
+
+using nlohmann::json;
+
+// What the page draws needs no more digits, and equal pages come out of equal numbers.
+constexpr int kDigits = 6;
+
+json Numbers(const std::vector<double>& values) {
+  json numbers = json::array();
+  for (const double value : values) {
+    // Through text: the shortest double that prints so.
+    numbers.push_back(std::isfinite(value) ? json(std::stod(fmt::format("{:.{}g}", value, kDigits)))
+                                           : json(nullptr));
+  }
+  return numbers;
+}
+
+json FigureData(const StudyFigure& figure) {
+  json series = json::array();
+  for (const StudySeries& one : figure.series) {
+    series.push_back({{"name", one.name},
+                      {"x", Numbers(one.x)},
+                      {"y", Numbers(one.y)},
+                      {"low", Numbers(one.low)},
+                      {"high", Numbers(one.high)},
+                      {"shown", one.shown}});
+  }
+  return {{"id", figure.id},
+          {"xLabel", figure.x_label},
+          {"categories", figure.categories},
+          {"logX", figure.log_x},
+          {"series", std::move(series)}};
+}
+
+std::string FigureElement(const StudyFigure& figure) {
+  return fmt::format(
+      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">{1}"
+      "</h3><p>{2}</p></figcaption>\n<p class=\"axis\">{3}</p>\n<div class=\"panels\"></div>\n"
+      "<div class=\"legend\"></div>\n</figure>\n",
+      figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption), EscapeHtml(figure.y_label));
+}
+
+std::string Row(const std::vector<std::string>& cells, std::string_view first,
+                std::string_view rest) {
+  std::string row = "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string_view tag = i == 0 ? first : rest;
+    row += fmt::format("<{}>{}</{}>", tag, EscapeHtml(cells[i]), tag.substr(0, 2));
+  }
+  return row + "</tr>\n";
+}
+
+std::string TableElement(const StudyTable& table) {
+  std::string body;
+  for (const std::vector<std::string>& row : table.rows) body += Row(row, "th scope=\"row\"", "td");
+  return fmt::format(
+      "<details class=\"values\"><summary>{0}</summary>\n<div class=\"scroll\" role=\"region\" "
+      "tabindex=\"0\" aria-label=\"{0}\"><table><thead>{1}</thead><tbody>\n{2}</tbody></table>"
+      "</div></details>\n",
+      EscapeHtml(table.caption), Row(table.columns, "th scope=\"col\"", "th scope=\"col\""), body);
+}
+
+std::string SectionElement(const StudySection& section) {
+  std::string findings;
+  for (const std::string& finding : section.findings) {
+    findings += fmt::format("<p>{}</p>\n", EscapeHtml(finding));
+  }
+  std::string figures;
+  for (const StudyFigure& figure : section.figures) figures += FigureElement(figure);
+  std::string tables;
+  for (const StudyTable& table : section.tables) tables += TableElement(table);
+  return fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n"
+      "<p class=\"question\">{2}</p>\n<div class=\"finding\">\n{3}</div>\n"
+      "<p class=\"note\">{4}</p>\n<div class=\"figures\">\n{5}</div>\n{6}</section>\n",
+      section.name, EscapeHtml(section.title), EscapeHtml(section.question), findings,
+      EscapeHtml(section.method), figures, tables);
+}
+
+/// A cell of a Markdown table.
+std::string Cell(std::string_view text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? "\\|" : std::string(1, c);
+  return cell;
+}
+
+std::string TextRow(const std::vector<std::string>& cells) {
+  std::string row = "|";
+  for (const std::string& cell : cells) row += fmt::format(" {} |", Cell(cell));
+  return row + "\n";
+}
+
+}  // namespace
+
+std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections) {
+  std::string content;
+  std::string links;
+  json figures = json::array();
+  for (const StudySection& section : sections) {
+    content += SectionElement(section);
+    links +=
+        fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.name, EscapeHtml(section.title));
+    for (const StudyFigure& figure : section.figures) figures.push_back(FigureData(figure));
+  }
+  return Fill(
+      assets::kStudyHtml,
+      {{"style", fmt::format("{}\n{}\n{}", assets::kUplotCss, assets::kPageCss, assets::kStudyCss)},
+       {"command", EscapeHtml(command)},
+       {"links", links},
+       {"sections", content},
+       {"data", EscapeScript(figures.dump())},
+       {"uplot", std::string(assets::kUplotJs)},
+       {"uplot_license", EscapeHtml(assets::kUplotLicense)},
+       {"script", std::string(assets::kStudyJs)}});
+}
+
+std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections) {
+  std::string text = fmt::format("# Studies\n\nMade by `{}`.\n", command);
+  for (const StudySection& section : sections) {
+    text += fmt::format("\n## {}\n\n*{}*\n", section.title, section.question);
+    for (const std::string& finding : section.findings) text += fmt::format("\n{}\n", finding);
+    text += fmt::format("\n{}\n", section.method);
+    for (const StudyTable& table : section.tables) {
+      text += fmt::format("\n{}:\n\n{}|", table.caption, TextRow(table.columns));
+      for (std::size_t i = 0; i < table.columns.size(); ++i) text += i == 0 ? "---|" : "---:|";
+      text += "\n";
+      for (const std::vector<std::string>& row : table.rows) text += TextRow(row);
+    }
+  }
+  return text;
+}
+
+}  // namespace fogline

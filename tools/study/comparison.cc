@@ -1,0 +1,265 @@
+#include "tools/study/comparison.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "scenario/loader.h"
+#include "services/closed_loop/closed_loop.h"
+#include "services/measures/measures.h"
+#include "tools/study/paired_worker.h"
+#include "tools/sweep/in_order.h"
+
+namespace fogline {
+namespace {
+
+std::vector<ComparedMeasure> AllMeasures() {
+  std::vector<ComparedMeasure> all{
+      {"si_pct", "%", "safety improvement over the paired run without traded control"},
+      {"collided", "", "probability of a collision"}};
+  VisitMeasures(RunMeasures{}, [&](std::string_view name, const auto&, std::string_view unit,
+                                   std::string_view description) {
+    all.push_back({std::string(name), std::string(unit), std::string(description)});
+  });
+  return all;
+}
+
+/// The scenario of every cell, case by case, each case beginning with its run without traded
+/// control.
+std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
+                                  const std::vector<StudyVariant>& variants) {
+  std::vector<Scenario> scenarios;
+  for (const StudyCase& one : cases) {
+    std::vector<std::string> overrides = one.overrides;
+    overrides.emplace_back(kWithoutTradedControl);
+    scenarios.push_back(context.Load(one.file, overrides));
+    for (const StudyVariant& variant : variants) {
+      overrides = one.overrides;
+      overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
+      scenarios.push_back(context.Load(one.file, overrides));
+    }
+  }
+  return scenarios;
+}
+
+std::string CsvNumber(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
+
+}  // namespace
+
+std::span<const ComparedMeasure> ComparedMeasures() {
+  static const std::vector<ComparedMeasure> kAll = AllMeasures();
+  return kAll;
+}
+
+std::size_t PlaceOfMeasure(std::string_view name) {
+  const std::span<const ComparedMeasure> all = ComparedMeasures();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].name == name) return i;
+  }
+  throw std::out_of_range("no measure " + std::string(name));
+}
+
+Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases,
+                       std::vector<StudyVariant> variants)
+    : cases_(std::move(cases)), variants_(std::move(variants)), seeds_(context.seeds.count()) {
+  const std::vector<Scenario> scenarios = ScenariosOf(context, cases_, variants_);
+  const std::size_t measures = ComparedMeasures().size();
+  const auto seeds = static_cast<std::size_t>(seeds_);
+  values_.assign(cases_.size() * variants_.size() * measures * seeds,
+                 std::numeric_limits<double>::quiet_NaN());
+  const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
+  const std::size_t block = variants_.size() + 1;
+  ComputeInOrder(
+      0, units, context.jobs, [] { return PairedWorker(); },
+      [&](PairedWorker& worker, std::int64_t unit) {
+        const auto first = static_cast<std::size_t>(unit / seeds_) * block;
+        return worker.Compute(std::span(scenarios).subspan(first, block),
+                              context.seeds.first + unit % seeds_);
+      },
+      [&](std::int64_t unit, const std::vector<RunValues>& runs) {
+        const auto seed = static_cast<std::size_t>(unit % seeds_);
+        const auto first = static_cast<std::size_t>(unit / seeds_) * variants_.size();
+        for (std::size_t v = 0; v < runs.size(); ++v) {
+          for (std::size_t m = 0; m < measures; ++m) {
+            values_[((first + v) * measures + m) * seeds + seed] = runs[v][m];
+          }
+        }
+        context.Show(unit + 1, units);
+        return true;
+      });
+}
+
+std::int64_t Comparison::runs() const {
+  return static_cast<std::int64_t>(cases_.size() * (variants_.size() + 1)) * seeds_;
+}
+
+std::span<const double> Comparison::Values(Cell cell, std::string_view measure) const {
+  const auto seeds = static_cast<std::size_t>(seeds_);
+  const std::size_t place = cell.test_case * variants_.size() + cell.variant;
+  const std::size_t row = place * ComparedMeasures().size() + PlaceOfMeasure(measure);
+  return std::span(values_).subspan(row * seeds, seeds);
+}
+
+Estimate Comparison::Mean(Cell cell, std::string_view measure) const {
+  return EstimateOf(Values(cell, measure));
+}
+
+Estimate Comparison::Difference(Cell a, Cell b, std::string_view measure) const {
+  return PairedDifference(Values(a, measure), Values(b, measure));
+}
+
+EventShare Comparison::Collisions(Cell cell) const {
+  std::int64_t events = 0;
+  for (const double collided : Values(cell, "collided")) events += collided > 0 ? 1 : 0;
+  return ClopperPearson(events, seeds_);
+}
+
+EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
+  std::int64_t events = 0;
+  std::int64_t runs = 0;
+  for (const double value : Values(cell, measure)) {
+    if (std::isnan(value)) continue;
+    ++runs;
+    if (value <= limit) ++events;
+  }
+  return runs == 0 ? EventShare{} : ClopperPearson(events, runs);
+}
+
+std::size_t Comparison::VariantNamed(std::string_view name) const {
+  for (std::size_t i = 0; i < variants_.size(); ++i) {
+    if (variants_[i].name == name) return i;
+  }
+  throw std::out_of_range("no variant " + std::string(name));
+}
+
+std::string Comparison::Csv(std::size_t reference) const {
+  std::string csv =
+      "case,variant,measure,unit,n,mean,std,ci95_low,ci95_high,reference,difference_n,difference,"
+      "difference_ci95_low,difference_ci95_high\n";
+  for (std::size_t c = 0; c < cases_.size(); ++c) {
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      for (const ComparedMeasure& measure : ComparedMeasures()) {
+        Estimate mean = Mean({c, v}, measure.name);
+        if (measure.name == "collided") {
+          const EventShare share = Collisions({c, v});
+          mean.low = share.lower;
+          mean.high = share.upper;
+        }
+        const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
+        csv += fmt::format(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name, variants_[v].name,
+            measure.name, measure.unit, mean.n, CsvNumber(mean.mean), CsvNumber(mean.deviation),
+            CsvNumber(mean.low), CsvNumber(mean.high), variants_[reference].name, difference.n,
+            CsvNumber(difference.mean), CsvNumber(difference.low), CsvNumber(difference.high));
+      }
+    }
+  }
+  return csv;
+}
+
+StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::string title,
+                                 bool cases_on_axis) const {
+  const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+  StudyFigure figure{
+      .id = std::move(id),
+      .title = std::move(title),
+      .caption = fmt::format("Mean over {} seeds with its 95 % confidence interval. {}.", seeds_,
+                             info.description),
+      .x_label = "",
+      .y_label = info.unit.empty() ? NameForReaders(measure)
+                                   : fmt::format("{} ({})", NameForReaders(measure), info.unit)};
+  const std::size_t series = cases_on_axis ? variants_.size() : cases_.size();
+  const std::size_t places = cases_on_axis ? cases_.size() : variants_.size();
+  for (std::size_t p = 0; p < places; ++p) {
+    figure.categories.push_back(cases_on_axis ? cases_[p].name : variants_[p].name);
+  }
+  for (std::size_t s = 0; s < series; ++s) {
+    StudySeries& one = figure.series.emplace_back();
+    one.name = cases_on_axis ? variants_[s].name : cases_[s].name;
+    for (std::size_t p = 0; p < places; ++p) {
+      const Cell cell = cases_on_axis ? Cell{p, s} : Cell{s, p};
+      Estimate mean = Mean(cell, measure);
+      if (measure == "collided") {
+        const EventShare share = Collisions(cell);
+        mean.low = share.lower;
+        mean.high = share.upper;
+      }
+      one.x.push_back(static_cast<double>(p));
+      one.y.push_back(mean.mean);
+      one.low.push_back(mean.low);
+      one.high.push_back(mean.high);
+    }
+  }
+  return figure;
+}
+
+StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
+                               std::span<const std::string_view> measures) const {
+  StudyTable table{.caption = std::move(caption), .columns = {name_cases ? "case" : "variant"}};
+  for (const std::string_view measure : measures) {
+    const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+    table.columns.push_back(info.unit.empty() ? info.name
+                                              : fmt::format("{} ({})", info.name, info.unit));
+  }
+  for (const Cell cell : rows) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row.push_back(name_cases ? cases_[cell.test_case].name : variants_[cell.variant].name);
+    for (const std::string_view measure : measures) {
+      row.push_back(measure == "collided" ? Text(Collisions(cell)) : Text(Mean(cell, measure), 2));
+    }
+  }
+  return table;
+}
+
+StudyTable Comparison::TableOfCase(std::size_t test_case,
+                                   std::span<const std::string_view> measures) const {
+  std::vector<Cell> rows;
+  for (std::size_t v = 0; v < variants_.size(); ++v) rows.push_back({test_case, v});
+  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
+                             cases_[test_case].name, seeds_),
+                 rows, false, measures);
+}
+
+StudyTable Comparison::TableOfVariant(std::size_t variant,
+                                      std::span<const std::string_view> measures) const {
+  std::vector<Cell> rows;
+  for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({c, variant});
+  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
+                             variants_[variant].name, seeds_),
+                 rows, true, measures);
+}
+
+std::string NameForReaders(std::string_view measure) {
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"si_pct", "safety improvement (SI)"},
+      {"rhe_pct", "redundant human engagement (RHE)"},
+      {"collided", "collision probability"},
+      {"mean_compromised_safety_fog_m", "mean compromised safety in fog"},
+      {"max_compromised_safety_m", "worst compromised safety"},
+      {"max_handover_jerk_mps3", "largest jerk at a hand-over"},
+      {"max_handover_jump_mps2", "largest jump of the command at a hand-over"},
+      {"max_abs_jerk_mps3", "largest jerk"},
+      {"rms_jerk_mps3", "RMS jerk"},
+      {"min_follower_ttc_s", "follower's least time to collision"},
+      {"max_follower_drac_mps2", "follower's largest DRAC"},
+      {"min_host_ttc_s", "host's least time to collision"},
+      {"max_host_drac_mps2", "host's largest DRAC"},
+      {"min_host_gap_m", "host's least gap"},
+      {"min_follower_gap_m", "follower's least gap"},
+      {"human_time_s", "time of the human at the wheel"},
+      {"wrong_human_s", "time of the human while the LiDAR is right"},
+      {"wrong_automation_s", "time of a deceived automation"},
+      {"rms_fusion_error_m", "RMS error of the fused distance"},
+  };
+  for (const auto& [name, text] : kNames) {
+    if (name == measure) return std::string(text);
+  }
+  return std::string(measure);
+}
+
+}  // namespace fogline

@@ -1,0 +1,87 @@
+// Measures of conflict as detectors of fog: all of them on the evidence of one run, thresholds at
+// an equal false-alarm rate, and what they then detect.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "services/closed_loop/closed_loop.h"
+#include "services/conflict/measures.h"
+#include "services/policies/evidence.h"
+
+namespace fogline {
+
+/// Runs scenarios and gives every measure of conflict the evidence of each step. For one thread.
+class DetectorBench {
+ public:
+  /// Calls `visit(truth, scores)` after each step, with the scores in the order of
+  /// ConflictMeasures().
+  template <class Visit>
+  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
+    Prepare(scenario, seed);
+    loop_->Run(0, [&](const StepView& step) {
+      const Evidence evidence{
+          .radar = StatedBy(step.radar),
+          .lidar = StatedBy(step.lidar),
+          .prediction = witness_->Prediction(step.track, step.radar, step.lidar)};
+      for (std::size_t i = 0; i < measures_.size(); ++i) scores_[i] = measures_[i]->Step(evidence);
+      visit(step.truth, std::span<const double>(scores_));
+    });
+  }
+
+ private:
+  void Prepare(const Scenario& scenario, std::int64_t seed);
+
+  Scenario scenario_;
+  std::optional<ClosedLoop> loop_;
+  std::optional<Witness> witness_;
+  std::vector<std::unique_ptr<ConflictMeasure>> measures_;
+  std::vector<double> scores_;
+};
+
+/// What a measure does in a run in clear air after its warm-up: enough to know when it would first
+/// have given an alarm, whatever the threshold.
+struct ClearRun {
+  /// A score above all before it, and when, s after the warm-up.
+  struct Record {
+    double score;
+    double time_s;
+  };
+  std::vector<Record> records;
+  std::vector<double> scores;  // every so many steps
+  double duration_s = 0;
+};
+
+/// Alarms of runs in clear air that each end at the first one.
+struct AlarmCount {
+  std::int64_t alarms = 0;
+  double time_s = 0;  // at risk, of all runs
+
+  /// Mean time to a false alarm (ARL0), s: that of an exponential distribution, of which runs that
+  /// end without an alarm tell a part. Infinite without an alarm.
+  double ArlZero_s() const;
+  /// Exact 95 % bounds of it (chi-square; Garwood 1936).
+  std::pair<double, double> ArlZeroBounds_s() const;
+};
+AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
+
+/// The least threshold with at least this mean time to a false alarm in these runs. A score that is
+/// at its greatest value too often has a threshold above all its scores: it never gives an alarm.
+double CalibrateThreshold(std::span<const ClearRun> runs, double arl_zero_s);
+
+/// Probability that a score in fog is above one in clear air, equal ones counted half: the area
+/// under the ROC (Mann & Whitney 1947). @param clear sorted
+double AreaUnderRoc(std::span<const double> fog, std::span<const double> clear);
+
+/// Share of scores in fog above a threshold that at most a share `false_positives` of those in
+/// clear air are above. @param clear sorted
+double TruePositives(std::span<const double> fog, std::span<const double> clear,
+                     double false_positives);
+
+}  // namespace fogline

@@ -1,0 +1,175 @@
+#include "tools/study/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "tools/report/html.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kPercent = 100;
+
+std::string Capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string UnitOf(std::string_view measure) {
+  return ComparedMeasures()[PlaceOfMeasure(measure)].unit;
+}
+
+}  // namespace
+
+std::string RankingText(const Comparison& comparison, std::size_t test_case,
+                        std::string_view measure, int decimals, Better better) {
+  std::vector<std::pair<std::size_t, Estimate>> ranked;
+  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
+    const Estimate mean = comparison.Mean({test_case, v}, measure);
+    if (mean.n > 0) ranked.emplace_back(v, mean);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [&](const auto& a, const auto& b) {
+    return better == Better::kMore ? a.second.mean > b.second.mean : a.second.mean < b.second.mean;
+  });
+  const std::string unit = UnitOf(measure);
+  std::string text = Capital(NameForReaders(measure));
+  if (ranked.empty()) return text + ": no run has one.";
+  if (!unit.empty()) text += fmt::format(" in {}", unit);
+  text += ", best first: ";
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", comparison.variants()[ranked[i].first].name,
+                        Text(ranked[i].second, decimals));
+  }
+  return text + ".";
+}
+
+std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals) {
+  if (difference.n == 0) return "no run to compare";
+  Estimate size = difference;
+  const bool less = difference.mean < 0;
+  if (less) {
+    size.mean = -difference.mean;
+    size.low = -difference.high;
+    size.high = -difference.low;
+  }
+  std::string text = fmt::format("{} {}{}", Text(size, decimals), unit, less ? " less" : " more");
+  if (VerdictOf(difference) == Verdict::kUndecided) {
+    text += fmt::format(", which is no difference that {} pairs of runs can tell", difference.n);
+  }
+  return text;
+}
+
+std::string ListText(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string AgainstText(const Comparison& comparison, std::size_t test_case,
+                        const std::vector<std::size_t>& variants, std::size_t reference,
+                        std::string_view measure, std::string_view unit, int decimals) {
+  std::vector<std::string> more;
+  std::vector<std::string> less;
+  std::vector<std::string> undecided;
+  for (const std::size_t v : variants) {
+    if (v == reference) continue;
+    const Estimate difference =
+        comparison.Difference({test_case, v}, {test_case, reference}, measure);
+    const std::string& name = comparison.variants()[v].name;
+    switch (VerdictOf(difference)) {
+      case Verdict::kMore:
+        more.push_back(fmt::format("{} (by {} {})", name, Text(difference, decimals), unit));
+        break;
+      case Verdict::kLess:
+        less.push_back(fmt::format("{} (by {} {})", name, Text(difference, decimals), unit));
+        break;
+      case Verdict::kUndecided:
+        undecided.push_back(name);
+        break;
+    }
+  }
+  std::vector<std::string> parts;
+  if (!less.empty()) parts.push_back(fmt::format("less for {}", ListText(less)));
+  if (!more.empty()) parts.push_back(fmt::format("more for {}", ListText(more)));
+  if (!undecided.empty())
+    parts.push_back(fmt::format("not to be told apart for {}", ListText(undecided)));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
+  std::vector<std::string> some;
+  std::vector<std::string> none;
+  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
+    const EventShare share = comparison.Collisions({test_case, v});
+    const std::string& name = comparison.variants()[v].name;
+    if (share.events == 0) {
+      none.push_back(name);
+    } else {
+      some.push_back(fmt::format("{} {}", name, Text(share)));
+    }
+  }
+  const double upper = ClopperPearson(0, comparison.seeds()).upper * kPercent;
+  if (some.empty()) {
+    return fmt::format(
+        "No car collides in any run: with 0 of {}, the probability is at most {:.2g} %.",
+        comparison.seeds(), upper);
+  }
+  std::string text = fmt::format("Collisions: {}.", ListText(some));
+  if (!none.empty()) {
+    text += fmt::format(" None with {} (0 of {}: at most {:.2g} %).", ListText(none),
+                        comparison.seeds(), upper);
+  }
+  return text;
+}
+
+std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant) {
+  constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+  std::vector<std::string> helped;
+  std::vector<std::string> harmed;
+  std::vector<std::string> undecided;
+  std::vector<std::string> lines;
+  const std::string& name = comparison.variants()[variant].name;
+  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
+    const Estimate effect = comparison.Difference({c, variant}, {c, 0}, kShortfall);
+    const std::string& label = comparison.cases()[c].name;
+    const Verdict verdict = VerdictOf(effect);
+    (verdict == Verdict::kLess   ? helped
+     : verdict == Verdict::kMore ? harmed
+                                 : undecided)
+        .push_back(label);
+    const EventShare without = comparison.Collisions({c, 0});
+    const EventShare with = comparison.Collisions({c, variant});
+    std::string line = fmt::format(
+        "{}: SI {} % (n = {}), mean compromised safety in fog {} m instead of {} m", label,
+        Text(comparison.Mean({c, variant}, "si_pct"), 1), comparison.Mean({c, variant}, "si_pct").n,
+        Text(comparison.Mean({c, variant}, kShortfall), 3),
+        Text(comparison.Mean({c, 0}, kShortfall), 3));
+    if (without.events + with.events > 0) {
+      line += fmt::format("; collisions {} instead of {}", Text(with), Text(without));
+    }
+    if (c > 0) {
+      line += fmt::format(
+          "; SI {} than in the first case",
+          DifferenceText(comparison.Difference({c, variant}, {0, variant}, "si_pct"), "points", 1));
+    }
+    lines.push_back(line + ".");
+  }
+  const auto part = [&](const std::vector<std::string>& of, std::string_view what) {
+    return of.empty() ? std::string() : fmt::format(" It {} in: {}.", what, ListText(of));
+  };
+  std::vector<std::string> findings;
+  findings.push_back(fmt::format(
+      "{} reduces the compromised safety in fog in {} of {} cases.{}{}{}", Capital(name),
+      helped.size(), comparison.cases().size(), part(helped, "reduces it"),
+      part(harmed, "increases it"), part(undecided, "makes no difference that can be told")));
+  findings.insert(findings.end(), lines.begin(), lines.end());
+  return findings;
+}
+
+}  // namespace fogline

@@ -1,0 +1,40 @@
+// Sentences about comparisons, made from their numbers. What they claim depends on whether an
+// interval has 0 in it, and on nothing that is known beforehand.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/study/comparison.h"
+
+namespace fogline {
+
+/// Whether more of a quantity is better, for sentences that rank.
+enum class Better { kMore, kLess };
+
+/// "Safety improvement (SI), best first: isolate 99.1 [98.9, 99.3], traded ...".
+std::string RankingText(const Comparison& comparison, std::size_t test_case,
+                        std::string_view measure, int decimals, Better better);
+
+/// "12.3 points [11.0, 13.6] more", "0.1 points [-0.2, 0.4] more, which is no difference that 300
+/// runs can tell". @param unit of the difference, such as "points"
+std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals);
+
+/// "a, b and c".
+std::string ListText(const std::vector<std::string>& names);
+
+/// `variants` by what they do to a measure against variant `reference`: "more for a (...), less for
+/// b (...), undecided for c".
+std::string AgainstText(const Comparison& comparison, std::size_t test_case,
+                        const std::vector<std::size_t>& variants, std::size_t reference,
+                        std::string_view measure, std::string_view unit, int decimals);
+
+/// Collisions of every variant; "No car collides in any run." where none does.
+std::string CollisionText(const Comparison& comparison, std::size_t test_case);
+
+/// Of a comparison whose variant 0 is without traded control: what variant `variant` does to safety
+/// in each case, and how far that differs from the first case.
+std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant);
+
+}  // namespace fogline

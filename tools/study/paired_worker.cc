@@ -1,0 +1,63 @@
+#include "tools/study/paired_worker.h"
+
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "services/measures/measures.h"
+
+namespace fogline {
+namespace {
+
+// In the order of ComparedMeasures().
+RunValues ValuesOf(const RunMeasures& measures, const std::optional<double>& si_pct) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  RunValues values{si_pct.value_or(kNone),
+                   measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
+  VisitMeasures(measures,
+                [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
+                  if constexpr (std::is_same_v<V, std::optional<double>>) {
+                    values.push_back(value.value_or(kNone));
+                  } else {
+                    values.push_back(static_cast<double>(value));
+                  }
+                });
+  return values;
+}
+
+}  // namespace
+
+template <class Visit>
+void PairedWorker::Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
+  scenario_ = scenario;
+  scenario_.seed = seed;
+  if (loop_) {
+    loop_->Restart(scenario_);
+  } else {
+    loop_.emplace(scenario_);
+  }
+  loop_->Run(0, visit);
+}
+
+std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios,
+                                             std::int64_t seed) {
+  baseline_.clear();
+  Run(scenarios.front(), seed,
+      [this](const StepView& step) { baseline_.push_back(step.ToSample()); });
+  std::vector<RunValues> runs;
+  for (const Scenario& scenario : scenarios.subspan(1)) {
+    MeasureAccumulator measures(scenario);
+    SafetyImprovement improvement(scenario.measures.safety_floor_m);
+    std::size_t i = 0;
+    Run(scenario, seed, [&](const StepView& step) {
+      const Sample sample = step.ToSample();
+      measures.Add(sample);
+      // Where one of the pair ended early, SI is over the steps of both.
+      if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);
+    });
+    runs.push_back(ValuesOf(measures.Result(), improvement.Pct()));
+  }
+  return runs;
+}
+
+}  // namespace fogline

@@ -1,0 +1,124 @@
+// Study `transfer`: how the wheel changes hands.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tools/study/comparison.h"
+#include "tools/study/findings.h"
+#include "tools/study/study.h"
+
+namespace fogline {
+namespace {
+
+/// ISO 15622 above 20 m/s, and where comfort ends: m/s3.
+constexpr double kComfortableJerk_mps3 = 2.5;
+/// What a smooth transfer may cost in safety, points of SI.
+constexpr double kTolerableLoss = 3;
+
+std::vector<StudyVariant> Variants() {
+  std::vector<StudyVariant> variants;
+  for (const std::string_view profile : {"step", "linear", "sigmoid", "jerk_limited"}) {
+    variants.push_back({std::string(profile),
+                        {"/arbitrator/policy=traded", "/arbitrator/threshold=0.5",
+                         fmt::format("/arbitrator/transfer/profile={}", profile)}});
+  }
+  variants.push_back({"gate",
+                      {"/arbitrator/policy=traded", "/arbitrator/threshold=0.5",
+                       "/arbitrator/transfer/gate=true"}});
+  return variants;
+}
+
+constexpr std::array<std::string_view, 8> kTableMeasures{
+    "max_handover_jerk_mps3", "max_handover_jump_mps2", "si_pct",         "rhe_pct",
+    "max_abs_jerk_mps3",      "rms_jerk_mps3",          "transfers_pmin", "collided"};
+
+double Greatest(std::span<const double> values) {
+  double greatest = -1;
+  for (const double value : values) {
+    if (!std::isnan(value)) greatest = std::max(greatest, value);
+  }
+  return greatest;
+}
+
+/// Jerk and safety of one variant beside the step.
+std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::size_t v) {
+  const Estimate jerk = comparison.Mean({c, v}, "max_handover_jerk_mps3");
+  if (jerk.n == 0) {
+    return fmt::format("{} has no hand-over", comparison.variants()[v].name);
+  }
+  const EventShare comfortable =
+      comparison.AtMost({c, v}, "max_handover_jerk_mps3", kComfortableJerk_mps3);
+  const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
+  return fmt::format("{} has {} m/s3 (at most {:g} in {} of {} runs, worst {}) and an SI of {}",
+                     comparison.variants()[v].name, Text(jerk, 2), kComfortableJerk_mps3,
+                     comfortable.events, comfortable.runs,
+                     Text(Greatest(comparison.Values({c, v}, "max_handover_jerk_mps3")), 2),
+                     DifferenceText(si, "points", 2));
+}
+
+/// Which variants are comfortable in the mean and cost no more safety than is tolerable.
+std::string VerdictText(const Comparison& comparison, std::size_t c) {
+  std::vector<std::string> meet;
+  std::vector<std::string> fail;
+  for (std::size_t v = 1; v < comparison.variants().size(); ++v) {
+    const Estimate jerk = comparison.Mean({c, v}, "max_handover_jerk_mps3");
+    const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
+    const bool met =
+        jerk.n > 0 &&
+        Greatest(comparison.Values({c, v}, "max_handover_jerk_mps3")) <= kComfortableJerk_mps3 &&
+        si.mean >= -kTolerableLoss;
+    (met ? meet : fail).push_back(comparison.variants()[v].name);
+  }
+  std::string text = fmt::format(
+      "At most {:g} m/s3 in every run at a mean loss of SI of at most "
+      "{:g} points: ",
+      kComfortableJerk_mps3, kTolerableLoss);
+  text += meet.empty() ? "none" : ListText(meet);
+  return text + (fail.empty() ? "." : fmt::format("; not {}.", ListText(fail)));
+}
+
+std::string FindingOf(const Comparison& comparison, std::size_t c) {
+  const Estimate step = comparison.Mean({c, 0}, "max_handover_jerk_mps3");
+  std::string text = fmt::format(
+      "{}: the paper's step has a largest jerk at a hand-over of {} m/s3 and an SI of "
+      "{} %. Compared with it, ",
+      comparison.cases()[c].name, Text(step, 2), Text(comparison.Mean({c, 0}, "si_pct"), 2));
+  std::vector<std::string> parts;
+  for (std::size_t v = 1; v < comparison.variants().size(); ++v) {
+    parts.push_back(FindingOfVariant(comparison, c, v));
+  }
+  return fmt::format("{}{}. {}", text, fmt::join(parts, "; "), VerdictText(comparison, c));
+}
+
+}  // namespace
+
+StudyResult RunTransferStudy(const StudyContext& context) {
+  const Comparison comparison(
+      context, {{"paper.json", "paper.json", {}}, {"dense_fog.json", "dense_fog.json", {}}},
+      Variants());
+  StudyResult result;
+  result.runs = comparison.runs();
+  StudySection& section = result.section;
+  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
+    section.findings.push_back(FindingOf(comparison, c));
+    section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));
+  }
+  section.figures = {
+      comparison.FigureOf("max_handover_jerk_mps3", "transfer-jerk", "Jerk at hand-overs"),
+      comparison.FigureOf("si_pct", "transfer-si", "What it costs in safety"),
+      comparison.FigureOf("max_handover_jump_mps2", "transfer-jump",
+                          "Jump of the command at hand-overs"),
+      comparison.FigureOf("rms_jerk_mps3", "transfer-rms", "Comfort of the whole run")};
+  section.method = fmt::format(
+      "{} seeds of each scenario at threshold 0.5, profiles and gate with their defaults. The jerk "
+      "of a hand-over is the largest of the host's applied acceleration while the authorities "
+      "change and for measures.handover_s after that (3 s by default). Differences are paired by "
+      "seed.",
+      comparison.seeds());
+  result.files = {{"transfer.csv", comparison.Csv(0)}};
+  return result;
+}
+
+}  // namespace fogline
