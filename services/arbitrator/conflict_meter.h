@@ -21,20 +21,27 @@ class ConflictMeter {
 
   /// The values of a step. `track` is the witness of measures that need one; it is left out unless
   /// it is of the same step.
-  void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track);
-
-  /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
-  double conflict() const { return measure_ ? score_ : window_.Conflict(section_.conflict); }
-  /// DoC of such a conflict.
-  double DocOf(double conflict) const {
-    return measure_ ? DegreeOfConflict(conflict, section_.measure_slope, section_.measure_centre)
-                    : DegreeOfConflict(conflict, section_.doc_slope_per_m, section_.doc_centre_m);
+  void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
+    if (measure_) return Measure(radar, lidar, track);
+    const bool both = radar.valid && lidar.valid;
+    if (both) last_difference_m_ = radar.range_m - lidar.range_m;
+    window_.Push(both ? last_difference_m_ : MissingDifference());
   }
 
- private:
-  std::optional<double> Difference(const radar_t& radar, const lidar_t& lidar);
+  /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
+  double conflict() const { return measure_ ? score_ : window_.Conflict(reading_); }
+  /// DoC of such a conflict.
+  double DocOf(double conflict) const { return DegreeOfConflict(conflict, slope_, centre_); }
 
-  ArbitratorSection section_;
+ private:
+  void Measure(const radar_t& radar, const lidar_t& lidar, const track_t& track);
+  std::optional<double> MissingDifference() const;
+
+  ConflictReading reading_;
+  MissingLidar missing_;
+  double missing_conflict_m_;
+  double slope_;  // of the DoC, over z or score
+  double centre_;
   ConflictWindow window_;
   std::optional<double> last_difference_m_;  // of the last step with both values
   Witness witness_;

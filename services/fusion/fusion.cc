@@ -44,6 +44,7 @@ Fusion::Fusion(const Scenario& scenario)
       initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {
   const PolicyRow& policy = RowOf(scenario.arbitrator.policy);
   if (policy.trusts) policy_ = policy.make(scenario);
+  selects_ = gating_ || policy_ != nullptr;
 }
 
 bool Fusion::Demands(const Scenario& scenario) {
@@ -56,13 +57,13 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
     Record(value, 0, 0, track_t::ABSENT);
   }
   if (started_) ekf_.Predict(ego.acceleration_mps2);
-  const Trust trust = policy_ ? Judge(radar, lidar) : Trust{};
+  if (policy_) trust_ = Judge(radar, lidar);
   if (started_) {
-    if (radar.valid) CorrectByRadar(radar, trust.radar);
-    if (lidar.valid) CorrectByLidar(lidar, trust.lidar);
-  } else if (radar.valid && trust.radar && StartFromRadar(radar)) {
-    if (lidar.valid) CorrectByLidar(lidar, trust.lidar);
-  } else if (lidar.valid && trust.lidar) {
+    if (radar.valid) CorrectByRadar(radar);
+    if (lidar.valid) CorrectByLidar(lidar);
+  } else if (radar.valid && trust_.radar && StartFromRadar(radar)) {
+    if (lidar.valid) CorrectByLidar(lidar);
+  } else if (lidar.valid && trust_.lidar) {
     StartFromLidar(lidar);
   }
   if (started_) Report(ego.acceleration_mps2);
@@ -113,30 +114,35 @@ Trust Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
   return policy_->TrustIn({.evidence = evidence, .true_gap_m = true_gap_m_});
 }
 
-void Fusion::CorrectByRadar(const radar_t& radar, bool trusted) {
+void Fusion::CorrectByRadar(const radar_t& radar) {
   const LineOfSight before(ekf_.state()[0], radar_offset_m_);
-  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()}, trusted);
+  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()});
   const LineOfSight after(ekf_.state()[0], radar_offset_m_);
   const double relative_speed = ekf_.state()[1];
-  Correct(kRadarRangeRate,
-          {radar.range_rate_mps, after.RangeRate(relative_speed),
-           after.RangeRateJacobian(relative_speed)},
-          trusted);
+  Correct(kRadarRangeRate, {radar.range_rate_mps, after.RangeRate(relative_speed),
+                            after.RangeRateJacobian(relative_speed)});
 }
 
-void Fusion::CorrectByLidar(const lidar_t& lidar, bool trusted) {
+void Fusion::CorrectByLidar(const lidar_t& lidar) {
   const LineOfSight sight(ekf_.state()[0], lidar_offset_m_);
-  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()}, trusted);
+  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()});
 }
 
-void Fusion::Correct(Value value, const Comparison& comparison, bool trusted) {
+void Fusion::Correct(Value value, const Comparison& comparison) {
   const double noise = noise_variance_[value];
   const double innovation = comparison.measured - comparison.predicted;
   const double variance = ekf_.InnovationVariance(comparison.jacobian, noise);
-  if (!trusted) return Record(value, innovation, variance, track_t::DISTRUSTED);
-  const bool refused = gating_ && !gates_[value].Admits(Square(innovation) / variance);
-  Record(value, innovation, variance, refused ? track_t::GATED : track_t::USED);
-  if (!refused) ekf_.Correct(comparison.jacobian, innovation, noise);
+  const std::int8_t usage =
+      selects_ ? UsageOf(value, Square(innovation) / variance) : track_t::USED;
+  Record(value, innovation, variance, usage);
+  if (usage == track_t::USED) ekf_.Correct(comparison.jacobian, innovation, noise);
+}
+
+std::int8_t Fusion::UsageOf(Value value, double normalised_innovation_squared) {
+  const bool trusted = value == kLidarRange ? trust_.lidar : trust_.radar;
+  if (!trusted) return track_t::DISTRUSTED;
+  if (!gating_ || gates_[value].Admits(normalised_innovation_squared)) return track_t::USED;
+  return track_t::GATED;
 }
 
 void Fusion::Record(Value value, double innovation, double variance, std::int8_t usage) {

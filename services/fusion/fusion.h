@@ -58,9 +58,11 @@ class Fusion {
   bool StartFromLidar(const lidar_t& lidar);
   /// What the policy thinks of the values of this step. @pre the filter has predicted
   Trust Judge(const radar_t& radar, const lidar_t& lidar);
-  void CorrectByRadar(const radar_t& radar, bool trusted);
-  void CorrectByLidar(const lidar_t& lidar, bool trusted);
-  void Correct(Value value, const Comparison& comparison, bool trusted);
+  void CorrectByRadar(const radar_t& radar);
+  void CorrectByLidar(const lidar_t& lidar);
+  void Correct(Value value, const Comparison& comparison);
+  /// What becomes of a value, where not every value is used.
+  std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);
 
@@ -73,6 +75,8 @@ class Fusion {
   double initial_speed_variance_;
   double initial_acceleration_variance_;
   std::unique_ptr<EngagementPolicy> policy_;  // none if it has no say here
+  bool selects_ = false;                      // whether gate or policy may refuse a value
+  Trust trust_;
   std::optional<double> true_gap_m_;
   bool started_ = false;
   track_t out_{};
