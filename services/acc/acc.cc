@@ -3,11 +3,11 @@
 namespace fogline {
 
 Acc::Acc(const Scenario& scenario)
-    : controller_(scenario.acc, scenario.step_s),
+    : controller_(scenario.acc, scenario.step_s, scenario.host_vehicle.model),
       max_track_variance_m2_(scenario.acc.max_track_std_m * scenario.acc.max_track_std_m) {}
 
 void Acc::Restart(const Scenario& scenario) {
-  controller_.Restart(scenario.acc, scenario.step_s);
+  controller_.Restart(scenario.acc, scenario.step_s, scenario.host_vehicle.model);
   max_track_variance_m2_ = scenario.acc.max_track_std_m * scenario.acc.max_track_std_m;
 }
 

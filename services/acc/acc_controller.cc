@@ -27,9 +27,10 @@ QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
 
 }  // namespace
 
-AccController::AccController(const AccSection& section, double step_s)
+AccController::AccController(const AccSection& section, double step_s, VehicleModel vehicle)
     : section_(section),
       step_s_(step_s),
+      vehicle_(vehicle),
       program_(section, step_s),
       solver_(MakeSolver(program_, section)) {
   const Eigen::Index n = program_.horizon();
@@ -40,11 +41,12 @@ AccController::AccController(const AccSection& section, double step_s)
   plan_.setZero(n);
 }
 
-void AccController::Restart(const AccSection& section, double step_s) {
+void AccController::Restart(const AccSection& section, double step_s, VehicleModel vehicle) {
   if (section != section_ || step_s != step_s_) {
-    *this = AccController(section, step_s);
+    *this = AccController(section, step_s, vehicle);
     return;
   }
+  vehicle_ = vehicle;
   solver_.Restart();
   plan_.setZero();
   control_ = 0;
@@ -69,10 +71,7 @@ AccController::Output AccController::Step(const Input& input) {
   } else {
     output.control = program_.FallbackControl(now.previous_control);
   }
-  const DiscreteAccModel& model = program_.model();
-  output.acceleration_mps2 =
-      model.phi(kOwnAcceleration, kOwnAcceleration) * input.acceleration_mps2 +
-      model.gamma(kOwnAcceleration) * output.control;
+  output.acceleration_mps2 = CommandOf(output.control, input.acceleration_mps2);
   control_ = output.control;
   acceleration_mps2_ = output.acceleration_mps2;
   return output;
@@ -82,12 +81,28 @@ std::span<const double> AccController::plan() const {
   return {plan_.data(), static_cast<std::size_t>(plan_.size())};
 }
 
+double AccController::CommandOf(double control, double acceleration_mps2) const {
+  if (vehicle_ == VehicleModel::kLongitudinal) return -section_.engine_gain * control;
+  const DiscreteAccModel& model = program_.model();
+  return model.phi(kOwnAcceleration, kOwnAcceleration) * acceleration_mps2 +
+         model.gamma(kOwnAcceleration) * control;
+}
+
 // The u that the rate limit counts from: the own one if the car did what it was told, otherwise the
 // one that would hold the acceleration that the car has. Brought within the limits of u, because
-// the driver may have braked harder than the automation is allowed to.
+// the driver may have braked harder than the automation is allowed to. A vehicle never does quite
+// what it is told: its u goes on, but no further ahead of the one that would hold the acceleration
+// than a ramp at the jerk limit is ahead of the engine's lag. Whoever drives, it cannot run away.
 double AccController::PreviousControl(double acceleration_mps2) const {
-  const bool obeyed = std::abs(acceleration_mps2 - acceleration_mps2_) <= kSameAcceleration;
-  const double control = obeyed ? control_ : -acceleration_mps2 / section_.engine_gain;
+  const double holding = -acceleration_mps2 / section_.engine_gain;
+  double control = holding;
+  if (vehicle_ == VehicleModel::kLongitudinal) {
+    const double lead =
+        section_.max_jerk_mps3 * section_.engine_time_constant_s / section_.engine_gain;
+    control = std::clamp(control_, holding - lead, holding + lead);
+  } else if (std::abs(acceleration_mps2 - acceleration_mps2_) <= kSameAcceleration) {
+    control = control_;
+  }
   return std::clamp(control, program_.MinControl(), program_.MaxControl());
 }
 

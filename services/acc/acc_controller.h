@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "scenario/control.h"
+#include "scenario/vehicle.h"
 #include "services/acc/acc_program.h"
 #include "services/acc/qp.h"
 
@@ -17,8 +18,11 @@ namespace fogline {
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed once; a plan that
 /// meets every limit is taken as it is, and only otherwise is the quadratic program solved.
-/// The command is the model's acceleration one step ahead, from the acceleration that the car
-/// really has: whoever drove before, it goes on from there.
+/// To a point mass, which does at once what it is told, the command is the model's acceleration one
+/// step ahead, from the acceleration that the car really has: whoever drove before, it goes on from
+/// there. A vehicle has a lag of its own in the place of the model's: its command is the
+/// acceleration -K_e u that u asks for, and its u is ahead of the acceleration that it has by no
+/// more than the model's engine would be behind at the jerk limit.
 class AccController {
  public:
   struct Input {
@@ -37,7 +41,7 @@ class AccController {
   };
 
   struct Output {
-    double acceleration_mps2;  // C x(k+1)
+    double acceleration_mps2;  // C x(k+1) of a point mass, -K_e u(k) of a vehicle
     double control;            // u(k); positive decelerates
     double safe_distance_m;    // d_r at the own speed
     Solver solver;
@@ -45,24 +49,29 @@ class AccController {
   };
 
   /// @throws InputError if the section's weights make no well-conditioned problem.
-  AccController(const AccSection& section, double step_s);
+  /// @param vehicle what obeys the commands
+  AccController(const AccSection& section, double step_s,
+                VehicleModel vehicle = VehicleModel::kPointMass);
 
   Output Step(const Input& input);
 
-  /// Begins anew, as AccController(section, step_s) would, and keeps what is computed once if these
-  /// are the parameters that it has: most of the cost of a short run.
+  /// Begins anew, as AccController(section, step_s, vehicle) would, and keeps what is computed once
+  /// if these are the parameters that it has: most of the cost of a short run.
   /// @throws InputError as the constructor; it is then as it was.
-  void Restart(const AccSection& section, double step_s);
+  void Restart(const AccSection& section, double step_s,
+               VehicleModel vehicle = VehicleModel::kPointMass);
 
   /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet.
   std::span<const double> plan() const;
 
  private:
   double PreviousControl(double acceleration_mps2) const;
+  double CommandOf(double control, double acceleration_mps2) const;
   bool Solve(const AccSituation& now, Output& output);
 
   AccSection section_;
   double step_s_;
+  VehicleModel vehicle_;
   AccProgram program_;
   QpSolver solver_;
   Eigen::Matrix4Xd gain_;  // 4 x N, unconstrained u_j = column j' [x; u_{-1}]

@@ -1,6 +1,7 @@
 // A following car with the ACC of Sourav & Cheng 2024.
 #pragma once
 
+#include "scenario/scenario.h"
 #include "services/acc/acc_controller.h"
 #include "services/follower/car_driver.h"
 
@@ -10,11 +11,14 @@ namespace fogline {
 class AccDriver final : public CarDriver {
  public:
   /// @throws InputError if the section's weights make no well-conditioned problem.
-  AccDriver(const AccSection& section, double step_s) : controller_(section, step_s) {}
+  explicit AccDriver(const Scenario& scenario)
+      : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model) {}
 
   /// Begins anew, as a new one would; cheaper where its parameters are the same.
   /// @throws as the constructor
-  void Restart(const AccSection& section, double step_s) { controller_.Restart(section, step_s); }
+  void Restart(const Scenario& scenario) {
+    controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
+  }
 
   Action Step(std::int64_t step, const Situation& now) override;
 

@@ -30,10 +30,10 @@ std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
   const Part part = PartOf(scenario, car);
   if (!part.has_acc) return MakePerson(scenario, car, part.style);
   if (auto* acc = dynamic_cast<AccDriver*>(before.get())) {
-    acc->Restart(scenario.follower, scenario.step_s);
+    acc->Restart(scenario);
     return before;
   }
-  return std::make_unique<AccDriver>(scenario.follower, scenario.step_s);
+  return std::make_unique<AccDriver>(scenario);
 }
 
 /// What the driver of this following car goes by.

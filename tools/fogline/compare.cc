@@ -14,6 +14,7 @@
 #include "scenario/csv.h"
 #include "scenario/csv_series.h"
 #include "scenario/file.h"
+#include "scenario/json.h"
 #include "scenario/wording.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/verbs.h"
