@@ -126,8 +126,8 @@ void AddEvents(CLI::App& app, Action& action) {
       "What a data recorder would keep: changes of state, requests to take over and their\n"
       "escalation, acknowledgements, transfers, first effective inputs, manoeuvres. Then the "
       "times\n"
-      "of each request, from the start of the run. Where the driver need not be asked X
-      "mode instant) there are transfers and nothing else. Exit code 1 when a log is not "
+      "of each request, from the start of the run. Where the driver need not be asked (take_over\n"
+      "with mode instant) there are transfers and nothing else. Exit code 1 when a log is not\n"
       "complete.\n"
       "\nExamples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
