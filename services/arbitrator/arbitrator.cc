@@ -13,10 +13,11 @@ constexpr double kHalf = 0.5;
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
       meter_(scenario),
-      policy_(RowOf(scenario.arbitrator.policy).make(scenario)),
+      rule_(RowOf(scenario.arbitrator.policy).rule),
       steady_(scenario.arbitrator.transfer, scenario.step_s),
       transfer_(scenario.arbitrator.transfer, scenario.step_s) {
   out_.threshold = threshold_;
+  if (rule_ == Rule::kOwn) policy_ = RowOf(scenario.arbitrator.policy).make(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
@@ -45,14 +46,9 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.header = ego.header;
   out_.conflict_m = meter_.conflict();
   out_.doc = meter_.DocOf(out_.conflict_m);
-  const Wish wish = policy_->Decide({.doc = out_.doc,
-                                     .threshold = threshold_,
-                                     .lambda_human = out_.lambda_human,
-                                     .ego = ego,
-                                     .track = track,
-                                     .automation = automation,
-                                     .driver = driver,
-                                     .surroundings = surroundings_});
+  const Wish wish = rule_ == Rule::kThreshold ? Compare(out_.doc, threshold_)
+                    : rule_ == Rule::kNever   ? StayAutomated(threshold_)
+                                              : OwnWish(ego, track, automation, driver);
   out_.threshold = wish.threshold;
   const double wanted = steady_.Step(wish, out_.doc);
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
@@ -65,9 +61,23 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.acceleration_mps2 = state.acceleration_mps2;
   // Who has more authority; the human where both have half.
   out_.mode = state.lambda_human < kHalf ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
-  if (take_over_) out_.mode = InfoOf(take_over_->outcome().state).mode;
-  sent_mps2_ = out_.acceleration_mps2;
+  if (take_over_) {
+    out_.mode = InfoOf(take_over_->outcome().state).mode;
+    sent_mps2_ = out_.acceleration_mps2;
+  }
   return out_;
+}
+
+Wish Arbitrator::OwnWish(const ego_t& ego, const track_t& track, const accel_command_t& automation,
+                         const driver_command_t& driver) {
+  return policy_->Decide({.doc = out_.doc,
+                          .threshold = threshold_,
+                          .lambda_human = out_.lambda_human,
+                          .ego = ego,
+                          .track = track,
+                          .automation = automation,
+                          .driver = driver,
+                          .surroundings = surroundings_});
 }
 
 bool Arbitrator::Ask(bool wanted, const ego_t& ego, const track_t& track,

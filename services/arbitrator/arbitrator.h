@@ -67,13 +67,17 @@ class Arbitrator {
   void Overrule(const arbitration_t& sent);
 
  private:
+  /// What a policy with a rule of its own makes of the conflict in out_.
+  Wish OwnWish(const ego_t& ego, const track_t& track, const accel_command_t& automation,
+               const driver_command_t& driver);
   /// What becomes of the wish for the human if he must be asked. @return whether anybody drives
   bool Ask(bool wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 
   double threshold_;
   ConflictMeter meter_;
-  std::unique_ptr<EngagementPolicy> policy_;
+  Rule rule_;
+  std::unique_ptr<EngagementPolicy> policy_;  // none for a simple rule
   SteadyWish steady_;
   Transfer transfer_;
   Surroundings surroundings_;

@@ -9,10 +9,12 @@ namespace fogline {
 /// Fault isolation: the fusion goes on without the sensor that is to blame, and nobody takes over.
 class Isolate final : public EngagementPolicy {
  public:
+  static constexpr Rule kRule = Rule::kNever;
+
   explicit Isolate(const Scenario& scenario) : isolation_(scenario.arbitrator) {}
 
   Trust TrustIn(const FusionView& view) override { return isolation_.Judge(view.evidence); }
-  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view); }
+  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view.threshold); }
 
  private:
   Isolation isolation_;

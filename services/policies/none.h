@@ -8,9 +8,11 @@ namespace fogline {
 /// lambda_A = 1 throughout.
 class None final : public EngagementPolicy {
  public:
+  static constexpr Rule kRule = Rule::kNever;
+
   explicit None(const Scenario&) {}
 
-  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view); }
+  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view.threshold); }
 };
 
 }  // namespace fogline

@@ -13,6 +13,7 @@ namespace fogline {
 class Oracle final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsTrueGap = true;
+  static constexpr Rule kRule = Rule::kNever;
 
   explicit Oracle(const Scenario&) {}
 
@@ -23,7 +24,7 @@ class Oracle final : public EngagementPolicy {
         std::abs(radar.range_m - *view.true_gap_m) <= std::abs(lidar.range_m - *view.true_gap_m);
     return {.radar = best_is_radar, .lidar = !best_is_radar};
   }
-  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view); }
+  Wish Decide(const ArbitratorView& view) override { return StayAutomated(view.threshold); }
 };
 
 }  // namespace fogline

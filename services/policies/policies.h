@@ -15,6 +15,7 @@ struct PolicyRow {
   std::string_view name;  // in the scenario, lower_snake, unique
   std::string_view doc;   // in a line
   bool trusts;            // has a say in the fusion
+  Rule rule;              // what its say in the arbitrator comes to
   bool needs_true_gap;
   bool needs_surroundings;
   std::unique_ptr<EngagementPolicy> (*make)(const Scenario& scenario);
@@ -28,6 +29,7 @@ constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
   return {.name = name,
           .doc = doc,
           .trusts = kTrusts,
+          .rule = P::kRule,
           .needs_true_gap = P::kNeedsTrueGap,
           .needs_surroundings = P::kNeedsSurroundings,
           .make = [](const Scenario& scenario) -> std::unique_ptr<EngagementPolicy> {

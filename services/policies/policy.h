@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -74,9 +75,17 @@ inline Wish Compare(double doc, double threshold) {
 }
 
 /// The automation drives, whatever the conflict.
-inline Wish StayAutomated(const ArbitratorView& view) {
-  return {.lambda_human = 0, .threshold = view.threshold, .firm = true};
+inline Wish StayAutomated(double threshold) {
+  return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
+
+/// What a policy's Decide() comes to. The arbitrator follows the simple rules, among them those of
+/// both runs of a pair, without a call: that is 6 ns of a step's 400 (AMD EPYC, GCC 12).
+enum class Rule : std::uint8_t {
+  kOwn,        // whatever Decide() says
+  kNever,      // StayAutomated() with the scenario's threshold
+  kThreshold,  // Compare() with it
+};
 
 /// A policy: made from a scenario, and told of every step in order. It reads no clock, shares
 /// nothing, and allocates nothing once it is made.
@@ -85,6 +94,8 @@ class EngagementPolicy {
   /// What it needs beyond the regular inputs; hidden by a policy that does.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
+  /// Hidden by a policy that has no rule of its own.
+  static constexpr Rule kRule = Rule::kOwn;
 
   virtual ~EngagementPolicy() = default;
 

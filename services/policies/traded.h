@@ -8,6 +8,8 @@ namespace fogline {
 /// lambda_A = 1 if 0 <= DoC < DoC_th, else 0 (Sourav & Cheng 2024).
 class Traded final : public EngagementPolicy {
  public:
+  static constexpr Rule kRule = Rule::kThreshold;
+
   explicit Traded(const Scenario&) {}
 
   Wish Decide(const ArbitratorView& view) override { return Compare(view.doc, view.threshold); }

@@ -98,6 +98,26 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
   }
 }
 
+// What the arbitrator takes a policy for without asking it.
+TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
+  int simple = 0;
+  for (const PolicyRow& row : Policies()) {
+    if (row.rule == Rule::kOwn) continue;
+    ++simple;
+    const auto policy = row.make({});
+    Situation situation;
+    for (const double doc : {0.0, 0.3, std::nextafter(0.5, 0), 0.5, 0.9, 1.0}) {
+      situation.doc = doc;
+      const Wish decided = policy->Decide(situation.View());
+      const Wish rule = row.rule == Rule::kNever ? StayAutomated(0.5) : Compare(doc, 0.5);
+      EXPECT_EQ(decided.lambda_human, rule.lambda_human) << row.name << ' ' << doc;
+      EXPECT_EQ(decided.threshold, rule.threshold) << row.name;
+      EXPECT_EQ(decided.firm, rule.firm) << row.name;
+    }
+  }
+  EXPECT_EQ(simple, 4);
+}
+
 TEST(PoliciesTest, ThePapersIsTheDefault) {
   EXPECT_EQ(RowOf(Scenario().arbitrator.policy).name, "traded");
 }
