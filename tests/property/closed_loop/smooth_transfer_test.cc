@@ -78,14 +78,14 @@ TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePo
 // Where the fog makes the automation brake, the paper's hand-over jumps by more than 1 m/s2.
 TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFogForNothing) {
   Scenario scenario = DenseFog();
-  const Outcome abrupt = OutcomeOf(scenario, 10);
+  const Outcome abrupt = OutcomeOf(scenario, 20);
   EXPECT_GT(abrupt.handover_jerk_mps3, 10);
   scenario.arbitrator.transfer.profile = TransferProfile::kJerkLimited;
-  const Outcome limited = OutcomeOf(scenario, 10);
+  const Outcome limited = OutcomeOf(scenario, 20);
   EXPECT_LE(limited.handover_jerk_mps3, scenario.arbitrator.transfer.jerk_mps3 + 1e-9);
   EXPECT_GE(limited.si_pct, abrupt.si_pct - 3);
   scenario.arbitrator.transfer.gate = true;
-  const Outcome gated = OutcomeOf(scenario, 10);
+  const Outcome gated = OutcomeOf(scenario, 20);
   EXPECT_LE(gated.handover_jerk_mps3, scenario.arbitrator.transfer.gate_jerk_mps3 + 1e-9);
   EXPECT_GE(gated.si_pct, abrupt.si_pct - 3);
 }

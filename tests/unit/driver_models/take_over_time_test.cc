@@ -57,10 +57,10 @@ TEST(TakeOverTimeTest, RefusesWhatNoDistributionHas) {
   EXPECT_THROW(TakeOverTime(by_lead(0.05), 61), std::invalid_argument);
 }
 
-// 95 % of drivers are there after 5.46 s (log-normal of mean 2.7 s and deviation 1.45 s). And as
+// 95 % of drivers are there after 5.44 s (log-normal of mean 2.7 s and deviation 1.45 s). And as
 // many as are not late are there after the lead time.
 TEST(TakeOverTimeTest, QuantilesAreThoseOfTheDistribution) {
-  EXPECT_NEAR(TakeOverTime({}, 10).Quantile(0.95), 5.46, 0.005);
+  EXPECT_NEAR(TakeOverTime({}, 10).Quantile(0.95), 5.44, 0.005);
   for (const TakeOverModel model :
        {TakeOverModel::kLogNormal, TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverTime time({.model = model}, 8);

@@ -229,7 +229,7 @@ TEST(TimeUntilHardBrakingTest, SolvesItsOwnEquation) {
   }
 }
 
-// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.46 s; 2 s more without readiness.
+// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.44 s; 2 s more without readiness.
 TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   const auto followed = [](double time_s) {
     Situation situation;  // closing at 10 m/s
