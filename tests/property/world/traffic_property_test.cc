@@ -16,8 +16,6 @@
 namespace fogline {
 namespace {
 
-using test::Draw;
-
 Scenario Shipped() {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/world/end_on_collision=false"});
 }
