@@ -67,7 +67,8 @@ inline constexpr std::array kRoles{
     RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
     RoleInfo{Role::kDriver, "driver", "the human agent: Intelligent Driver Model"},
     RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
-    RoleInfo{Role::kFollower, "follower", "drives the cars behind the host: the same ACC, or people"},
+    RoleInfo{Role::kFollower, "follower",
+             "drives the cars behind the host: the same ACC, or people"},
     RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
 };
 

@@ -7,9 +7,9 @@
 namespace fogline {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
-/// services/conflict/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi) with the mean of absolutes:
-/// the only measure here with a scale of its own, in metres. The offset of the sensors stays in it.
-/// Skipped steps leave their place in the window empty.
+/// services/conflict/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi) with the mean of
+/// absolutes: the only measure here with a scale of its own, in metres. The offset of the sensors
+/// stays in it. Skipped steps leave their place in the window empty.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);

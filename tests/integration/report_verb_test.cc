@@ -81,9 +81,9 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
   const auto log = [&](const std::string& name, const std::string& override) {
     return Log(folder, name, {"--set", override});
   };
-  const Outcome report = Report(
-      {log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
-       log("c.lcm", "/arbitrator/policy=none"), "--output", folder.File("report.html")});
+  const Outcome report =
+      Report({log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
+              log("c.lcm", "/arbitrator/policy=none"), "--output", folder.File("report.html")});
   ASSERT_EQ(report.code, 0) << report.err;
   const nlohmann::json runs = DataOf(Read(folder.File("report.html")))["runs"];
   ASSERT_EQ(runs.size(), 3U);
@@ -95,10 +95,9 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
 TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
   const ScratchFolder folder;
   const std::string page = folder.File("report.html");
-  const Outcome report =
-      Report({Log(folder, "none.lcm", {"--set", "/arbitrator/policy=none"}),
-              Log(folder, "a.lcm", {}), Log(folder, "b.lcm", {}),
-              Log(folder, "c.lcm", {"--seed", "2"}), "-o", page});
+  const Outcome report = Report({Log(folder, "none.lcm", {"--set", "/arbitrator/policy=none"}),
+                                 Log(folder, "a.lcm", {}), Log(folder, "b.lcm", {}),
+                                 Log(folder, "c.lcm", {"--seed", "2"}), "-o", page});
   ASSERT_EQ(report.code, 0) << report.err;
   const nlohmann::json runs = DataOf(Read(page))["runs"];
   EXPECT_EQ(runs[0]["name"], "without traded control, seed 1");
@@ -149,9 +148,8 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
               StartsWith("fogline report: error: --thresholds 0.2:0.8: not first:last:count"));
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--seeds", "9:1"}),
               StartsWith("fogline report: error: --seeds 9:1: neither A:B"));
-  EXPECT_THAT(
-      error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=none"}),
-      HasSubstr("/arbitrator/policy is none: no threshold matters"));
+  EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=none"}),
+              HasSubstr("/arbitrator/policy is none: no threshold matters"));
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {

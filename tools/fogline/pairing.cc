@@ -25,8 +25,7 @@ std::vector<std::optional<double>> SafetyImprovements(std::span<const LoggedRun>
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
-      if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j])
-        continue;
+      if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j]) continue;
       improvements[i] = SafetyImprovementPct(runs[j].result.samples, runs[i].result.samples,
                                              runs[i].scenario.measures.safety_floor_m);
       break;

@@ -11,8 +11,8 @@ namespace fogline {
 
 void RequireTradedControl(const Scenario& scenario, const std::filesystem::path& file) {
   if (scenario.arbitrator.policy == Policy::kNone) {
-    throw InputError(fmt::format(
-        "{}: error: /arbitrator/policy is none: no threshold matters", file.string()));
+    throw InputError(
+        fmt::format("{}: error: /arbitrator/policy is none: no threshold matters", file.string()));
   }
 }
 

@@ -127,8 +127,7 @@ inline ReportRun ExampleRun(const ExampleSettings& settings) {
       "{{\n  \"version\": 1,\n  \"title\": \"Traded control in fog\",\n  \"seed\": 7,\n"
       "  \"steps\": {},\n  \"fog\": {{\n    \"start_s\": 19.0,\n    \"duration_s\": 11.0\n  }},\n"
       "  \"arbitrator\": {{\n    \"policy\": \"{}\",\n    \"threshold\": {}\n  }}\n}}\n",
-      settings.steps, settings.threshold ? "traded" : "none",
-      settings.threshold.value_or(0.5));
+      settings.steps, settings.threshold ? "traded" : "none", settings.threshold.value_or(0.5));
   run.seed = 7;
   run.digest = fmt::format("{:064x}", std::hash<std::string>{}(run.name));
   ExampleRoad road(settings.threshold);
