@@ -10,8 +10,9 @@
 namespace fogline {
 
 /// Least change of the command since the transfer by which an input counts as effective, in m/s2.
-/// Chosen: 1 % of g, what passengers just begin to feel.
-inline constexpr double kEffectiveInput_mps2 = 0.1;
+/// Chosen: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or engine
+/// is set more finely.
+inline constexpr double kEffectiveInput_mps2 = 0.01;
 
 /// Whether a driver's command makes itself felt, by the one before the transfer.
 inline bool IsEffective(double command_mps2, double before_transfer_mps2) {

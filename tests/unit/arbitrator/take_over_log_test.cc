@@ -35,8 +35,8 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   log.Add(Command(1, arbitration_t::REQUEST));
   log.Add(Command(2, arbitration_t::REQUEST_URGENT));
   log.Add(Command(3, arbitration_t::HANDOVER, 0.3));
-  log.Add(Command(4, arbitration_t::RECOVERING, 0.35));
-  log.Add(Command(5, arbitration_t::RECOVERING, 0.45));
+  log.Add(Command(4, arbitration_t::RECOVERING, 0.305));
+  log.Add(Command(5, arbitration_t::RECOVERING, 0.315));
   log.Add(Command(6, arbitration_t::HUMAN));
   log.Add(Command(7, arbitration_t::AUTOMATION));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
