@@ -167,11 +167,28 @@ bool CheckTraffic(const Shipped& shipped) {
   return made == 0 && steps > 100;
 }
 
+// With drivers who must be asked, and come, are late, or stay away.
+bool CheckTakeOver(Scenario scenario) {
+  scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
+  scenario.arbitrator.take_over.time.mean_s = scenario.arbitrator.take_over.lead_s;
+  scenario.arbitrator.take_over.absent_probability = 0.3;
+  bool clean = true;
+  for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
+    std::int64_t steps = 0;
+    clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;
+  }
+  std::printf("take-over: %s\n", clean ? "0 allocations" : "it allocates");
+  return clean;
+}
+
 bool Check() {
   bool clean = CheckController();
   clean = CheckModels() && clean;
   const std::vector<Shipped> all = ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario");
-  for (const Shipped& shipped : all) clean = CheckLoop(shipped) && CheckTraffic(shipped) && clean;
+  for (const Shipped& shipped : all) {
+    clean = CheckLoop(shipped) && CheckTraffic(shipped) && clean;
+    clean = CheckTakeOver(shipped.scenario) && clean;
+  }
   clean = CheckHuman(all.front().scenario) && clean;
   // A program without any allocation would not be counting.
   return clean && all.size() >= 2 && allocations > 0;
