@@ -219,7 +219,7 @@ TEST_F(OnDemandInRealtimeTest, IsTheNewestThatHasComeHoweverOldItIs) {
 TEST_F(OnDemandInRealtimeTest, IsNeverLostAndNoInputOfStatus) {
   Compute(0);
   SayHost(0);
-  script_.Poll(node_, Clock::now() + milliseconds(4000));
+  script_.PollUpTo(node_, Clock::now() + milliseconds(4000));
   EXPECT_THAT(status_.back().input, ElementsAre("TRUTH"));
   EXPECT_EQ(status_.back().waiting_for, "TRUTH");
   EXPECT_THAT(ChannelsAskedFor(), Not(Contains("HOST_COMMAND")));
