@@ -56,7 +56,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       ++truth.header.step;
     }
     // THEN the third brakes for it, and the first does not know of it
-    EXPECT_LT(now[2], otherwise[2] - 0.1);
+    EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
     }
