@@ -37,6 +37,9 @@ function numberText(value) {
 }
 
 const strokeOf = (index) => theme.palette[index % COLOURS];
+/** Where a value of x lies on the axis, and what lies there. */
+const placeOfX = (figure, x) => figure.logX ? Math.log10(x) : x;
+const xAtPlace = (figure, place) => figure.logX ? 10 ** place : place;
 const dashOf = (index) => DASHES[Math.floor(index / COLOURS) % DASHES.length];
 
 /** Columns for uPlot, and the intervals in the same order: {data, low, high}. */
@@ -45,7 +48,7 @@ function columnsOf(figure) {
   const tables = figure.series.map(({x, y, low, high}, i) => {
     const shift = figure.categories.length ? SPREAD * ((i + 0.5) / count - 0.5) : 0;
     const none = y.map(() => null);
-    return [x.map((value) => value + shift), y, low.length ? low : none, high.length ? high : none];
+    return [x.map((value) => placeOfX(figure, value) + shift), y, low.length ? low : none, high.length ? high : none];
   });
   const [xs, ...columns] = uPlot.join(tables);
   const every = (first) => figure.series.map((_, i) => columns[3 * i + first]);
@@ -74,9 +77,8 @@ function valueSpan(chart, {data, low, high}) {
 /** The whole x axis. */
 function placeSpan(figure, xs) {
   if (figure.categories.length) return [-0.6, figure.categories.length - 0.4];
-  if (xs.length === 0) return [figure.logX ? 1 : 0, 10];
+  if (xs.length === 0) return [0, 1];
   const [first, last] = [xs[0], xs[xs.length - 1]];
-  if (figure.logX) return [first / 1.05, last * 1.05];
   const margin = 0.02 * (last - first) || 1;
   return [first - margin, last + margin];
 }
@@ -161,7 +163,7 @@ function makeLegend(element, figure, chart, columns) {
     if (place == null) return;
     const x = columns.data[0][place];
     const category = figure.categories[Math.round(x)];
-    at.textContent = category ?? `${figure.xLabel}: ${numberText(x)}`;
+    at.textContent = category ?? `${figure.xLabel}: ${numberText(xAtPlace(figure, x))}`;
     figure.series.forEach((_, i) => {
       // In a category the series stand side by side: each has its own place.
       const own = figure.categories.length
@@ -184,8 +186,24 @@ function axis(more) {
           ticks: {...lines, size: 4}, gap: 5, ...more};
 }
 
+/** The values of x that there are, as long as their texts do not touch. */
+function loggedTicks(figure, chart) {
+  const room = 34;  // pixels
+  let last = -Infinity;
+  return chart.data[0].filter((place) => {
+    const left = chart.valToPos(place, "x");
+    if (left - last < room) return false;
+    last = left;
+    return true;
+  });
+}
+
 function xAxis(figure) {
   const label = {label: figure.xLabel, labelSize: 20, labelGap: 0, labelFont: `12px ${theme.font}`};
+  if (figure.logX) {
+    return axis({size: 28, ...label, splits: (chart) => loggedTicks(figure, chart),
+                 values: (_, places) => places.map((x) => numberText(xAtPlace(figure, x)))});
+  }
   if (!figure.categories.length) return axis({size: 28, ...label});
   const longest = Math.max(...figure.categories.map((name) => name.length));
   return axis({
@@ -221,8 +239,8 @@ function makeChart(figure) {
       points: points ? {show: true, size: 7, fill: strokeOf(i)} : {show: false},
     }))],
     scales: {
-      x: {time: false, distr: figure.logX ? 3 : 1, range: (_, min, max) =>
-          min == null || max == null ? whole : [min, max], min: whole[0], max: whole[1]},
+      x: {time: false, range: (_, min, max) => min == null || max == null ? whole : [min, max],
+          min: whole[0], max: whole[1]},
       y: {range: (chart) => valueSpan(chart, columns)},
     },
     axes: [xAxis(figure), axis({size: 56})],

@@ -13,16 +13,16 @@ namespace {
 
 constexpr double kPercent = 100;
 
-std::string Capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 std::string UnitOf(std::string_view measure) {
   return ComparedMeasures()[PlaceOfMeasure(measure)].unit;
 }
 
 }  // namespace
+
+std::string Capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
 
 std::string RankingText(const Comparison& comparison, std::size_t test_case,
                         std::string_view measure, int decimals, Better better) {
@@ -46,8 +46,9 @@ std::string RankingText(const Comparison& comparison, std::size_t test_case,
   return text + ".";
 }
 
-std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals) {
-  if (difference.n == 0) return "no run to compare";
+std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals,
+                           std::string_view than) {
+  if (difference.n == 0) return "without a pair of runs to compare";
   Estimate size = difference;
   const bool less = difference.mean < 0;
   if (less) {
@@ -55,7 +56,8 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
     size.low = -difference.high;
     size.high = -difference.low;
   }
-  std::string text = fmt::format("{} {}{}", Text(size, decimals), unit, less ? " less" : " more");
+  std::string text =
+      fmt::format("{} {} {}{}", Text(size, decimals), unit, less ? "less" : "more", than);
   if (VerdictOf(difference) == Verdict::kUndecided) {
     text += fmt::format(", which is no difference that {} pairs of runs can tell", difference.n);
   }
@@ -155,8 +157,8 @@ std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t 
     }
     if (c > 0) {
       line += fmt::format(
-          "; SI {} than in the first case",
-          DifferenceText(comparison.Difference({c, variant}, {0, variant}, "si_pct"), "points", 1));
+          "; SI {}", DifferenceText(comparison.Difference({c, variant}, {0, variant}, "si_pct"),
+                                    "points", 1, " than in the first case"));
     }
     lines.push_back(line + ".");
   }

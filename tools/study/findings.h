@@ -17,9 +17,13 @@ enum class Better { kMore, kLess };
 std::string RankingText(const Comparison& comparison, std::size_t test_case,
                         std::string_view measure, int decimals, Better better);
 
-/// "12.3 points [11.0, 13.6] more", "0.1 points [-0.2, 0.4] more, which is no difference that 300
-/// runs can tell". @param unit of the difference, such as "points"
-std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals);
+/// "12.3 [11.0, 13.6] points more than before", "0.1 [-0.2, 0.4] points more than before, which is
+/// no difference that 300 pairs of runs can tell". @param than such as " than before", or ""
+std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals,
+                           std::string_view than = "");
+
+/// With a capital letter.
+std::string Capital(std::string text);
 
 /// "a, b and c".
 std::string ListText(const std::vector<std::string>& names);

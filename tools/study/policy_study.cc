@@ -58,12 +58,12 @@ std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case
     if (verdict == Verdict::kLess) win.push_back(name);
   }
   std::string text;
-  if (!lose.empty()) text += fmt::format("{} lose to isolate. ", ListText(lose));
-  if (!win.empty()) text += fmt::format("{} beat isolate. ", ListText(win));
+  if (!lose.empty()) text += fmt::format("{} lose to isolate. ", Capital(ListText(lose)));
+  if (!win.empty()) text += fmt::format("{} beat isolate. ", Capital(ListText(win)));
   if (lose.empty() && win.empty()) text += "No hand-over can be told apart from isolate. ";
   return text + fmt::format("Mean compromised safety in fog against isolate: {}.",
                             AgainstText(comparison, test_case, handovers, isolate,
-                                        "mean_compromised_safety_fog_m", "m", 3));
+                                        "mean_compromised_safety_fog_m", "m", 4));
 }
 
 std::string FindingOf(const Comparison& comparison, std::size_t c) {

@@ -37,7 +37,10 @@ constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216
 constexpr Range kMounting_m{0.7, 1.0};
 constexpr Range kRadarStd_m{0.01, 0.1};
 constexpr Range kLidarStd_m{0.01, 0.03};
-constexpr Range kMonitoring{0.1, 1.0};  // where readiness ends up while the automation drives
+// Half of the humans judge rightly and stay aware; the readiness of the others ends up here while
+// the automation drives.
+constexpr double kErringShare = 0.5;
+constexpr Range kMonitoring{0.1, 1.0};
 constexpr Range kLeadAmplitude_mps{0, 1.5};
 
 constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
@@ -54,17 +57,14 @@ Scenario Draw(Scenario scenario, std::int64_t seed) {
   scenario.radar.range_std_m = kRadarStd_m.Log(u(5));
   scenario.lidar.range_std_m = kLidarStd_m.Log(u(6));
   scenario.human.awareness.monitoring = kMonitoring.Even(u(7));
+  scenario.human.misjudges = scenario.human.loses_awareness = u(9) < kErringShare;
   scenario.lead.sinusoid.amplitude_mps = kLeadAmplitude_mps.Even(u(8));
   scenario.seed = seed;
   return scenario;
 }
 
-const std::vector<std::string> kMixed{"/lead/profile=sinusoid",
-                                      "/human/sight=fog",
-                                      "/human/misjudges=true",
-                                      "/human/loses_awareness=true",
-                                      "/followers/driver=drawn",
-                                      "/followers/style=drawn",
+const std::vector<std::string> kMixed{"/lead/profile=sinusoid", "/human/sight=fog",
+                                      "/followers/driver=drawn", "/followers/style=drawn",
                                       "/arbitrator/missing_lidar=conflict"};
 
 /// A rule with a parameter that trades engagement for safety.
@@ -320,16 +320,17 @@ std::string MethodOf(const Mixed& mixed) {
       "whose "
       "speed swings by up to {:g} m/s, {:g} % in clear air, else fog of either model (visibility "
       "{:g} to {:g} m, bias {:g} to {:g} m), mounting offset {:g} to {:g} m, radar noise {:g} to "
-      "{:g} m, LiDAR noise {:g} to {:g} m; a human who sees the fog, misjudges and loses awareness "
-      "(down to {:g} to {:g}, by situation), and a follower of drawn kind and style. SI has a "
+      "{:g} m, LiDAR noise {:g} to {:g} m; a human who sees the fog and in {:g} % misjudges and "
+      "loses "
+      "awareness (down to {:g} to {:g}), and a follower of drawn kind and style. SI has a "
       "value "
       "in situations with fog and compromised safety only; RHE in all with clear air. The fixed "
       "threshold that a rule is compared with was chosen in the same situations, which favours it. "
       "SI is a mean of ratios of small numbers: compromised safety in metres is beside it.",
       mixed.situations, kLeadAmplitude_mps.most, 100 * kClearShare, kVisibility_m.least,
       kVisibility_m.most, kBias_m.least, kBias_m.most, kMounting_m.least, kMounting_m.most,
-      kRadarStd_m.least, kRadarStd_m.most, kLidarStd_m.least, kLidarStd_m.most, kMonitoring.least,
-      kMonitoring.most);
+      kRadarStd_m.least, kRadarStd_m.most, kLidarStd_m.least, kLidarStd_m.most, 100 * kErringShare,
+      kMonitoring.least, kMonitoring.most);
 }
 
 }  // namespace
