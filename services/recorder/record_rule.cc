@@ -52,7 +52,7 @@ RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
 TimePoint RecordRule::Fire(TimePoint now) {
   if (!listening_) ListenToStatus();
   while (Running() && next() <= newest() && (Complete(next()) || GivenUp(next(), now))) {
-    const TimePoint due = std::ranges::max(inputs(), {}, &Input::heard).heard;
+    const TimePoint due = std::ranges::max_element(inputs(), {}, &Input::heard)->heard;
     ComputeDue(next(), due, now);
   }
   if (!Running() || next() > newest()) return now + kHeartbeat;

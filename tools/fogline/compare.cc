@@ -196,7 +196,7 @@ int RunCompare(const CompareArguments& arguments) {
 
 void AddCompare(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "compare", "Compare a run's host with a real car recorded behind the same leader");
+      "compare", "Compare a run's host with a recorded car behind the same leader");
   const auto arguments = std::make_shared<CompareArguments>();
   verb->add_option("LOG", arguments->log, "Event log of a run behind the recorded leader")
       ->required();
