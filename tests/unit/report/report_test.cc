@@ -178,7 +178,7 @@ TEST(MakeReportTest, HasNoTableSectionWithoutATable) {
 TEST(MakeReportTest, ListsTheScenarioFieldsThatDifferAndNoOthers) {
   const std::string table = SectionOf(MakeReport(ExampleRuns(10), {}), "differences");
   EXPECT_THAT(table, HasSubstr("/arbitrator/threshold"));
-  EXPECT_THAT(table, HasSubstr("<td>automation</td><td>traded</td>"));
+  EXPECT_THAT(table, HasSubstr("<td>none</td><td>traded</td>"));
   EXPECT_THAT(table, Not(HasSubstr("/fog/start_s")));
 }
 

@@ -86,8 +86,8 @@ TEST(LoaderTest, ReportsAllMistakesInTheOrderOfTheFile) {
 }
 
 TEST(LoaderTest, RefusesAnEmptyKeyWithoutASuggestion) {
-  EXPECT_EQ(MistakesOf(R"({"version": 1, "measures": {"": 1}})")[0].message,
-            "unknown key; known here are \"safety_floor_m\"");
+  EXPECT_EQ(MistakesOf(R"({"version": 1, "minimal_risk": {"": 1}})")[0].message,
+            "unknown key; known here are \"deceleration_mps2\", \"jerk_mps3\"");
 }
 
 TEST(LoaderTest, PrintsTwentyMistakesAndTheNumberOfTheOthers) {
@@ -168,10 +168,10 @@ TEST(ExplainTest, ListsTheChoicesWithTheirMeaning) {
 }
 
 TEST(ExplainTest, ListsTheFieldsOfASectionAndOfTheWhole) {
-  EXPECT_THAT(
-      ExplainField("/measures"),
-      testing::HasSubstr("/measures/safety_floor_m  a number in [0, 10] m, default 0.001 m"));
-  EXPECT_THAT(ExplainField("/"), testing::HasSubstr("    /world         The cars at step 0"));
+  EXPECT_THAT(ExplainField("/minimal_risk"),
+              testing::HasSubstr(
+                  "/minimal_risk/jerk_mps3          a number in [0.1, 100] m/s3, default 1"));
+  EXPECT_THAT(ExplainField("/"), testing::HasSubstr("    /world             The cars at step 0"));
   EXPECT_EQ(ExplainField("/"), ExplainField(""));
 }
 
