@@ -227,7 +227,7 @@ function makeChart(figure) {
   const chart = new uPlot({
     width,
     height: chartHeight(width),
-    padding: [8, 12, 0, 0],
+    padding: [8, points ? 48 : 12, 0, 0],  // room for the last category's slanted name
     legend: {show: false},
     series: [{}, ...figure.series.map((series, i) => ({
       show: series.shown,

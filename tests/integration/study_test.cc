@@ -1,0 +1,127 @@
+// `fogline study` as a person uses it.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Outcome Study(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {Program("fogline"), "study"});
+  return RunCommand(arguments);
+}
+
+std::string Read(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The files of a folder by name, with their bytes.
+std::vector<std::pair<std::string, std::string>> Files(const std::filesystem::path& folder) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files.emplace_back(entry.path().filename(), Read(entry.path()));
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+std::size_t Lines(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
+  const ScratchFolder folder;
+  // WHEN the study of conflict measures is made twice
+  const std::string one = folder.File("one");
+  const std::string two = folder.File("two");
+  const Outcome first =
+      Study({"conflict", "--seeds", "1:3", "--jobs", "1", "--out", one, "--json"});
+  const Outcome second = Study({"conflict", "--seeds", "1:3", "--jobs", "2", "--out", two});
+  ASSERT_EQ(first.code, 0) << first.err;
+  ASSERT_EQ(second.code, 0) << second.err;
+  // THEN there are the files that it names, equal ones
+  const nlohmann::json said = nlohmann::json::parse(first.out);
+  EXPECT_EQ(said["studies"][0]["seeds"], "1:3");
+  EXPECT_TRUE(std::filesystem::exists(said["report"].get<std::string>()));
+  for (const auto& file : said["studies"][0]["files"]) {
+    EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
+  }
+  EXPECT_EQ(Files(one), Files(two));
+  // AND every measure in two fog models, five visibilities and three noises
+  EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + 24U * 2 * 5 * 3);
+  EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["findings"][0]));
+}
+
+TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
+  const ScratchFolder folder;
+  const Outcome all = Study({"all", "--seeds", "7", "--out", folder.path(), "--json"});
+  ASSERT_EQ(all.code, 0) << all.err;
+  const std::string page = Read(folder.File("studies.html"));
+  EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
+  const nlohmann::json said = nlohmann::json::parse(all.out);
+  EXPECT_EQ(said["studies"].size(), 7U);
+  for (const auto& study : said["studies"]) {
+    EXPECT_THAT(page, HasSubstr("<section id=\"" + study["name"].get<std::string>() + "\""));
+    EXPECT_FALSE(study["findings"].empty()) << study["name"];
+    EXPECT_TRUE(std::filesystem::exists(folder.File(study["name"].get<std::string>() + ".csv")));
+  }
+}
+
+TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
+  const Outcome name = Study({"levitate"});
+  EXPECT_EQ(name.code, 2);
+  EXPECT_THAT(name.err, StartsWith("fogline study: error: no study \"levitate\"; there are "));
+  const Outcome seeds = Study({"policy", "--seeds", "3:1"});
+  EXPECT_EQ(seeds.code, 2);
+  const Outcome folder = Study({"policy", "--seeds", "1", "--scenarios", "/nowhere"});
+  EXPECT_EQ(folder.code, 2);
+  EXPECT_THAT(folder.err, StartsWith("/nowhere/paper.json: error: "));
+}
+
+/// Waits until a program has begun to compute on several threads.
+bool WaitForThreads(pid_t pid) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const std::filesystem::path tasks = "/proc/" + std::to_string(pid) + "/task";
+  while (std::chrono::steady_clock::now() < end) {
+    std::error_code gone;
+    const std::filesystem::directory_iterator threads(tasks, gone);
+    if (gone) return false;
+    if (std::distance(begin(threads), std::filesystem::end(threads)) > 1) return true;
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return false;
+}
+
+TEST(StudyVerbTest, AnInterruptLeavesNoFileOfTheStudyThatItStops) {
+  const ScratchFolder folder;
+  const std::string out = folder.File("never");
+  Background study({Program("fogline"), "study", "conflict", "--seeds", "1:100000", "--jobs", "2",
+                    "--out", out});
+  ASSERT_TRUE(WaitForThreads(study.pid())) << study.Err();
+  study.Signal(SIGINT);
+  EXPECT_EQ(study.Wait(), 130);
+  EXPECT_EQ(study.Err(),
+            "fogline study: interrupted in study conflict; its files are not written\n");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace fogline::test

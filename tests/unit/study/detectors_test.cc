@@ -1,0 +1,82 @@
+#include "tools/study/detectors.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+// A run of 100 s whose score first passes each of these at that time.
+ClearRun Run(std::vector<ClearRun::Record> records) {
+  return {.records = std::move(records), .scores = {}, .duration_s = 100};
+}
+
+TEST(AlarmCountTest, EachRunEndsAtItsFirstAlarm) {
+  const std::vector runs{Run({{0, 0}, {2, 10}, {5, 60}}), Run({{1, 0}, {3, 30}})};
+  const AlarmCount high = CountAlarms(runs, 4);
+  EXPECT_EQ(high.alarms, 1);
+  EXPECT_EQ(high.time_s, 60 + 100);
+  const AlarmCount low = CountAlarms(runs, 2);
+  EXPECT_EQ(low.alarms, 2);
+  EXPECT_EQ(low.time_s, 10 + 30);
+  EXPECT_EQ(low.ArlZero_s(), 20);
+}
+
+TEST(AlarmCountTest, BoundsAreThoseOfAPoissonCount) {
+  // Tables of Garwood's bounds: 10 events are 4.795 to 18.390; none are at most 3.689.
+  const auto [low, high] = AlarmCount{.alarms = 10, .time_s = 1000}.ArlZeroBounds_s();
+  EXPECT_NEAR(low, 1000 / 18.390, 0.01);
+  EXPECT_NEAR(high, 1000 / 4.7954, 0.01);
+  const AlarmCount none{.alarms = 0, .time_s = 1000};
+  EXPECT_TRUE(std::isinf(none.ArlZero_s()));
+  EXPECT_NEAR(none.ArlZeroBounds_s().first, 1000 / 3.6889, 0.01);
+  EXPECT_TRUE(std::isinf(none.ArlZeroBounds_s().second));
+}
+
+TEST(CalibrateThresholdTest, IsTheLeastThatIsQuietEnough) {
+  std::vector<ClearRun> runs;
+  for (int i = 1; i <= 10; ++i) runs.push_back(Run({{0, 0}, {static_cast<double>(i), 50}}));
+  // Above k, 10 - k runs give an alarm after 50 s and k last 100 s: 50 + 100 k/(10 - k) s.
+  const double threshold = CalibrateThreshold(runs, 300);
+  EXPECT_GT(threshold, 7);
+  EXPECT_LE(threshold, 8);
+  EXPECT_GE(CountAlarms(runs, threshold).ArlZero_s(), 300);
+  EXPECT_LT(CountAlarms(runs, std::nextafter(7.0, 0.0)).ArlZero_s(), 300);
+}
+
+TEST(CalibrateThresholdTest, IsAboveAllScoresWhereTheGreatestComesTooOften) {
+  const std::vector runs(5, Run({{0, 0}, {1, 2}}));
+  const double threshold = CalibrateThreshold(runs, 600);
+  EXPECT_GT(threshold, 1);
+  EXPECT_EQ(CountAlarms(runs, threshold).alarms, 0);
+}
+
+TEST(AreaUnderRocTest, IsTheShareOfPairsInOrderTiesCountedHalf) {
+  const std::array clear{1.0, 2.0, 3.0, 4.0};
+  EXPECT_EQ(AreaUnderRoc(std::array{5.0, 6.0}, clear), 1);
+  EXPECT_EQ(AreaUnderRoc(std::array{0.0}, clear), 0);
+  EXPECT_EQ(AreaUnderRoc(std::array{2.0}, clear), 1.5 / 4);
+  EXPECT_EQ(AreaUnderRoc(clear, clear), 0.5);
+}
+
+TEST(TruePositivesTest, TakesTheThresholdFromTheQuantileOfClearAir) {
+  const std::array clear{1.0, 2.0, 3.0, 4.0};
+  const std::array fog{0.5, 2.5, 3.5, 4.5};
+  EXPECT_EQ(TruePositives(fog, clear, 0), 0.25);
+  EXPECT_EQ(TruePositives(fog, clear, 0.25), 0.5);
+  EXPECT_EQ(TruePositives(fog, clear, 0.5), 0.75);
+  EXPECT_EQ(TruePositives(fog, clear, 1), 1);
+}
+
+TEST(TruePositivesTest, EqualScoresInClearAirDoNotHideFalsePositives) {
+  // Half of clear air is at 1: no threshold at 1 gives 10 % of false positives, the next is above.
+  const std::array clear{0.0, 0.0, 1.0, 1.0};
+  EXPECT_EQ(TruePositives(std::array{1.0, 2.0}, clear, 0.1), 0.5);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,51 @@
+#include "tools/study/estimate.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
+  // Mean 2, deviation 1, t of 2 degrees of freedom 4.302653: 2 +- 4.302653/sqrt(3).
+  const Estimate estimate = EstimateOf(std::array{1.0, kNone, 2.0, 3.0});
+  EXPECT_EQ(estimate.n, 3);
+  EXPECT_EQ(estimate.mean, 2);
+  EXPECT_NEAR(estimate.low, 2 - 2.484138, 1e-6);
+  EXPECT_NEAR(estimate.high, 2 + 2.484138, 1e-6);
+}
+
+TEST(EstimateTest, OfOneValueHasNoInterval) {
+  const Estimate estimate = EstimateOf(std::array{5.0});
+  EXPECT_EQ(estimate.mean, 5);
+  EXPECT_TRUE(std::isnan(estimate.low));
+  EXPECT_EQ(VerdictOf(estimate), Verdict::kUndecided);
+  EXPECT_TRUE(std::isnan(EstimateOf({}).mean));
+}
+
+TEST(PairedDifferenceTest, IsKnownExactlyWhereOnlyTheNoiseOfThePairsDiffers) {
+  const Estimate difference =
+      PairedDifference(std::array{10.5, 90.5, 50.5, 7.0}, std::array{10.0, 90.0, 50.0, kNone});
+  EXPECT_EQ(difference.n, 3);
+  EXPECT_EQ(difference.low, 0.5);
+  EXPECT_EQ(difference.high, 0.5);
+  EXPECT_EQ(VerdictOf(difference), Verdict::kMore);
+}
+
+TEST(VerdictTest, IsUndecidedWhereTheIntervalHasZeroInIt) {
+  EXPECT_EQ(VerdictOf({.n = 9, .mean = 1, .deviation = 1, .low = -0.1, .high = 2.1}),
+            Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf({.n = 9, .mean = 0, .deviation = 0, .low = 0, .high = 0}),
+            Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf({.n = 9, .mean = -1, .deviation = 1, .low = -2, .high = -0.1}),
+            Verdict::kLess);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,35 @@
+#include "tools/study/findings.h"
+
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+TEST(DifferenceTextTest, SaysMoreLessOrThatNobodyCanTell) {
+  EXPECT_EQ(DifferenceText({.n = 9, .mean = 1.5, .deviation = 1, .low = 1, .high = 2}, "points", 1,
+                           " than before"),
+            "1.5 [1.0, 2.0] points more than before");
+  EXPECT_EQ(DifferenceText({.n = 9, .mean = -1.5, .deviation = 1, .low = -2, .high = -1}, "m", 1),
+            "1.5 [1.0, 2.0] m less");
+  EXPECT_EQ(
+      DifferenceText({.n = 9, .mean = -0.5, .deviation = 1, .low = -1.5, .high = 0.5}, "m", 1),
+      "0.5 [−0.5, 1.5] m less, which is no difference that 9 pairs of runs can tell");
+}
+
+TEST(ListTextTest, JoinsNames) {
+  EXPECT_EQ(ListText({}), "");
+  EXPECT_EQ(ListText({"a"}), "a");
+  EXPECT_EQ(ListText({"a", "b", "c"}), "a, b and c");
+}
+
+TEST(ComparedMeasuresTest, HasSafetyImprovementCollisionsAndEveryMeasureOfARun) {
+  EXPECT_EQ(PlaceOfMeasure("si_pct"), 0U);
+  EXPECT_EQ(PlaceOfMeasure("collided"), 1U);
+  EXPECT_GT(PlaceOfMeasure("max_handover_jerk_mps3"), 1U);
+  EXPECT_THROW(PlaceOfMeasure("levity"), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace fogline
