@@ -59,6 +59,7 @@ void RealtimeRule::CountLate(std::size_t input) {
 }
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
+  NoticeOwnPause(time);  // before anything is judged by a clock that has to stand still for it
   newest_ = std::max(newest_, step);
   if (inputs()[input].on_demand) return;
   if (input == tick_input_) {
@@ -69,10 +70,10 @@ void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time)
 }
 
 TimePoint RealtimeRule::Poll(TimePoint now) {
+  NoticeOwnPause(std::max(now, Clock::now()));
   bus().Drain();  // a backlog counts as a whole
   if (!Running()) return now;
   now = std::max(now, Clock::now());  // a backlog takes its time
-  NoticeOwnPause(now);
   const TimePoint health_at = UpdateHealth(now);
   const TimePoint fire_at = Fire(now);
   return wake_ = std::min({now + kHeartbeat, health_at, fire_at});
@@ -82,6 +83,7 @@ void RealtimeRule::NoticeOwnPause(TimePoint now) {
   if (wake_ == TimePoint::max() || now <= wake_) return;
   const Duration late = now - wake_;
   if (late > kGrace * std::chrono::duration<double>(period_)) paused_ += late;
+  wake_ = TimePoint::max();  // once
 }
 
 TimePoint RealtimeRule::Fire(TimePoint now) {

@@ -78,11 +78,14 @@ TEST_P(RealtimeUnderLoadTest, MissesNothingAndGrowsNowhere) {
                   "/step_s=" + std::to_string(1.0 / GetParam().rate_hz), "--log", log},
                  std::chrono::seconds(static_cast<int>(seconds) + 60));
   ASSERT_EQ(run.code, 0) << run.err;
-  const auto realtime = nlohmann::json::parse(run.out)["realtime"];
+  const auto result = nlohmann::json::parse(run.out);
+  const auto realtime = result["realtime"];
   std::cout << realtime.dump(2) << "\n";
   EXPECT_EQ(realtime["ticks"], steps);
   EXPECT_EQ(realtime["missed_messages"], 0)
       << "the hypervisor took the processors away for " << StolenMs() - stolen_before_ms << " ms";
+  EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
+  EXPECT_EQ(result["refused"]["out_of_window"], 0) << "somebody says what cannot be";
   EXPECT_TRUE(realtime["ticks_late"].is_number());
   EXPECT_GT(realtime["latency_p99_us"], 0);
 
