@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <sstream>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +18,7 @@
 #include "scenario/wording.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/verbs.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -175,14 +176,26 @@ nlohmann::ordered_json ToJson(const CompareArguments& arguments, const Compariso
 int RunCompare(const CompareArguments& arguments) {
   const LoggedRun run = ReadLoggedRun(arguments.log);
   if (run.result.samples.empty()) Refuse(arguments.log, "no steps");
+  if (run.scenario.lead.profile != LeadProfile::kRecorded) {
+    Refuse(arguments.log, "/lead/profile: the leader of this run is not a recorded one");
+  }
   const RecordedSection& recorded = run.scenario.lead.recorded;
   const Recording recording = ReadRecording(arguments, recorded.time_column);
   CheckTimes(recording.times_s, recorded.start_s + run.result.samples.front().time_s,
              recorded.start_s + run.result.samples.back().time_s, arguments.recording);
-  std::optional<std::ofstream> out;
-  if (!arguments.out.empty()) out.emplace(arguments.out);
-  const Comparison comparison = Compare(run, recording, out ? &*out : nullptr);
-  if (out && !out->flush()) Refuse(arguments.out, "--out: cannot write");
+  std::optional<WholeFile> file;
+  if (!arguments.out.empty()) {
+    if (std::filesystem::exists(arguments.out)) {
+      Refuse(arguments.out, "--out: the file exists and stays as it is");
+    }
+    file.emplace(arguments.out);
+  }
+  std::ostringstream out;
+  const Comparison comparison = Compare(run, recording, file ? &out : nullptr);
+  if (file) {
+    file->Write(out.str());
+    file->Finish();
+  }
   if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
   if (arguments.json) {
     PrintJson(ToJson(arguments, comparison).dump(2));

@@ -96,7 +96,7 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
 int RunEventsVerb(const EventsArguments& arguments) {
   auto rows = nlohmann::ordered_json::array();
   bool complete = true;
-  for (const std::filesystem::path& file : arguments.logs) {
+  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& file) {
     const RunEvents events = ReadEvents(file);
     complete = complete && events.run.complete;
     if (!events.run.note.empty()) fmt::print(stderr, "{}: {}\n", file.string(), events.run.note);
@@ -110,8 +110,9 @@ int RunEventsVerb(const EventsArguments& arguments) {
     } else {
       PrintText(file, events);
     }
-  }
+  });
   if (arguments.json) PrintJson(rows.dump(2));
+  if (!readable) return kBadInput;
   return complete ? kDone : kCheckFailed;
 }
 

@@ -39,6 +39,18 @@ struct Made {
   StudyResult result;
 };
 
+// Every run of a study stays in memory until the study ends.
+constexpr std::int64_t kMostSeeds = 100'000;
+
+/// @throws InputError
+SeedRange SeedsOf(const std::string& text) {
+  const SeedRange seeds = ParseSeeds(text);
+  if (seeds.count() > kMostSeeds) {
+    throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
+  }
+  return seeds;
+}
+
 std::string Names() {
   std::string names;
   for (const Study& study : Studies()) names += fmt::format("{}, ", study.name);
@@ -58,7 +70,7 @@ std::vector<const Study*> Chosen(const std::string& name) {
 }
 
 Made Make(const Study& study, const StudyArguments& arguments) {
-  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : ParseSeeds(arguments.seeds);
+  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : SeedsOf(arguments.seeds);
   std::optional<Progress> progress;
   const StudyContext context{.scenarios = arguments.scenarios,
                              .seeds = seeds,
@@ -127,7 +139,7 @@ void PrintText(const StudyArguments& arguments, const Made& made) {
 
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
-  if (!arguments.seeds.empty()) ParseSeeds(arguments.seeds);
+  if (!arguments.seeds.empty()) SeedsOf(arguments.seeds);
   WatchInterrupts();
   std::vector<Made> all;
   std::vector<StudySection> sections;

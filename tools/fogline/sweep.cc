@@ -87,6 +87,9 @@ int RunSweepVerb(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) return Merge(arguments);
   const SweepPlan plan = MakePlan(arguments);
   const Shard shard = ParseShard(arguments.shard);
+  Scenario first = plan.base();  // what cannot be is refused before a file is there
+  plan.Configure(plan.ShardBegin(shard), 0, first);
+  CheckPossible(first, arguments.scenario);
   std::filesystem::path out = arguments.out;
   if (out.empty()) out = fmt::format("{}-sweep.csv", arguments.scenario.stem().string());
   SweepFile file(out, plan, shard, arguments.force);

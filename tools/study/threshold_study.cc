@@ -63,9 +63,12 @@ Scenario Draw(Scenario scenario, std::int64_t seed) {
   return scenario;
 }
 
-const std::vector<std::string> kMixed{"/lead/profile=sinusoid", "/human/sight=fog",
-                                      "/followers/driver=drawn", "/followers/style=drawn",
-                                      "/arbitrator/missing_lidar=conflict"};
+const std::vector<std::string> kMixed{"/lead/profile=sinusoid",
+                                      "/human/sight=fog",
+                                      "/followers/driver=drawn",
+                                      "/followers/style=drawn",
+                                      "/arbitrator/missing_lidar=conflict",
+                                      "/arbitrator/adaptive/most=1"};
 
 /// A rule with a parameter that trades engagement for safety.
 struct Family {
@@ -73,12 +76,13 @@ struct Family {
   std::vector<StudyVariant> members;
 };
 
-Family FamilyOf(std::string policy, std::string_view pointer, std::span<const double> values) {
-  Family family{.name = std::move(policy), .members = {}};
+Family FamilyOf(std::string name, std::string_view policy, std::string_view pointer,
+                std::span<const double> values) {
+  Family family{.name = std::move(name), .members = {}};
   for (const double value : values) {
-    family.members.push_back({fmt::format("{} {:g}", family.name, value),
-                              {fmt::format("/arbitrator/policy={}", family.name),
-                               fmt::format("{}={:g}", pointer, value)}});
+    family.members.push_back(
+        {fmt::format("{} {:g}", family.name, value),
+         {fmt::format("/arbitrator/policy={}", policy), fmt::format("{}={:g}", pointer, value)}});
   }
   return family;
 }
@@ -86,13 +90,13 @@ Family FamilyOf(std::string policy, std::string_view pointer, std::span<const do
 std::vector<Family> Families() {
   std::vector<double> fixed;
   for (int percent = 2; percent < 100; percent += 4) fixed.push_back(percent / 100.0);
-  constexpr std::array kBases{0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+  constexpr std::array kBases{0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98};
   constexpr std::array kCosts{0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
-  std::vector<Family> families{FamilyOf("traded", "/arbitrator/threshold", fixed),
-                               FamilyOf("adaptive", "/arbitrator/threshold", kBases),
-                               FamilyOf("bayes", "/arbitrator/bayes/human_cost", kCosts),
-                               FamilyOf("availability", "/arbitrator/threshold", kBases)};
-  families.front().name = "fixed";
+  std::vector<Family> families{
+      FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
+      FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
+      FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
+      FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
   return families;
 }
 

@@ -58,7 +58,7 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
       context, Cases(),
       {{"none", {"/arbitrator/policy=none"}},
        {"traded", {"/arbitrator/policy=traded"}},
-       {"traded, jerk-limited",
+       {"traded jerk-limited",
         {"/arbitrator/policy=traded", "/arbitrator/transfer/profile=jerk_limited"}}});
   StudyResult result;
   result.runs = comparison.runs();
