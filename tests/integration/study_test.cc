@@ -91,6 +91,9 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
   EXPECT_THAT(name.err, StartsWith("fogline study: error: no study \"levitate\"; there are "));
   const Outcome seeds = Study({"policy", "--seeds", "3:1"});
   EXPECT_EQ(seeds.code, 2);
+  const Outcome many = Study({"policy", "--seeds", "0:8734253822779143"});
+  EXPECT_EQ(many.code, 2);
+  EXPECT_THAT(many.err, StartsWith("fogline study: error: --seeds 0:8734253822779143: more than "));
   const Outcome folder = Study({"policy", "--seeds", "1", "--scenarios", "/nowhere"});
   EXPECT_EQ(folder.code, 2);
   EXPECT_THAT(folder.err, StartsWith("/nowhere/paper.json: error: "));

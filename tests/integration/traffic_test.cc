@@ -148,6 +148,26 @@ class CompareTest : public testing::Test {
   ScratchFolder folder_;
 };
 
+TEST_F(CompareTest, ReplacesNoFile) {
+  const std::string recording = Recording();
+  const auto size = std::filesystem::file_size(recording);
+  const Outcome outcome = Compare({recording, "--out", recording});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("--out: the file exists and stays as it is"), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(recording), size);
+}
+
+TEST_F(CompareTest, RefusesARunBehindNoRecordedLeader) {
+  const std::string log = folder_.File("paper.lcm");
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                        "--set", "/steps=20", "--log", log})
+                .code,
+            0);
+  const Outcome outcome = RunCommand({Program("fogline"), "compare", log, Recording()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("/lead/profile"), std::string::npos) << outcome.err;
+}
+
 TEST_F(CompareTest, GivesTheRootMeanSquareOfBothDifferences) {
   const Outcome outcome = Compare({Recording(), "--json", "--out", folder_.File("both.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
