@@ -177,7 +177,7 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   const auto replay = [&] {
     for (const Message& message : announcements) intruder.Say("RUN", message);
   };
-  // WHEN they are said again to a driver that waits for a run
+  // WHEN they are said again, for a second, to a driver that waits for a run
   Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
   for (int i = 0; i < 50; ++i) {
     replay();

@@ -31,8 +31,8 @@ Buffer Hello(std::uint32_t magic = kClientMagic) {
   return stream;
 }
 
-/// A session as a client would send it.
-Buffer Session() {
+/// What a client sends, from its greeting on.
+Buffer ClientStream() {
   Buffer stream = Hello();
   AppendFrame(FrameType::kSubscribe, "TRUTH|HOST_.*", {}, stream);
   AppendFrame(FrameType::kPublish, "TRUTH", Ramp(300), stream);
@@ -73,7 +73,7 @@ Buffer Claim(std::initializer_list<std::uint32_t> words, std::string_view name =
 
 TEST(FrameParserTest, GivesBackWhatWasSent) {
   FrameParser parser(kClientMagic, {});
-  parser.Append(Session());
+  parser.Append(ClientStream());
   std::vector<Kept> frames;
   TakeAll(parser, frames);
   ASSERT_EQ(frames.size(), 5U);
@@ -99,7 +99,7 @@ TEST(FrameParserTest, HasTheWireFormatOfLcm) {
 
 TEST(FrameParserTest, KeepsTheWireBytesOfAFrame) {
   FrameParser parser(kClientMagic, {});
-  const Buffer stream = Session();
+  const Buffer stream = ClientStream();
   parser.Append(stream);
   std::vector<Kept> frames;
   TakeAll(parser, frames);
@@ -111,7 +111,7 @@ TEST(FrameParserTest, KeepsTheWireBytesOfAFrame) {
 }
 
 TEST(FrameParserTest, DoesNotCareHowTheStreamIsCut) {
-  const Buffer stream = Session();
+  const Buffer stream = ClientStream();
   FrameParser whole(kClientMagic, {});
   whole.Append(stream);
   std::vector<Kept> expected;
@@ -164,7 +164,7 @@ TEST(FrameParserTest, GivesNothingMoreAfterAnError) {
   EXPECT_FALSE(parser.Next());
   const std::string error = parser.error();
   ASSERT_NE(error, "");
-  parser.Append(Session());
+  parser.Append(ClientStream());
   EXPECT_FALSE(parser.Next());
   EXPECT_EQ(parser.error(), error);
 }
@@ -177,7 +177,7 @@ TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
   int refused = 0;
   constexpr int kStreams = 3000;
   for (int i = 0; i < kStreams; ++i) {
-    Buffer stream = Session();
+    Buffer stream = ClientStream();
     for (std::size_t n = below(4); n > 0; --n) {
       stream[below(below(2) == 0 ? 60 : stream.size())] = static_cast<std::uint8_t>(below(256));
     }
