@@ -20,6 +20,9 @@ constexpr Duration kRepeatEvery = milliseconds(200);
 constexpr Duration kPartsEvery = milliseconds(10);
 // A role without a STATUS for this long (five heartbeats) counts as silent.
 constexpr Duration kSilent = milliseconds(1000);
+// If the runner itself has not looked for so long (the machine was suspended, its disk held it up,
+// Ctrl-Z), what it has not heard in that time means nothing.
+constexpr Duration kAway = milliseconds(500);
 // A STATUS may be so long on its way; later than that its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
 
@@ -45,7 +48,9 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
       host_(HostName()),
-      began_(Clock::now()) {
+      began_(Clock::now()),
+      looked_(began_),
+      attentive_(began_) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
     OnStatus(*arrival.As<status_t>());
@@ -54,7 +59,20 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
                  {.offset = kHeaderEnd, .texts = {EncodedText(ChannelOf<run_t>().name)}});
 }
 
+void Conductor::Attend(TimePoint now) {
+  const Duration away = now - looked_;
+  looked_ = now;
+  if (away <= kAway) return;
+  attentive_ = now;
+  away_ = std::max(away_, away);
+}
+
+Duration Conductor::HeldAgainst(TimePoint since, TimePoint now) const {
+  return now - std::max(since, attentive_);
+}
+
 TimePoint Conductor::Poll(TimePoint now) {
+  Attend(now);
   const Bus::Unverified unverified = bus_.TakeUnverified();
   own_.not_signed += unverified.not_signed;
   own_.badly_signed += unverified.badly_signed;
@@ -66,10 +84,12 @@ TimePoint Conductor::Poll(TimePoint now) {
     progressed_ = now;
   }
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
-      now - began_ > options_.join_limit) {
+      HeldAgainst(began_, now) > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
   }
-  if (phase_ == Phase::kRunning && now - progressed_ > options_.stall_limit) Fail(Culprit(now));
+  if (phase_ == Phase::kRunning && HeldAgainst(progressed_, now) > options_.stall_limit) {
+    Fail(Culprit(now));
+  }
   if (phase_ == Phase::kJoining || phase_ == Phase::kRunning) AnnounceWhenDue(now);
   return std::min(announce_at_, now + kAnnounceEvery);
 }
@@ -91,8 +111,8 @@ bool Conductor::IsExternal(Role role) const {
 bool Conductor::AllReady(TimePoint now) const {
   return std::ranges::all_of(kRoles, [&](const RoleInfo& info) {
     const Member& role = member(info.role);
-    const bool lost =
-        phase_ == Phase::kRunning && IsExternal(info.role) && now - role.heard > kSilent;
+    const bool lost = phase_ == Phase::kRunning && IsExternal(info.role) &&
+                      HeldAgainst(role.heard, now) > kSilent;
     return role.status && role.status->state != status_t::WAITING && !role.rival && !lost;
   });
 }
@@ -154,6 +174,7 @@ void Conductor::OnStatus(const status_t& heard) {
   if (!role) return Refuse(&status_t::malformed);
   if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;
   const TimePoint now = Clock::now();
+  Attend(now);
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
   if (member.status && status.sequence <= member.status->sequence) return;  // overtaken on its way
@@ -194,7 +215,7 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   if (const auto dead = std::ranges::find_if(member.dead, same); dead != member.dead.end()) {
     // What it said before its death may come late. If it speaks on, it was not dead.
     if (IsExternal(role) && member.status && status.sequence > dead->sequence &&
-        now - member.replaced_at > kOnItsWay) {
+        HeldAgainst(member.replaced_at, now) > kOnItsWay) {
       Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
                        member.status->pid, member.status->host, status.pid, status.host));
     }
@@ -206,7 +227,7 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   if (!member.status) return true;
   if (same(*member.status)) {
     const bool speaks = status.sequence > member.status->sequence;
-    if (speaks && member.rival && now - member.rival_since > kOnItsWay) {
+    if (speaks && member.rival && HeldAgainst(member.rival_since, now) > kOnItsWay) {
       Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
                        status.pid, status.host, member.rival->pid, member.rival->host));
     }
@@ -216,7 +237,7 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
     member.rival = status;
     member.rival_since = now;
   }
-  if (!IsExternal(role) || now - member.heard <= kSilent) return false;
+  if (!IsExternal(role) || HeldAgainst(member.heard, now) <= kSilent) return false;
   if (++member.replaced > options_.restarts) {
     Fail(
         fmt::format("{} was started again as pid {} on {} at step {}, after {} restarts "
@@ -285,7 +306,7 @@ std::string Conductor::Culprit(TimePoint now) const {
   Role waiting = Role::kWorld;
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
     const Member& consumer = member(waiting);
-    if (!consumer.status || now - consumer.heard > kSilent) {
+    if (!consumer.status || HeldAgainst(consumer.heard, now) > kSilent) {
       return fmt::format("step {}: {} is silent (last heard: step {}, {:.1f} s ago)", stuck,
                          NameOf(waiting), consumer.status ? consumer.status->header.step : -1,
                          Seconds(now - consumer.heard));
@@ -297,7 +318,7 @@ std::string Conductor::Culprit(TimePoint now) const {
     // Who has computed what is waited for may wait himself, but for something else.
     const bool done = channel != nullptr && source.status &&
                       source.status->header.step >= stuck - LagOf(producer, waiting);
-    const bool passes_on = source.status && now - source.heard <= kSilent && !done &&
+    const bool passes_on = source.status && HeldAgainst(source.heard, now) <= kSilent && !done &&
                            !source.status->waiting_for.empty() && producer != waiting;
     if (passes_on) {
       waiting = producer;

@@ -43,6 +43,14 @@ class Conductor {
   /// latest
   TimePoint Poll(TimePoint now);
 
+  /// Notes that the runner looks at the clock. Between two looks far apart it was held up itself
+  /// (a suspended machine, a disk, Ctrl-Z), which is held against nobody.
+  void Attend(TimePoint now);
+  /// Time since then in which something could have been heard.
+  Duration HeldAgainst(TimePoint since, TimePoint now) const;
+  /// The longest time that the runner was held up since the last call, 0 if it was not.
+  Duration TakeAway() { return std::exchange(away_, Duration::zero()); }
+
   Phase phase() const { return phase_; }
   /// What went wrong, one line. Empty unless phase() is kFailed.
   const std::string& error() const { return error_; }
@@ -123,6 +131,9 @@ class Conductor {
   std::function<void(const status_t&)> on_status_;
   std::string error_;
   TimePoint began_;
+  TimePoint looked_;     // at the clock, last
+  TimePoint attentive_;  // since when it has looked regularly
+  Duration away_{};
   TimePoint announce_at_{};
   TimePoint parts_at_{};
   std::int64_t sequence_ = 0;  // of what it has said

@@ -27,8 +27,8 @@ constexpr std::size_t kMaxErrorBytes = 700;
 // Announcements that repeat are answered this often at most.
 constexpr Duration kAnnouncedPatience = milliseconds(20);
 // The runner repeats itself five times a second; a role that hears nothing for so long is an
-// orphan.
-constexpr Duration kRunnerSilence = milliseconds(5000);
+// orphan. Disks have been seen to hold a runner up for five seconds.
+constexpr Duration kRunnerSilence = milliseconds(15'000);
 
 /// The requests that a role can answer: for its own channels. The recorder has them all.
 Contents RequestsTo(Role role) {

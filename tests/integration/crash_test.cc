@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <map>
 #include <random>
+#include <thread>
 
 #include "services/runtime/bus.h"
 #include "tests/support/command.h"
@@ -253,6 +254,20 @@ TEST_P(HangTest, IsDetectedAndMended) { ExpectHangersAreStartedAgain({GetParam()
 
 INSTANTIATE_TEST_SUITE_P(Campaign, HangTest, testing::ValuesIn(EveryRole()),
                          [](const auto& role) { return role.param; });
+
+TEST(CrashTest, OfNobodyIsSeenByARunnerThatWasHeldUpItself) {
+  // GIVEN a runner that stands still for longer than anybody may be silent
+  WatchedRun watched({"--stall-timeout", "1"}, 3000);
+  watched.WaitForStep(100);
+  kill(watched.run().pid(), SIGSTOP);
+  std::this_thread::sleep_for(milliseconds(1500));
+  // WHEN it goes on, THEN the run does, too
+  kill(watched.run().pid(), SIGCONT);
+  const auto result = watched.ExpectSameResult();
+  EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
+  EXPECT_THAT(watched.run().Err(),
+              testing::ContainsRegex("warning: the runner was held up for 1\\.[4-9] s at step "));
+}
 
 TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
   WatchedRun watched({"--restarts", "2"});

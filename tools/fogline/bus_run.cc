@@ -129,6 +129,10 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
            conductor.phase() == Conductor::Phase::kRunning) {
       const TimePoint now = Clock::now();
       const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
+      if (const Duration away = conductor.TakeAway(); away > Duration::zero() && options.announce) {
+        progress.Say(fmt::format("warning: the runner was held up for {:.1f} s at step {}",
+                                 std::chrono::duration<double>(away).count(), conductor.step()));
+      }
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
       progress.Show(conductor.step());

@@ -16,8 +16,6 @@ constexpr Duration kLookEvery = milliseconds(20);
 constexpr int kStopRepeats = 5;
 // A process that is not heard of for so long after its start hangs.
 constexpr Duration kStartLimit = milliseconds(5000);
-// If it has not looked for so long (a suspended machine, Ctrl-Z), silence means nothing yet.
-constexpr Duration kAway = milliseconds(500);
 
 std::filesystem::path ProgramOf(Role role) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
@@ -27,15 +25,12 @@ std::filesystem::path ProgramOf(Role role) {
 }  // namespace
 
 Supervisor::Supervisor(Bus& bus, Conductor& conductor, Options options)
-    : bus_(bus),
-      conductor_(conductor),
-      options_(std::move(options)),
-      looked_(Clock::now()),
-      attentive_(looked_) {
+    : bus_(bus), conductor_(conductor), options_(std::move(options)) {
+  const TimePoint now = Clock::now();
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(options_.external, info.role) != options_.external.end()) continue;
     children_.push_back({.role = info.role, .policy = RestartPolicy(options_.restarts)});
-    Start(children_.back(), looked_);
+    Start(children_.back(), now);
   }
 }
 
@@ -56,8 +51,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
 }
 
 void Supervisor::Look(TimePoint now) {
-  if (now - looked_ > kAway) attentive_ = now;
-  looked_ = now;
+  conductor_.Attend(now);
   const std::vector<ProcessGroup::Exit> exits = group_.Collect();
   if (!exits.empty()) {
     // What they said last comes before their end.
@@ -107,7 +101,7 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
 void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   const Conductor::Member& member = conductor_.member(child.role);
   const bool met = member.status && member.status->pid == child.pid;
-  const Duration silent = now - std::max(met ? member.heard : child.started, attentive_);
+  const Duration silent = conductor_.HeldAgainst(met ? member.heard : child.started, now);
   if (!child.hung.empty() || silent < (met ? options_.silence : kStartLimit)) return;
   child.hung = fmt::format("was silent for {:.1f} s and was killed",
                            std::chrono::duration<double>(silent).count());

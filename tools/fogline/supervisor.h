@@ -61,8 +61,6 @@ class Supervisor {
   Options options_;
   ProcessGroup group_;
   std::vector<Child> children_;
-  TimePoint looked_;
-  TimePoint attentive_;  // since when it has looked regularly
 };
 
 }  // namespace fogline

@@ -50,6 +50,11 @@ class ConductorTest : public testing::Test {
     conductor_.Poll(now);
     script_.bus().Drain();
   }
+  /// Looks at the clock until then as often as a runner does.
+  static void PollUntil(Conductor& conductor, TimePoint end) {
+    for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) conductor.Poll(now);
+    conductor.Poll(end);
+  }
   /// Another process takes the place of a role.
   void Replace(Role who) {
     role(who).pid += 1000;
@@ -142,7 +147,7 @@ TEST_F(ConductorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
 TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
   BeAtStep(-1);
   BeAtStep(40);
-  Poll(Clock::now() + milliseconds(3900));
+  PollUntil(conductor_, Clock::now() + milliseconds(3900));
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
   conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   Replace(Role::kFusion);
@@ -150,10 +155,27 @@ TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
     role(Role::kFusion).header.step = step;
     SayStatus(Role::kFusion);
   }
-  Poll(Clock::now() + milliseconds(3900));
+  PollUntil(conductor_, Clock::now() + milliseconds(3900));
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
   EXPECT_EQ(conductor_.step(), 40) << "of the run, not of who catches up";
-  Poll(Clock::now() + milliseconds(4100));
+  PollUntil(conductor_, Clock::now() + milliseconds(4100));
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+}
+
+TEST_F(ConductorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  const TimePoint again = Clock::now() + milliseconds(5000);
+  Poll(again);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning) << conductor_.error();
+  EXPECT_GE(conductor_.TakeAway(), milliseconds(4900));
+  EXPECT_EQ(conductor_.TakeAway(), Duration::zero());
+  // What is not heard from then on counts.
+  for (TimePoint now = again; now < again + milliseconds(3990); now += milliseconds(20)) {
+    conductor_.Poll(now);
+  }
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning) << conductor_.error();
+  conductor_.Poll(again + milliseconds(4010));
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
 }
 
