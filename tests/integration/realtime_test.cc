@@ -137,19 +137,25 @@ TEST(RealtimeTest, RefusesASpeedThatIsNoneOrThatNothingKeeps) {
 }
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
-  RealtimeRun run("scenario/paper.json", 60);
-  const auto result = run.Finish();
-  const auto& realtime = result["realtime"];
-  EXPECT_EQ(realtime["missed_messages"], 0) << realtime.dump(2);
-  EXPECT_EQ(realtime["ticks"], 60);
-  EXPECT_GT(realtime["latency_p50_us"], 0);
-  if (realtime["deadline_misses"] != 0) {
-    GTEST_SKIP() << "this machine was too busy: " << realtime["deadline_misses"]
-                 << " steps had to do without an input, so their results differ";
-  }
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
-  EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
+  std::int64_t misses = 0;
+  // A machine that stands still for half a period disturbs a run, which then says nothing of the
+  // others. It does not do so every time.
+  for (int i = 0; i < 3; ++i) {
+    RealtimeRun run("scenario/paper.json", 60);
+    const auto result = run.Finish();
+    const auto& realtime = result["realtime"];
+    EXPECT_EQ(realtime["missed_messages"], 0) << realtime.dump(2);
+    EXPECT_EQ(realtime["ticks"], 60);
+    EXPECT_GT(realtime["latency_p50_us"], 0);
+    misses = realtime["deadline_misses"];
+    if (misses > 0) continue;
+    EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
+    return;
+  }
+  FAIL() << "no run of three was undisturbed: in the last one " << misses
+         << " steps had to do without an input";
 }
 
 /// How a role fails, in which scenario.
