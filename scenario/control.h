@@ -214,6 +214,16 @@ struct ChoiceNames<BlameChoice> {
   static const std::span<const std::string_view> kDocs;
 };
 
+/// How a measure's score becomes the DoC.
+enum class MeasureScale : std::uint8_t { kLogistic, kProbability };
+template <>
+struct ChoiceNames<MeasureScale> {
+  static constexpr std::array<std::string_view, 2> kNames{"logistic", "probability"};
+  static constexpr std::array<std::string_view, 2> kDocs{
+      "1 / (1 + exp(-measure_slope (score - measure_centre)))",
+      "the score itself, in [0, 1]: for lidar_modes, which is a posterior of all evidence so far"};
+};
+
 enum class ConflictReading { kMeanOfAbsolute, kAbsoluteOfMean };
 template <>
 struct ChoiceNames<ConflictReading> {
@@ -243,6 +253,7 @@ struct ArbitratorSection {
   MissingLidar missing_lidar = MissingLidar::kHold;
   double missing_conflict_m = 10.0;
   MeasureChoice measure = MeasureChoice::kDoc;
+  MeasureScale measure_scale = MeasureScale::kLogistic;
   double measure_slope = 10.0;
   double measure_centre = 0.5;
   double measure_offset_m = 0.0;
@@ -289,17 +300,19 @@ struct ArbitratorSection {
                  {.min = 0, .max = 1000, .unit = "m", .doc = "For missing_lidar conflict."});
     visit.Choice("measure", self.measure,
                  "What the DoC is made of: z as above, or the score of another measure.");
+    visit.Choice("measure_scale", self.measure_scale,
+                 "What makes the DoC of a score, for any measure but doc.");
     visit.Number("measure_slope", self.measure_slope,
                  {.min = 1e-6,
                   .max = 1e6,
                   .unit = "",
-                  .doc = "Slope of the DoC over the score, for any measure but doc.",
+                  .doc = "For measure_scale logistic: slope of the DoC over the score.",
                   .source = "chosen for scores in [0, 1]; the paper's number"});
     visit.Number("measure_centre", self.measure_centre,
                  {.min = -1e6,
                   .max = 1e6,
                   .unit = "",
-                  .doc = "Score at which DoC is 1/2, for any measure but doc.",
+                  .doc = "For measure_scale logistic: score at which DoC is 1/2.",
                   .source = "chosen for scores in [0, 1]"});
     visit.Number("measure_offset_m", self.measure_offset_m,
                  {.min = -10,

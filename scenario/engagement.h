@@ -26,7 +26,7 @@ struct ChoiceNames<Hysteresis> {
   static constexpr std::array<std::string_view, 3> kNames{"none", "band", "sprt"};
   static constexpr std::array<std::string_view, 3> kDocs{
       "the paper's: one threshold for both directions",
-      "the automation returns below threshold - band",
+      "the automation returns below threshold - band, but no lower than half of the threshold",
       "Wald's test: each direction waits for enough evidence (sprt_alpha, sprt_beta)"};
 };
 
@@ -76,7 +76,8 @@ struct TransferSection {
                  {.min = 0,
                   .max = 1,
                   .unit = "",
-                  .doc = "For hysteresis band.",
+                  .doc = "For hysteresis band. More than half of the threshold in force counts as "
+                         "that half, or the wheel would never come back.",
                   .source = "chosen: at least 0.2"});
     visit.Number("sprt_alpha", self.sprt_alpha,
                  {.min = 1e-6,
@@ -165,7 +166,8 @@ struct AdaptiveSection {
 /// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a), with the expected costs
 /// C_h = human_cost + unready_cost (1 - A) + blind_cost min(1, near_m / MOR) of a human who drives,
 /// C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) of an automation
-/// that goes by a wrong distance. A slope of the DoC makes P of the conflict.
+/// that goes by a wrong distance. P is the DoC: a sharp one with the paper's slope, a posterior
+/// with measure lidar_modes and measure_scale probability.
 struct BayesSection {
   double human_cost = 1.0;
   double unready_cost = 3.0;
@@ -207,8 +209,8 @@ struct BayesSection {
 
 /// Policy availability: as traded, but only a driver who can be there in time gets the wheel: the
 /// time until the follower must brake harder than comfort_mps2 is longer than his take-over time
-/// (95th percentile, longer by what readiness lacks). Otherwise the automation stays, on the sensor
-/// that is not to blame.
+/// (95th percentile, longer by what readiness lacks). Otherwise the automation stays. It goes by
+/// the sensor that is not to blame whether he is called or not, as with policy isolate.
 struct AvailabilitySection {
   double comfort_mps2 = 3.0;
   double unready_s = 2.0;
@@ -312,6 +314,10 @@ struct TakeOverParameters {
   }
 };
 
+/// Seconds between a request to take over and the minimal risk manoeuvre, unless it is severe: no
+/// less, whatever the scenario (UN R157, 5.4.4.1).
+inline constexpr double kLeastLead_s = 10.0;
+
 /// Emergency fallback: request, escalation, minimal risk manoeuvre.
 struct TakeOverSection {
   TakeOverMode mode = TakeOverMode::kInstant;
@@ -330,7 +336,7 @@ struct TakeOverSection {
   static void Fields(Self& self, Visitor& visit) {
     visit.Choice("mode", self.mode, "Whether the driver must be asked.");
     visit.Number("lead_s", self.lead_s,
-                 {.min = 1,
+                 {.min = kLeastLead_s,
                   .max = 20,
                   .unit = "s",
                   .doc = "From the request to the minimal risk manoeuvre.",

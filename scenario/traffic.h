@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenario/field.h"
+#include "scenario/human.h"
 
 namespace fogline {
 
@@ -63,6 +64,7 @@ struct FollowersSection {
   double aggressive_share = 1.0;
   double normal_share = 1.0;
   double cautious_share = 1.0;
+  Sight sight = Sight::kPerfect;
   SafetyModelChoice safety_model = SafetyModelChoice::kNone;
   std::vector<FollowerCar> cars;
 
@@ -94,6 +96,8 @@ struct FollowersSection {
     visit.Number(
         "cautious_share", self.cautious_share,
         {.min = 0.001, .max = 1000, .unit = "", .doc = "For style drawn, as aggressive_share."});
+    visit.Choice("sight", self.sight,
+                 "For people: what they see; with fog, by section human.fog_sight.");
     visit.Choice("safety_model", self.safety_model,
                  "What a following person does in danger, on top of following.");
     visit.List("cars", self.cars,

@@ -65,7 +65,7 @@ inline constexpr std::array kRoles{
     RoleInfo{Role::kLidar, "lidar", "measures range; fog deceives it"},
     RoleInfo{Role::kFusion, "fusion", "extended Kalman filter over both sensors"},
     RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
-    RoleInfo{Role::kDriver, "driver", "the human agent: Intelligent Driver Model"},
+    RoleInfo{Role::kDriver, "driver", "the human agent: follows the car ahead by what he sees"},
     RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
     RoleInfo{Role::kFollower, "follower",
              "drives the cars behind the host: the same ACC, or people"},
