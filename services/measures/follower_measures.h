@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "scenario/traffic.h"
 #include "services/graph.h"
+#include "services/measures/running.h"
 
 namespace fogline {
 
@@ -18,7 +18,7 @@ namespace fogline {
 struct FollowerMeasures {
   /// Smallest true gap to the car ahead, m.
   std::optional<double> min_gap_m;
-  /// Smallest time to collision with it, s: gap / closing speed while it closes in (Hayward 1972).
+  /// Smallest time to collision with it, s (Hayward 1972; surrogate.h).
   std::optional<double> min_ttc_s;
   /// Largest compromised safety CS, m, and the mean of CS over the steps in fog: what its gap lacks
   /// of the dynamic safe distance of its own driver (Sourav & Cheng 2024).
@@ -52,10 +52,9 @@ class FollowerAccumulator {
  private:
   struct Car {
     FollowerMeasures measures;  // those that need no final division
-    double sum_fog_m = 0;       // of compromised safety
-    std::int64_t steps_fog = 0;
+    Mean compromised_safety_fog_m;
   };
-  static void AddSafety(bool fog, double shortfall_m, Car& car);
+  static void AddSafety(bool fog, double compromised_m, Car& car);
 
   std::array<Car, static_cast<std::size_t>(kMaxFollowers)> cars_;
   std::size_t num_cars_ = 0;

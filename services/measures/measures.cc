@@ -17,15 +17,6 @@ constexpr double kSameTime_s = 0.5e-6;
 
 bool HumanDrives(const Sample& sample) { return sample.lambda_human > 0; }
 
-// A value that is not there (NaN) changes no extreme.
-void Lower(std::optional<double>& least, double value) {
-  if (!std::isnan(value) && (!least || value < *least)) least = value;
-}
-
-void Raise(std::optional<double>& most, double value) {
-  if (!std::isnan(value) && (!most || value > *most)) most = value;
-}
-
 std::optional<double> Root(std::optional<double> mean_square) {
   if (!mean_square) return std::nullopt;
   return std::sqrt(*mean_square);
@@ -34,19 +25,7 @@ std::optional<double> Root(std::optional<double> mean_square) {
 }  // namespace
 
 double CompromisedSafety(const Sample& sample) {
-  const double shortfall = sample.follower_safe_distance_m - sample.follower_gap_m;
-  return shortfall < 0 ? 0 : shortfall;
-}
-
-void MeasureAccumulator::Mean::Add(double value) {
-  if (std::isnan(value)) return;
-  sum += value;
-  ++count;
-}
-
-std::optional<double> MeasureAccumulator::Mean::Value() const {
-  if (count == 0) return std::nullopt;
-  return sum / static_cast<double>(count);
+  return CompromisedSafety(sample.follower_safe_distance_m, sample.follower_gap_m);
 }
 
 MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)

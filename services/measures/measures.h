@@ -10,6 +10,7 @@
 
 #include "scenario/scenario.h"
 #include "services/measures/detection.h"
+#include "services/measures/running.h"
 #include "services/measures/sample.h"
 #include "services/measures/surrogate.h"
 
@@ -85,9 +86,8 @@ struct RunMeasures {
 template <class Visitor>
 void VisitMeasures(const RunMeasures& m, Visitor&& visit);
 
-/// Compromised safety CS of a step, m: how much of the following car's dynamic safe distance is
-/// missing in its gap to the host, max(0, d_r,f - d_f) (Sourav & Cheng 2024). NaN without a
-/// following car.
+/// Compromised safety of a step, m: of the first following car behind the host (surrogate.h). NaN
+/// without one.
 double CompromisedSafety(const Sample& sample);
 
 /// Collects the measures of a run, sample by sample, in order of steps.
@@ -104,14 +104,6 @@ class MeasureAccumulator {
   RunMeasures Result() const;
 
  private:
-  /// Mean of the values added; those that are not there (NaN) do not count.
-  struct Mean {
-    double sum = 0;
-    std::int64_t count = 0;
-    void Add(double value);
-    std::optional<double> Value() const;
-  };
-
   void AddSafety(const Sample& sample);
   void AddPairs(const Sample& sample);
   void AddAuthority(const Sample& sample);

@@ -53,6 +53,11 @@ double CrashProbability(const MeasuresSection& section, double drac_mps2) {
   return (share(drac_mps2) - least) / mass;
 }
 
+double CompromisedSafety(double safe_distance_m, double gap_m) {
+  const double shortfall_m = safe_distance_m - gap_m;
+  return shortfall_m < 0 ? 0 : shortfall_m;
+}
+
 PairAccumulator::PairAccumulator(const MeasuresSection& section)
     : section_(section),
       rss_{.response_s = section.rss_response_s,

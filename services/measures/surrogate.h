@@ -36,6 +36,10 @@ double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair
 /// normal, truncated (Cunto & Saccomanno 2008).
 double CrashProbability(const MeasuresSection& section, double drac_mps2);
 
+/// Compromised safety CS in m: how much of its driver's dynamic safe distance a car's gap lacks,
+/// max(0, d_r - d) (Sourav & Cheng 2024). NaN if either is.
+double CompromisedSafety(double safe_distance_m, double gap_m);
+
 /// What a pair of cars comes to over a run. nullopt: the run has no step that the measure looks at.
 struct PairMeasures {
   /// Least time to collision, s.

@@ -1,0 +1,39 @@
+// Extremes and means that are known after every value, whatever is still to come.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace fogline {
+
+/// Makes `value` the least so far if it is. A value that is not there (NaN) changes nothing.
+inline void Lower(std::optional<double>& least, double value) {
+  if (!std::isnan(value) && (!least || value < *least)) least = value;
+}
+
+/// The same of the most.
+inline void Raise(std::optional<double>& most, double value) {
+  if (!std::isnan(value) && (!most || value > *most)) most = value;
+}
+
+/// Mean of the values added; those that are not there (NaN) do not count.
+class Mean {
+ public:
+  void Add(double value) {
+    if (std::isnan(value)) return;
+    sum_ += value;
+    ++count_;
+  }
+  /// nullopt without a value.
+  std::optional<double> Value() const {
+    if (count_ == 0) return std::nullopt;
+    return sum_ / static_cast<double>(count_);
+  }
+
+ private:
+  double sum_ = 0;
+  std::int64_t count_ = 0;
+};
+
+}  // namespace fogline
