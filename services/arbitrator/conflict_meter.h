@@ -2,18 +2,17 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "scenario/scenario.h"
 #include "services/conflict/conflict_measure.h"
-#include "services/conflict/degree_of_conflict.h"
+#include "services/conflict/doc.h"
 #include "services/graph.h"
 #include "services/policies/evidence.h"
 
 namespace fogline {
 
 /// DoC = 1/(1 + exp(-slope (x - centre))) of what the scenario's measure says of the conflict: of z
-/// (degree_of_conflict.h), as the paper has it, or of the score x of any other row of
+/// (services/conflict/doc.h), as the paper has it, or of the score x of any other row of
 /// services/conflict/measures.cc.
 class ConflictMeter {
  public:
@@ -22,28 +21,23 @@ class ConflictMeter {
   /// The values of a step. `track` is the witness of measures that need one; it is left out unless
   /// it is of the same step.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
-    if (measure_) return Measure(radar, lidar, track);
-    const bool both = radar.valid && lidar.valid;
-    if (both) last_difference_m_ = radar.range_m - lidar.range_m;
-    window_.Push(both ? last_difference_m_ : MissingDifference());
+    Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
+    if (!measure_) return doc_.Observe(evidence);
+    if (track.header.step == radar.header.step) {
+      evidence.prediction = witness_.Prediction(track, radar, lidar);
+    }
+    score_ = measure_->Step(evidence);
   }
 
   /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
-  double conflict() const { return measure_ ? score_ : window_.Conflict(reading_); }
+  double conflict() const { return measure_ ? score_ : doc_.conflict_m(); }
   /// DoC of such a conflict.
   double DocOf(double conflict) const { return DegreeOfConflict(conflict, slope_, centre_); }
 
  private:
-  void Measure(const radar_t& radar, const lidar_t& lidar, const track_t& track);
-  std::optional<double> MissingDifference() const;
-
-  ConflictReading reading_;
-  MissingLidar missing_;
-  double missing_conflict_m_;
   double slope_;  // of the DoC, over z or score
   double centre_;
-  ConflictWindow window_;
-  std::optional<double> last_difference_m_;  // of the last step with both values
+  Doc doc_;
   Witness witness_;
   std::unique_ptr<ConflictMeasure> measure_;  // none for doc
   double score_ = 0;

@@ -13,10 +13,14 @@ Doc::Doc(const ConflictParameters& parameters)
       slope_pm_(parameters.doc_slope_pm),
       centre_m_(parameters.doc_centre_m) {}
 
-double Doc::Step(const Evidence& evidence) {
+void Doc::Observe(const Evidence& evidence) {
   const std::optional<Disagreement> disagreement = source_.Next(evidence);
   window_.Push(disagreement ? std::optional(disagreement->difference_m) : std::nullopt);
-  return DegreeOfConflict(window_.Conflict(reading_), slope_pm_, centre_m_);
+}
+
+double Doc::Step(const Evidence& evidence) {
+  Observe(evidence);
+  return DegreeOfConflict(conflict_m(), slope_pm_, centre_m_);
 }
 
 void Doc::Reset() {

@@ -17,6 +17,11 @@ class Doc final : public ConflictMeasure {
   double Step(const Evidence& evidence) override;
   void Reset() override;
 
+  /// The two halves of a Step: the step takes its place in the window, ...
+  void Observe(const Evidence& evidence);
+  /// ... and what the window holds is z, in m.
+  double conflict_m() const { return window_.Conflict(reading_); }
+
  private:
   DisagreementSource source_;
   ConflictWindow window_;

@@ -43,14 +43,6 @@ const BlameMeasureRow& RowOf(BlameChoice choice) {
   return BlameMeasures()[static_cast<std::size_t>(choice)];
 }
 
-StatedRange StatedBy(const radar_t& radar) {
-  return {.valid = radar.valid != 0, .range_m = radar.range_m, .std_m = radar.range_std_m};
-}
-
-StatedRange StatedBy(const lidar_t& lidar) {
-  return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
-}
-
 Witness::Witness(const FusionSection& section)
     : radar_variance_m2_(section.radar_range_std_m * section.radar_range_std_m),
       lidar_variance_m2_(section.lidar_range_std_m * section.lidar_range_std_m) {}

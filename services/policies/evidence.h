@@ -16,8 +16,12 @@ const ConflictMeasureRow& RowOf(MeasureChoice choice);
 const BlameMeasureRow& RowOf(BlameChoice choice);
 
 /// Range and standard deviation as the sensor states them.
-StatedRange StatedBy(const radar_t& radar);
-StatedRange StatedBy(const lidar_t& lidar);
+inline StatedRange StatedBy(const radar_t& radar) {
+  return {.valid = radar.valid != 0, .range_m = radar.range_m, .std_m = radar.range_std_m};
+}
+inline StatedRange StatedBy(const lidar_t& lidar) {
+  return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
+}
 
 /// What the filter predicted before it used the values of its step: measured value less innovation,
 /// with the innovation's variance less the noise that the filter assumes of the sensor. By the
