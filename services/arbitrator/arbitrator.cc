@@ -3,12 +3,6 @@
 #include "services/policies/policies.h"
 
 namespace fogline {
-namespace {
-
-// Authority from which on the human is the one who drives.
-constexpr double kHalf = 0.5;
-
-}  // namespace
 
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
@@ -54,13 +48,14 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
   // The paper's driver is always at it: what is wanted is granted at once.
   granted_ = wanted;
-  if (take_over_ && !Ask(wanted >= kHalf, ego, track, driver, offers)) return out_;
+  if (take_over_ && !Ask(wanted >= kMainAuthority, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
   // Who has more authority; the human where both have half.
-  out_.mode = state.lambda_human < kHalf ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
+  out_.mode =
+      state.lambda_human < kMainAuthority ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
   if (take_over_) {
     out_.mode = InfoOf(take_over_->outcome().state).mode;
     sent_mps2_ = out_.acceleration_mps2;

@@ -52,7 +52,7 @@ class Arbitrator {
 
   /// Whether the last decision wants the human to drive, also where the transfer is still under
   /// way. Of a driver who must be asked: whether he has the wheel.
-  bool wants_human() const { return granted_ >= 0.5; }
+  bool wants_human() const { return granted_ >= kMainAuthority; }
   /// The driver must be asked, and has not taken over.
   bool must_ask() const { return take_over_ && !wants_human(); }
   /// A request stands, or the host is in the manoeuvre of a driver who did not come. The manoeuvre

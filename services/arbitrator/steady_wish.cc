@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "services/arbitrator/steps.h"
+
 namespace fogline {
 namespace {
 
@@ -14,9 +16,6 @@ double LogOdds(double probability) {
   return std::log(p / (1 - p));
 }
 
-// Rounding of a quotient of two times that divide evenly.
-constexpr double kRounding = 1e-9;
-
 }  // namespace
 
 SteadyWish::SteadyWish(const TransferSection& section, double step_s)
@@ -24,7 +23,7 @@ SteadyWish::SteadyWish(const TransferSection& section, double step_s)
       plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0),
       accept_human_(std::log((1 - section.sprt_beta) / section.sprt_alpha)),
       accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
-      dwell_steps_(static_cast<std::int64_t>(std::ceil(section.min_dwell_s / step_s - kRounding))),
+      dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
       steps_since_change_(dwell_steps_) {}
 
 double SteadyWish::PutOff(const Wish& wish, double doc) {

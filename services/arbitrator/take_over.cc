@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "services/arbitrator/steps.h"
+
 namespace fogline {
 namespace {
 
@@ -11,14 +13,6 @@ namespace {
 constexpr std::uint32_t kAbsenceDraw = 100;
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-
-// Rounding of a quotient of seconds must not make it a step more.
-constexpr double kRounding = 1e-9;
-
-/// The first step not before `time_s`.
-std::int64_t StepsOf(double time_s, double step_s) {
-  return static_cast<std::int64_t>(std::ceil(time_s / step_s - kRounding));
-}
 
 MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
@@ -38,9 +32,9 @@ double LongestTimeToRest_s(double speed_mps, double acceleration_mps2, double de
 TakeOver::TakeOver(const Scenario& scenario)
     : section_(scenario.arbitrator.take_over),
       step_s_(scenario.step_s),
-      lead_steps_(StepsOf(section_.lead_s, step_s_)),
-      escalation_steps_(StepsOf(section_.escalation_s, step_s_)),
-      recovery_steps_(StepsOf(section_.recovery_s, step_s_)),
+      lead_steps_(StepsUntil(section_.lead_s, step_s_)),
+      escalation_steps_(StepsUntil(section_.escalation_s, step_s_)),
+      recovery_steps_(StepsUntil(section_.recovery_s, step_s_)),
       random_(scenario.seed, Stream::kTakeOver),
       time_(section_.time, section_.lead_s),
       manoeuvre_(LimitsOf(section_), step_s_) {
@@ -107,7 +101,7 @@ void TakeOver::Ask(std::int64_t step) {
   const double time_s = time_.Draw(random_, step);
   const bool absent = random_.Uniform2(step, kAbsenceDraw)[0] < section_.absent_probability;
   in_time_ = !absent && time_s <= section_.lead_s;
-  answer_step_ = absent ? kNever : step + StepsOf(time_s, step_s_);
+  answer_step_ = absent ? kNever : step + StepsUntil(time_s, step_s_);
 }
 
 void TakeOver::BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs) {
@@ -117,7 +111,7 @@ void TakeOver::BeginStage(Authority stage, std::int64_t step, const TakeOverInpu
                                        : section_.emergency_deceleration_mps2;
   const double longest_s = LongestTimeToRest_s(inputs.speed_mps, inputs.applied_mps2,
                                                deceleration_mps2, section_.jerk_mps3, step_s_);
-  overdue_step_ = step + StepsOf(kOverdueFactor * longest_s, step_s_);
+  overdue_step_ = step + StepsUntil(kOverdueFactor * longest_s, step_s_);
 }
 
 double TakeOver::Acceleration(const TakeOverInputs& inputs) {

@@ -4,29 +4,28 @@
 #include <cmath>
 #include <limits>
 
+#include "services/arbitrator/steps.h"
+#include "services/policies/policy.h"
+
 namespace fogline {
 namespace {
 
-// Authority from which on the human is the one who drives.
-constexpr double kHalf = 0.5;
 // k of the sigmoid: the paper's slope of the DoC, over a duration instead of a metre. Its steepest
 // change is 2.53 times that of the linear ramp.
 constexpr double kSteepness = 10;
-// Rounding of a quotient of two times that divide evenly.
-constexpr double kRounding = 1e-9;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
 // S, from [0, 1] to itself.
 double Sigmoid(double progress) {
   static const double kLowest = Logistic(-kSteepness / 2);
-  return (Logistic(kSteepness * (progress - kHalf)) - kLowest) / (1 - 2 * kLowest);
+  return (Logistic(kSteepness * (progress - 0.5)) - kLowest) / (1 - 2 * kLowest);
 }
 
 double InverseSigmoid(double authority) {
   static const double kLowest = Logistic(-kSteepness / 2);
   const double p = kLowest + authority * (1 - 2 * kLowest);
-  return kHalf + std::log(p / (1 - p)) / kSteepness;
+  return 0.5 + std::log(p / (1 - p)) / kSteepness;
 }
 
 // `from` moved towards `to` by at most `change`, and exactly to it if it is as near as that.
@@ -42,7 +41,7 @@ Transfer::Transfer(const TransferSection& section, double step_s)
       plain_(section.profile == TransferProfile::kStep && !section.gate),
       progress_per_step_(step_s / section.duration_s),
       change_per_step_(std::numeric_limits<double>::infinity()),
-      gate_steps_(static_cast<std::int64_t>(std::ceil(section.gate_s / step_s - kRounding))) {
+      gate_steps_(StepsUntil(section.gate_s, step_s)) {
   if (section.profile == TransferProfile::kJerkLimited) {
     change_per_step_ = section.jerk_mps3 * step_s;
   }
@@ -52,7 +51,7 @@ Transfer::Transfer(const TransferSection& section, double step_s)
 }
 
 Transfer::State Transfer::Smooth(double wanted, const Offers& offers, double applied_mps2) {
-  const bool to_human = wanted >= kHalf;
+  const bool to_human = wanted >= kMainAuthority;
   if (to_human != to_human_) {
     to_human_ = to_human;
     limiting_ = section_.gate || section_.profile == TransferProfile::kJerkLimited;
@@ -100,7 +99,7 @@ void Transfer::Overrule(const State& actual) {
   progress_ = section_.profile == TransferProfile::kSigmoid && !end
                   ? InverseSigmoid(actual.lambda_human)
                   : actual.lambda_human;
-  to_human_ = actual.lambda_human >= kHalf;
+  to_human_ = actual.lambda_human >= kMainAuthority;
   limiting_ = false;
   previous_mps2_ = actual.acceleration_mps2;
 }

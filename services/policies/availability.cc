@@ -10,7 +10,6 @@ namespace fogline {
 namespace {
 
 constexpr double kPercentile = 0.95;  // of take-over times, models of Marberger et al. 2018
-constexpr double kHalf = 0.5;         // the authority from which on he is the one who drives
 
 }  // namespace
 
@@ -42,7 +41,7 @@ Wish Availability::Decide(const ArbitratorView& view) {
 }
 
 bool Availability::DriverIsAvailable(const ArbitratorView& view) const {
-  if (view.lambda_human >= kHalf || !view.surroundings.followed) return true;
+  if (view.lambda_human >= kMainAuthority || !view.surroundings.followed) return true;
   const double time_s = TimeUntilHardBraking(
       view.surroundings.follower_gap_m, view.surroundings.follower_speed_mps - view.ego.speed_mps,
       std::max(0.0, -view.ego.acceleration_mps2), section_.comfort_mps2);

@@ -15,6 +15,9 @@
 
 namespace fogline {
 
+/// Authority from which on somebody is the one who drives: the human where both have half.
+inline constexpr double kMainAuthority = 0.5;
+
 /// Which sensors the fusion uses in this step. One that is not trusted is compared with the
 /// prediction, but corrects nothing.
 struct Trust {
