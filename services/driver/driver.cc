@@ -4,6 +4,7 @@
 
 #include "scenario/loader.h"
 #include "scenario/wording.h"
+#include "services/minimal_risk/modes.h"
 
 namespace fogline {
 namespace {
@@ -45,10 +46,11 @@ Driver::Driver(const Scenario& scenario)
   }
 }
 
+// In every mode but AUTOMATION he drives or has been asked to, also while the car stops because he
+// has not come yet: he may still end that. Where nothing waits for him he need not look: the car
+// has stopped for good, or stops in a manoeuvre that has asked nobody.
 void Driver::Hear(const arbitration_t& host) {
-  // In every mode but AUTOMATION he drives or is asked to, unless the car stops by itself.
-  const bool stops = host.lambda_automation == 0 && host.lambda_human == 0;
-  const bool monitors = host.mode == arbitration_t::AUTOMATION || stops;
+  const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
   task_ = monitors ? DriverTask::kMonitors : DriverTask::kDrives;
 }
 

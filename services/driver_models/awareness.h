@@ -11,7 +11,7 @@ namespace fogline {
 
 enum class DriverTask {
   kMonitors,  // automation drives and has asked for nothing
-  kDrives,    // or has been asked to
+  kDrives,    // or has been asked to, and may still come
 };
 
 /// Awareness A in [0, 1], from step to step exactly:

@@ -1,5 +1,6 @@
 #include "services/driver/driver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -237,6 +238,24 @@ TEST_F(AwarenessOfTheDriverTest, ReturnsAlsoWhileHeIsOnlyAsked) {
 TEST_F(AwarenessOfTheDriverTest, FadesWhileTheCarStopsByItself) {
   ReadinessAfter(arbitration_t{});
   EXPECT_LT(ReadinessAfter(Stopping()), 1);
+}
+
+// He has been asked, and the state machine still waits for him: take_over_table.h.
+TEST_F(AwarenessOfTheDriverTest, ReturnsWhileTheCarStopsBecauseHeIsLate) {
+  for (const std::int8_t mode :
+       {arbitration_t::MRM_COMFORT, arbitration_t::MRM_EMERGENCY, arbitration_t::MRM_FAILED}) {
+    for (int k = 0; k < 50; ++k) ReadinessAfter(Host(arbitration_t::AUTOMATION));
+    arbitration_t stopping = Stopping();
+    stopping.mode = mode;
+    const double before = ReadinessAfter(Host(arbitration_t::AUTOMATION));
+    ASSERT_LT(before, 0.99);
+    EXPECT_NEAR(ReadinessAfter(stopping), std::min(1.0, before + 0.1 * 0.1), 1e-12)
+        << static_cast<int>(mode);
+  }
+  arbitration_t standing = Stopping();
+  standing.mode = arbitration_t::MRM_DONE;
+  const double before = ReadinessAfter(Host(arbitration_t::AUTOMATION));
+  EXPECT_LT(ReadinessAfter(standing), before) << "nothing waits for him any more";
 }
 
 TEST_F(AwarenessOfTheDriverTest, BeginsWithTheReadinessOfTheScenario) {
