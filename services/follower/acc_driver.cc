@@ -2,7 +2,8 @@
 
 namespace fogline {
 
-CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const Situation& now) {
+CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const Situation& now,
+                                  double /*visibility_m*/) {
   const AccController::Output output = controller_.Step({
       .distance_m = now.ahead->gap_m,
       .relative_speed_mps = now.ahead->speed_mps - now.speed_mps,

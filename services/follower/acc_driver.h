@@ -20,7 +20,7 @@ class AccDriver final : public CarDriver {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
   }
 
-  Action Step(std::int64_t step, const Situation& now) override;
+  Action Step(std::int64_t step, const Situation& now, double visibility_m) override;
 
  private:
   AccController controller_;

@@ -18,7 +18,8 @@ class CarDriver {
 
   /// What to do in this step. Once per step, in order.
   /// @param now the truth, with a car ahead
-  virtual Action Step(std::int64_t step, const Situation& now) = 0;
+  /// @param visibility_m meteorological optical range
+  virtual Action Step(std::int64_t step, const Situation& now, double visibility_m) = 0;
 };
 
 }  // namespace fogline

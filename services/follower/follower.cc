@@ -1,6 +1,7 @@
 #include "services/follower/follower.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -15,8 +16,10 @@ namespace {
 
 std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car, Style style) {
   const Random errors(scenario.seed, FollowerErrors(static_cast<std::uint32_t>(car)));
+  std::optional<FogSight> sight;
+  if (scenario.followers.sight == Sight::kFog) sight.emplace(scenario.human.fog_sight);
   try {
-    return std::make_unique<Person>(style, scenario.followers.safety_model, errors,
+    return std::make_unique<Person>(style, sight, scenario.followers.safety_model, errors,
                                     scenario.step_s);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("/step_s: {} s is too short for a person in following car {}: {}",
@@ -68,7 +71,7 @@ const follower_command_t& Follower::Step(const truth_t& truth) {
   out_.safe_distance_m.clear();
   for (std::size_t car = 0; car < cars; ++car) {
     const CarDriver::Action action =
-        drivers_[car]->Step(truth.header.step, SituationOf(truth, car));
+        drivers_[car]->Step(truth.header.step, SituationOf(truth, car), truth.fog_visibility_m);
     out_.acceleration_mps2.push_back(action.acceleration_mps2);
     out_.safe_distance_m.push_back(action.safe_distance_m);
   }

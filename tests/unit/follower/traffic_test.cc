@@ -1,5 +1,6 @@
 // Several following cars, and the people in them.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "scenario/loader.h"
 #include "services/follower/cast.h"
 #include "services/follower/follower.h"
+#include "services/follower/person.h"
 
 namespace fogline {
 namespace {
@@ -179,6 +181,75 @@ TEST(CastTest, DrawsNobodyWithoutAShare) {
       EXPECT_EQ(PartOf(scenario, car).has_acc, share == 1.0);
     }
   }
+}
+
+// ---- fog ---------------------------------------------------------------------------------------
+
+class FogSightOfPeopleTest : public testing::Test {
+ protected:
+  /// Accelerations of a column of two over 30 steps behind a host that is 5 m/s slower, in fog.
+  static std::vector<double> Drive(Scenario scenario, double visibility_m) {
+    Follower follower(scenario);
+    truth_t truth = Platoon(2);
+    truth.host_speed_mps = 15;
+    truth.fog_visibility_m = visibility_m;
+    std::vector<double> accelerations;
+    for (; truth.header.step < 30; ++truth.header.step) {
+      const auto& command = follower.Step(truth);
+      accelerations.insert(accelerations.end(), command.acceleration_mps2.begin(),
+                           command.acceleration_mps2.end());
+    }
+    return accelerations;
+  }
+  static Scenario Seeing(Sight sight, FollowerDriver driver = FollowerDriver::kHuman) {
+    Scenario scenario = WithFollowers(2, driver);
+    scenario.followers.sight = sight;
+    return scenario;
+  }
+};
+
+TEST_F(FogSightOfPeopleTest, IsOffByDefaultAndThenFogChangesNothing) {
+  EXPECT_EQ(Scenario().followers.sight, Sight::kPerfect);
+  EXPECT_EQ(Drive(Seeing(Sight::kPerfect), 10), Drive(Seeing(Sight::kPerfect), 1e6));
+}
+
+TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
+  // GIVEN the eyes of section human, and a person's own driver model behind them
+  Scenario scenario = Seeing(Sight::kFog);
+  scenario.human.fog_sight.contrast = 0.4;
+  const FogSight sight(scenario.human.fog_sight);
+  Person seeing(Style::kNormal, std::nullopt, SafetyModelChoice::kNone,
+                Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
+  // WHEN the first of the two looks at the host through fog of 40 m
+  const std::vector<double> driven = Drive(scenario, 40);
+  // THEN he drives by what the sight leaves of it
+  for (std::int64_t k = 0; k < 30; ++k) {
+    const Situation truth{.speed_mps = 20,
+                          .acceleration_mps2 = 0,
+                          .ahead = CarAhead{.gap_m = 33, .speed_mps = 15, .acceleration_mps2 = 0}};
+    EXPECT_EQ(driven[static_cast<std::size_t>(2 * k)],
+              seeing.Step(k, sight.Perceive(truth, 40), 40).acceleration_mps2);
+  }
+  EXPECT_NE(driven, Drive(Seeing(Sight::kPerfect), 40));
+}
+
+TEST_F(FogSightOfPeopleTest, LosesTheCarAheadInDenseFogAndAcceleratesAsOnAFreeRoad) {
+  const std::vector<double> blind = Drive(Seeing(Sight::kFog), 5);
+  const std::vector<double> clear = Drive(Seeing(Sight::kFog), 1e6);
+  EXPECT_GT(blind.front(), 0.3);
+  EXPECT_LT(clear.front(), -1);
+}
+
+TEST_F(FogSightOfPeopleTest, IsAlsoWhatTheSafetyModelSees) {
+  Scenario scenario = Seeing(Sight::kFog);
+  scenario.followers.safety_model = SafetyModelChoice::kRss;
+  EXPECT_GT(Drive(scenario, 5).back(), 0) << "nothing is there to keep a distance from";
+  EXPECT_LT(Drive(scenario, 1e6).back(), -5);
+}
+
+TEST_F(FogSightOfPeopleTest, IsNoAffairOfAnAcc) {
+  EXPECT_EQ(Drive(Seeing(Sight::kFog, FollowerDriver::kAcc), 10),
+            Drive(Seeing(Sight::kFog, FollowerDriver::kAcc), 1e6));
 }
 
 }  // namespace
