@@ -13,8 +13,10 @@ constexpr double kPercentile = 0.95;  // of take-over times, models of Marberger
 
 }  // namespace
 
-// (w + b t)^2 = 2 c (s - w t - b t^2/2) is A t^2 + B t + C = 0 with the coefficients below. Where
-// the host is faster (w < 0), the larger root comes after the moment at which the speeds are equal.
+// With the limit c, (w + b t)^2 = 2 c (s - w t - b t^2/2) is A t^2 + B t + C = 0 with the
+// coefficients below. B^2 - 4 A C = 4 c (b + c)(w^2 + 2 b s) is above 0 for any gap s > 0 and b >
+// 0: behind a host that brakes the time always comes. Where the host is faster (w < 0), the larger
+// root comes after the moment at which the speeds are equal.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -23,8 +25,8 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
   const double growth = 2 * closing_mps * (host_braking_mps2 + limit_mps2);       // B
   const double curvature = host_braking_mps2 * (host_braking_mps2 + limit_mps2);  // A
   if (curvature == 0) return closing_mps > 0 ? -now / growth : kNever;
-  const double discriminant = growth * growth - 4 * curvature * now;
-  if (discriminant < 0) return kNever;  // the speeds are never equal before the host is far ahead
+  const double discriminant = 4 * limit_mps2 * (host_braking_mps2 + limit_mps2) *
+                              (closing_mps * closing_mps + 2 * host_braking_mps2 * gap_m);
   return std::max(0.0, (std::sqrt(discriminant) - growth) / (2 * curvature));
 }
 

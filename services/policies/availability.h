@@ -16,9 +16,12 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
 
 /// As the paper's rule, for a driver who is available: whose take-over time (95th percentile of its
 /// distribution, and unready_s (1 - A) more) is less than the time until the follower has to brake
-/// harder than comfort_mps2, or who is driving already. Otherwise the automation stays. The fusion
-/// meanwhile goes on without the sensor that is to blame. Marberger et al. 2018: availability is
-/// the time budget less the time required.
+/// harder than comfort_mps2, or who is driving already. Otherwise the automation stays, degraded.
+/// Marberger et al. 2018: availability is the time budget less the time required.
+///
+/// The fusion goes on without the sensor that is to blame at all times, as with Isolate: also while
+/// the driver is available. It cannot know that, and need not: while he drives nobody uses the
+/// track, and when he does not the automation has one that it can go by, from the first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -26,8 +26,7 @@ constexpr std::array kPolicies{
     RowFor<Adaptive>("adaptive", "as traded, with a threshold that moves with the situation"),
     RowFor<Bayes>("bayes", "as traded, with the threshold of least expected cost"),
     RowFor<Availability>("availability",
-                         "as traded, if the driver can be there in time; else as "
-                         "isolate"),
+                         "as isolate, and as traded if the driver can be there in time"),
 };
 
 // The rows that code knows by name.
