@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "services/arbitrator/steps.h"
 
@@ -38,6 +39,9 @@ TakeOver::TakeOver(const Scenario& scenario)
       random_(scenario.seed, Stream::kTakeOver),
       time_(section_.time, section_.lead_s),
       manoeuvre_(LimitsOf(section_), step_s_) {
+  if (section_.lead_s < kLeastLead_s) {
+    throw std::invalid_argument("take-over: the lead time is below the 10 s of UN R157");
+  }
   section_.comfort_deceleration_mps2 =
       std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
 }

@@ -58,7 +58,7 @@ inline constexpr double kOverdueFactor = 2.0;
 /// manoeuvre gets the wheel at once.
 class TakeOver {
  public:
-  /// @throw std::invalid_argument as TakeOverTime
+  /// @throw std::invalid_argument if lead_s is below kLeastLead_s, and as TakeOverTime
   explicit TakeOver(const Scenario& scenario);
 
   /// Decides the step of `header`. In the order of steps; some may be left out. Valid until the
@@ -70,6 +70,8 @@ class TakeOver {
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// A manoeuvre runs, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
+  /// One has begun in this run, though the driver may have ended it.
+  bool manoeuvred() const { return manoeuvre_.begun(); }
 
  private:
   TakeOverEvents EventsOf(std::int64_t step, const TakeOverInputs& inputs) const;

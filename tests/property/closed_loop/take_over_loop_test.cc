@@ -123,7 +123,7 @@ TEST_F(TakeOverLoopTest, ChangesNothingWhereTheDriverIsAlwaysAtIt) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
   ClosedLoop plain(scenario);
   const std::string digest = DigestOf(plain);
-  scenario.arbitrator.take_over.lead_s = 1;
+  scenario.arbitrator.take_over.lead_s = 20;
   scenario.arbitrator.take_over.absent_probability = 1;
   plain.Restart(scenario);
   EXPECT_EQ(DigestOf(plain), digest);
