@@ -8,7 +8,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
       meter_(scenario),
       rule_(RowOf(scenario.arbitrator.policy).rule),
-      steady_(scenario.arbitrator.transfer, scenario.step_s),
+      steady_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
       transfer_(scenario.arbitrator.transfer, scenario.step_s) {
   out_.threshold = threshold_;
   if (rule_ == Rule::kOwn) policy_ = RowOf(scenario.arbitrator.policy).make(scenario);

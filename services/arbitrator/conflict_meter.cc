@@ -1,5 +1,9 @@
 #include "services/arbitrator/conflict_meter.h"
 
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+
 namespace fogline {
 
 ConflictMeter::ConflictMeter(const Scenario& scenario)
@@ -8,6 +12,13 @@ ConflictMeter::ConflictMeter(const Scenario& scenario)
       doc_(ConflictParametersOf(scenario.arbitrator)),
       witness_(scenario.fusion) {
   const ArbitratorSection& section = scenario.arbitrator;
+  is_posterior_ = section.measure_scale == MeasureScale::kProbability;
+  if (is_posterior_ && !RowOf(section.measure).posterior) {
+    throw InputError(
+        fmt::format("/arbitrator/measure_scale: \"probability\" is for measures that are one, as "
+                    "\"lidar_modes\"; /arbitrator/measure is \"{}\"",
+                    RowOf(section.measure).name));
+  }
   if (section.measure == MeasureChoice::kDoc) return;
   measure_ = RowOf(section.measure).make(ConflictParametersOf(section));
   slope_ = section.measure_slope;

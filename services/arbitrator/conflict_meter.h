@@ -1,6 +1,7 @@
 // The Degree of Conflict in every step: from the sensors' values to a number in [0, 1].
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "scenario/scenario.h"
@@ -13,9 +14,10 @@ namespace fogline {
 
 /// DoC = 1/(1 + exp(-slope (x - centre))) of what the scenario's measure says of the conflict: of z
 /// (services/conflict/doc.h), as the paper has it, or of the score x of any other row of
-/// services/conflict/measures.cc.
+/// services/conflict/measures.cc. Or, with measure_scale probability, that score itself.
 class ConflictMeter {
  public:
+  /// @throw InputError if measure_scale takes a measure for a probability that is none
   explicit ConflictMeter(const Scenario& scenario);
 
   /// The values of a step. `track` is the witness of measures that need one; it is left out unless
@@ -32,9 +34,15 @@ class ConflictMeter {
   /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
   double conflict() const { return measure_ ? score_ : doc_.conflict_m(); }
   /// DoC of such a conflict.
-  double DocOf(double conflict) const { return DegreeOfConflict(conflict, slope_, centre_); }
+  double DocOf(double conflict) const {
+    if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
+    return DegreeOfConflict(conflict, slope_, centre_);
+  }
+  /// Whether the DoC is the posterior probability that a sensor is wrong, by all evidence so far.
+  bool is_posterior() const { return is_posterior_; }
 
  private:
+  bool is_posterior_ = false;
   double slope_;  // of the DoC, over z or score
   double centre_;
   Doc doc_;

@@ -18,8 +18,9 @@ double LogOdds(double probability) {
 
 }  // namespace
 
-SteadyWish::SteadyWish(const TransferSection& section, double step_s)
+SteadyWish::SteadyWish(const TransferSection& section, double step_s, bool posterior)
     : section_(section),
+      posterior_(posterior),
       plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0),
       accept_human_(std::log((1 - section.sprt_beta) / section.sprt_alpha)),
       accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
@@ -36,16 +37,21 @@ double SteadyWish::PutOff(const Wish& wish, double doc) {
   return wanted_human_ ? 1 : 0;
 }
 
+double SteadyWish::LowerThreshold(double threshold) const {
+  return threshold - std::min(section_.band, threshold / 2);
+}
+
 bool SteadyWish::HumanByHysteresis(const Wish& wish, double doc) {
   switch (section_.hysteresis) {
     case Hysteresis::kNone:
       break;
     case Hysteresis::kBand:
-      return !(doc < wish.threshold - (decided_human_ ? section_.band : 0));
+      return !(doc < (decided_human_ ? LowerThreshold(wish.threshold) : wish.threshold));
     case Hysteresis::kSprt:
+      if (posterior_) evidence_ = 0;
       evidence_ += LogOdds(doc) - LogOdds(wish.threshold);
       if (evidence_ < accept_human_ && evidence_ > accept_automation_) return decided_human_;
-      return std::exchange(evidence_, 0.0) > 0;
+      return posterior_ ? evidence_ > 0 : std::exchange(evidence_, 0.0) > 0;
   }
   return wish.lambda_human > 0;
 }

@@ -117,7 +117,7 @@ constexpr ConflictMeasureRow kConflictMeasures[] = {
     {"sprt", "log likelihood ratio of a LiDAR short by delta", "Wald 1947",
      "[ln(beta/(1 - alpha)), ceiling]", kUnchanged, Make<Sprt>},
     {"lidar_modes", "P(LiDAR ranges fog or nothing)", "Blom & Bar-Shalom 1988", kUnit,
-     "evidence of a mode", Make<LidarModeConflict>},
+     "evidence of a mode", Make<LidarModeConflict>, true},
     {"witness_nis", "larger squared residual of a sensor against the prediction",
      "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kWindowed, Make<NisWitness>},
     {"witness_deng", "larger loss of credibility among three bodies of evidence",

@@ -19,6 +19,7 @@ struct MeasureRow {
   std::string_view range;    // with unit, if it has one
   std::string_view missing;  // what a step without radar or LiDAR value is
   std::unique_ptr<Measure> (*make)(const ConflictParameters& parameters);
+  bool posterior = false;  // a posterior probability of conflict by all evidence so far
 };
 
 using ConflictMeasureRow = MeasureRow<ConflictMeasure>;

@@ -8,7 +8,9 @@
 namespace fogline {
 
 /// The human drives while P C_a >= (1 - P) C_h, P the probability that the automation is deceived,
-/// for which the DoC stands: while P >= C_h/(C_h + C_a), the threshold in force. With readiness A,
+/// for which the DoC stands: while P >= C_h/(C_h + C_a), the threshold in force. It is a
+/// probability with measure lidar_modes and measure_scale probability
+/// (services/conflict/lidar_modes.h), and a sharp guess with the paper's z. With readiness A,
 /// visibility MOR and the follower's time to collision TTC the expected costs are
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives

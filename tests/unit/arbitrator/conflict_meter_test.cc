@@ -1,7 +1,11 @@
 #include "services/arbitrator/conflict_meter.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
+#include "scenario/loader.h"
+#include "services/conflict/lidar_modes.h"
 #include "services/conflict/measures.h"
 
 namespace fogline {
@@ -86,6 +90,43 @@ TEST(ConflictMeterTest, TakesTheKnownOffsetOffAllMeasuresButThePapers) {
   ConflictMeter paper(scenario);
   paper.Observe(m.radar, m.lidar, m.track);
   EXPECT_EQ(paper.conflict(), 2);
+}
+
+TEST(ConflictMeterTest, TakesAPosteriorForTheDegreeOfConflictItself) {
+  Scenario scenario = With("lidar_modes");
+  scenario.arbitrator.measure_scale = MeasureScale::kProbability;
+  Messages m = Differing();
+  ConflictMeter meter(scenario);
+  LidarModeConflict posterior(ConflictParametersOf(scenario.arbitrator));
+  for (const double lidar_m : {40.0, 39.8, 4.0, 40.0}) {
+    m.lidar.range_m = lidar_m;
+    meter.Observe(m.radar, m.lidar, m.track);
+    const double score = posterior.Step({StatedBy(m.radar), StatedBy(m.lidar), {}});
+    EXPECT_EQ(meter.DocOf(meter.conflict()), score) << lidar_m;
+  }
+  EXPECT_TRUE(meter.is_posterior());
+  scenario.arbitrator.measure_scale = MeasureScale::kLogistic;
+  EXPECT_FALSE(ConflictMeter(scenario).is_posterior());
+}
+
+TEST(ConflictMeterTest, RefusesToTakeAnyOtherScoreForAProbability) {
+  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+    Scenario scenario = With(row.name);
+    scenario.arbitrator.measure_scale = MeasureScale::kProbability;
+    if (row.name == "lidar_modes") {
+      EXPECT_NO_THROW(ConflictMeter{scenario});
+      continue;
+    }
+    try {
+      const ConflictMeter meter(scenario);
+      ADD_FAILURE() << row.name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                "/arbitrator/measure_scale: \"probability\" is for measures that are one, as "
+                "\"lidar_modes\"; /arbitrator/measure is \"" +
+                    std::string(row.name) + "\"");
+    }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "services/arbitrator/steady_wish.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -71,6 +72,31 @@ TEST(SteadyWishTest, LetsAFirmWishPass) {
   SteadyWish steady({.hysteresis = Hysteresis::kBand, .band = 0.5, .min_dwell_s = 60}, 0.1);
   Step(steady, 1);
   EXPECT_EQ(steady.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
+}
+
+// A band as wide as the threshold would leave nothing for a DoC to fall below.
+TEST(SteadyWishTest, ABandOfWhateverWidthGivesTheWheelBack) {
+  for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
+    for (const double band : {0.0, 0.2, 0.5, 1.0}) {
+      SteadyWish steady({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
+      const auto step = [&](double doc) { return steady.Step(Compare(doc, threshold), doc); };
+      EXPECT_EQ(step(threshold), 1);
+      const double lower = threshold - std::min(band, threshold / 2);
+      EXPECT_EQ(step(lower), 1) << threshold << ' ' << band;
+      EXPECT_EQ(step(std::nextafter(lower, 0)), 0) << threshold << ' ' << band;
+    }
+  }
+}
+
+// ln(0.99/0.01) = 4.595: a posterior of 0.99 is that much evidence against 0.5, whenever it came.
+TEST(SteadyWishTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
+  SteadyWish steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1,
+                    true);
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.98), 0);
+  EXPECT_EQ(Step(steady, 0.991), 1);
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.02), 1);
+  EXPECT_EQ(Step(steady, 0.009), 0);
+  EXPECT_EQ(steady.Step(Compare(0.991, 0.9), 0.991), 0) << "against 0.9 it is less";
 }
 
 }  // namespace
