@@ -8,6 +8,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
       meter_(scenario),
       rule_(RowOf(scenario.arbitrator.policy).rule),
+      shares_(RowOf(scenario.arbitrator.policy).shares),
       steady_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
       transfer_(scenario.arbitrator.transfer, scenario.step_s) {
   out_.threshold = threshold_;
@@ -48,7 +49,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
   // The paper's driver is always at it: what is wanted is granted at once.
   granted_ = wanted;
-  if (take_over_ && !Ask(wanted >= kMainAuthority, ego, track, driver, offers)) return out_;
+  if (take_over_ && !Ask(wanted, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
@@ -75,19 +76,20 @@ Wish Arbitrator::OwnWish(const ego_t& ego, const track_t& track, const accel_com
                           .surroundings = surroundings_});
 }
 
-bool Arbitrator::Ask(bool wanted, const ego_t& ego, const track_t& track,
+bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
                      const driver_command_t& driver, Transfer::Offers& offers) {
   const bool manoeuvre_ran = take_over_->in_manoeuvre();
+  const bool human_wanted = shares_ ? wanted > 0 : wanted >= kMainAuthority;
   const TakeOverOutcome& asked =
-      take_over_->Step(ego.header, {.human_wanted = wanted || !automation_there_,
+      take_over_->Step(ego.header, {.human_wanted = human_wanted || !automation_there_,
                                     .automation_mps2 = offers.automation_mps2,
                                     .human_mps2 = offers.human_mps2,
                                     .readiness = driver.readiness,
                                     .speed_mps = ego.speed_mps,
                                     .applied_mps2 = sent_mps2_.value_or(ego.acceleration_mps2),
                                     .track = &track});
-  granted_ = asked.authority == Authority::kHuman ? 1 : 0;
   if (take_over_->in_manoeuvre()) {
+    granted_ = 0;
     out_.lambda_automation = 0;
     out_.lambda_human = 0;
     out_.acceleration_mps2 = asked.acceleration_mps2;
@@ -95,7 +97,15 @@ bool Arbitrator::Ask(bool wanted, const ego_t& ego, const track_t& track,
     Overrule(out_);
     return false;
   }
-  if (granted_ == 0) offers.automation_mps2 = asked.acceleration_mps2;
+  if (asked.authority == Authority::kHuman) {
+    // He shares the wheel only with an automation that is there, and not off for the rest of the
+    // run.
+    const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
+    granted_ = shared ? wanted : 1;
+  } else {
+    granted_ = 0;
+    offers.automation_mps2 = asked.acceleration_mps2;
+  }
   // Who ends a manoeuvre has the wheel at once: the automation is off and has no share to give.
   if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});
   return true;

@@ -51,10 +51,12 @@ class Arbitrator {
                               const accel_command_t& automation, const driver_command_t& driver);
 
   /// Whether the last decision wants the human to drive, also where the transfer is still under
-  /// way. Of a driver who must be asked: whether he has the wheel.
+  /// way. Of a driver who must be asked: whether he has come, and has half of the wheel at least.
   bool wants_human() const { return granted_ >= kMainAuthority; }
   /// The driver must be asked, and has not taken over.
-  bool must_ask() const { return take_over_ && !wants_human(); }
+  bool must_ask() const {
+    return take_over_ && take_over_->outcome().authority != Authority::kHuman;
+  }
   /// A request stands, or the host is in the manoeuvre of a driver who did not come. The manoeuvre
   /// needs no input but the odometry.
   bool asks() const {
@@ -71,12 +73,13 @@ class Arbitrator {
   Wish OwnWish(const ego_t& ego, const track_t& track, const accel_command_t& automation,
                const driver_command_t& driver);
   /// What becomes of the wish for the human if he must be asked. @return whether anybody drives
-  bool Ask(bool wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
+  bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 
   double threshold_;
   ConflictMeter meter_;
   Rule rule_;
+  bool shares_;
   std::unique_ptr<EngagementPolicy> policy_;  // none for a simple rule
   SteadyWish steady_;
   Transfer transfer_;

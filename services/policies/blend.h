@@ -11,6 +11,8 @@ namespace fogline {
 /// The threshold in force is the DoC at which he has half of the authority.
 class Blend final : public EngagementPolicy {
  public:
+  static constexpr bool kShares = true;
+
   explicit Blend(const Scenario& scenario) : section_(scenario.arbitrator.blend) {}
 
   Wish Decide(const ArbitratorView& view) override {

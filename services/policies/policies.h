@@ -18,6 +18,7 @@ struct PolicyRow {
   Rule rule;              // what its say in the arbitrator comes to
   bool needs_true_gap;
   bool needs_surroundings;
+  bool shares;
   std::unique_ptr<EngagementPolicy> (*make)(const Scenario& scenario);
 };
 
@@ -32,6 +33,7 @@ constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
           .rule = P::kRule,
           .needs_true_gap = P::kNeedsTrueGap,
           .needs_surroundings = P::kNeedsSurroundings,
+          .shares = P::kShares,
           .make = [](const Scenario& scenario) -> std::unique_ptr<EngagementPolicy> {
             return std::make_unique<P>(scenario);
           }};

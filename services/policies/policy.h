@@ -97,6 +97,9 @@ class EngagementPolicy {
   /// What it needs beyond the regular inputs; hidden by a policy that does.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
+  /// Whether it shares: its wishes lie between all and nothing. A driver who must be asked is asked
+  /// for any share, and has that share once he has come.
+  static constexpr bool kShares = false;
   /// Hidden by a policy that has no rule of its own.
   static constexpr Rule kRule = Rule::kOwn;
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,6 +96,7 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
     EXPECT_EQ(row.trusts, is({"isolate", "oracle", "availability"})) << row.name;
     EXPECT_EQ(row.needs_true_gap, is({"oracle"})) << row.name;
     EXPECT_EQ(row.needs_surroundings, is({"adaptive", "bayes", "availability"})) << row.name;
+    EXPECT_EQ(row.shares, is({"blend"})) << row.name;
   }
 }
 
@@ -266,6 +268,20 @@ TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
     EXPECT_EQ(TrustIn(policy, {kLidarShort, {}}), kRadarAlone) << policy;
     EXPECT_EQ(TrustIn(policy, {kRadarLong, {}}), kLidarAlone) << policy;
     EXPECT_EQ(TrustIn(policy, {kAgreeing, {}}), kBoth) << policy;
+  }
+}
+
+// Fusion and arbitrator have an instance each: what one has decided of the driver, the other does
+// not know.
+TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
+  const auto policy = RowOf(FindPolicy("availability").value()).make({});
+  Situation available;
+  Situation late;
+  late.surroundings = {.followed = true, .follower_gap_m = 5, .follower_speed_mps = 30};
+  for (const auto& [situation, called] : {std::pair{available, 1.0}, {late, 0.0}}) {
+    EXPECT_EQ(policy->Decide(situation.View()).lambda_human, called);
+    EXPECT_EQ(policy->TrustIn({kLidarShort, {}}), kRadarAlone) << called;
+    EXPECT_EQ(policy->TrustIn({kAgreeing, {}}), kBoth) << called;
   }
 }
 
