@@ -2,7 +2,8 @@
 // automation comes back without a bump.
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -90,30 +91,208 @@ TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFog
   EXPECT_GE(gated.si_pct, abrupt.si_pct - 3);
 }
 
-// The ACC plans from the acceleration that the host really has: with every hand-back its command is
-// within the engine's share of one change of u of what the human had commanded, jump or no jump.
-TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
-  int returns = 0;
-  for (const char* file : {"/scenario/paper.json", "/scenario/dense_fog.json"}) {
-    Scenario scenario = LoadScenario(FOGLINE_SOURCE_DIR + std::string(file));
-    const double share = -std::expm1(-scenario.step_s / scenario.acc.engine_time_constant_s);
-    const double bump_mps2 = share * scenario.acc.max_jerk_mps3 * scenario.step_s;
-    for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
-      const std::vector<Sample> run = SamplesOf(scenario);
-      for (std::size_t k = 1; k < run.size(); ++k) {
-        if (run[k - 1].lambda_human == 0 || run[k].lambda_human > 0) continue;
-        const double human_mps2 = run[k - 1].command_mps2;
-        const double outside_mps2 =
-            std::abs(human_mps2 - std::clamp(human_mps2, scenario.acc.min_acceleration_mps2,
-                                             scenario.acc.max_acceleration_mps2));
-        EXPECT_LE(std::abs(run[k].command_mps2 - human_mps2),
-                  bump_mps2 + share * outside_mps2 + 1e-9)
-            << file << " seed " << scenario.seed << " step " << k;
-        ++returns;
-      }
+// ---- whole transfers against their definition ---------------------------------------------------
+
+struct Step {
+  bool human_wanted;
+  double automation_mps2;  // offers
+  double human_mps2;
+  double applied_mps2;  // of the host, before the command
+  double lambda_human;
+  double command_mps2;
+};
+
+std::vector<Step> StepsOf(const Scenario& scenario) {
+  std::vector<Step> steps;
+  ClosedLoop(scenario).Run(0, [&](const StepView& step) {
+    steps.push_back({.human_wanted = step.host.doc >= scenario.arbitrator.threshold,
+                     .automation_mps2 = step.acc.acceleration_mps2,
+                     .human_mps2 = step.driver.acceleration_mps2,
+                     .applied_mps2 = step.ego.acceleration_mps2,
+                     .lambda_human = step.host.lambda_human,
+                     .command_mps2 = step.host.acceleration_mps2});
+  });
+  return steps;
+}
+
+/// S of services/arbitrator/transfer.h, with k = 10.
+double Sigmoid(double progress) {
+  const auto logistic = [](double x) { return 1 / (1 + std::exp(-x)); };
+  return (logistic(10 * (progress - 0.5)) - logistic(-5.0)) / (logistic(5.0) - logistic(-5.0));
+}
+
+/// The human's authority by definition: as far as time since the last change of the wish goes.
+class Ramp {
+ public:
+  explicit Ramp(const Scenario& scenario)
+      : section_(scenario.arbitrator.transfer), per_step_(scenario.step_s / section_.duration_s) {}
+
+  double After(bool human_wanted) {
+    if (human_wanted != human_wanted_) {
+      begin_ = Progress();
+      steps_ = 0;
+    }
+    human_wanted_ = human_wanted;
+    ++steps_;
+    switch (section_.profile) {
+      case TransferProfile::kLinear:
+        return Progress();
+      case TransferProfile::kSigmoid:
+        return Sigmoid(Progress());
+      default:
+        return human_wanted ? 1 : 0;
     }
   }
-  EXPECT_GE(returns, 20);
+
+ private:
+  double Progress() const {
+    const double way = static_cast<double>(steps_) * per_step_;
+    return std::clamp(human_wanted_ ? begin_ + way : begin_ - way, 0.0, 1.0);
+  }
+
+  TransferSection section_;
+  double per_step_;
+  bool human_wanted_ = false;
+  double begin_ = 0;
+  int steps_ = 0;
+};
+
+/// The command by definition, from what the authorities make of the offers: limited from a change
+/// of the wish on, until it has caught up.
+class Limit {
+ public:
+  explicit Limit(const Scenario& scenario)
+      : section_(scenario.arbitrator.transfer), step_s_(scenario.step_s) {}
+
+  double After(bool human_wanted, double target_mps2, double previous_mps2) {
+    const bool jerk_limited = section_.profile == TransferProfile::kJerkLimited;
+    if (human_wanted != human_wanted_) {
+      limited_ = jerk_limited || section_.gate;
+      gated_s_ = section_.gate ? section_.gate_s : 0;
+    }
+    human_wanted_ = human_wanted;
+    if (!limited_) return target_mps2;
+    if (target_mps2 < -section_.yield_mps2) {  // an emergency is obeyed, and ends it
+      limited_ = false;
+      return target_mps2;
+    }
+    double jerk_mps3 = jerk_limited ? section_.jerk_mps3 : section_.gate_jerk_mps3;
+    if (section_.gate) jerk_mps3 = std::min(jerk_mps3, section_.gate_jerk_mps3);
+    const double change = jerk_mps3 * step_s_;
+    const bool gated = gated_s_ > 1e-9;
+    if (gated) {
+      gated_s_ -= step_s_;
+      target_mps2 = std::clamp(target_mps2, -section_.gate_acceleration_mps2,
+                               section_.gate_acceleration_mps2);
+    }
+    const double away = target_mps2 - previous_mps2;
+    if (std::abs(away) > change) return previous_mps2 + std::copysign(change, away);
+    limited_ = gated;
+    return target_mps2;
+  }
+
+ private:
+  TransferSection section_;
+  double step_s_;
+  bool human_wanted_ = false;
+  bool limited_ = false;
+  double gated_s_ = 0;
+};
+
+/// Steps in which a transfer was under way.
+struct UnderWay {
+  int there = 0;
+  int back = 0;
+};
+
+UnderWay ExpectTheDefinition(const Scenario& scenario) {
+  constexpr double kRounding = 1e-9;
+  Ramp ramp(scenario);
+  Limit limit(scenario);
+  UnderWay under_way;
+  std::optional<double> previous_mps2;
+  std::size_t k = 0;
+  for (const Step& step : StepsOf(scenario)) {
+    SCOPED_TRACE(testing::Message() << "step " << k++);
+    const double lambda = ramp.After(step.human_wanted);
+    EXPECT_NEAR(step.lambda_human, lambda, kRounding);
+    const double mixed = lambda * step.human_mps2 + (1 - lambda) * step.automation_mps2;
+    EXPECT_NEAR(step.command_mps2,
+                limit.After(step.human_wanted, mixed, previous_mps2.value_or(step.applied_mps2)),
+                kRounding);
+    previous_mps2 = step.command_mps2;
+    const double wanted_mps2 = step.human_wanted ? step.human_mps2 : step.automation_mps2;
+    if (std::abs(step.command_mps2 - wanted_mps2) > kRounding) {
+      ++(step.human_wanted ? under_way.there : under_way.back);
+    }
+  }
+  return under_way;
+}
+
+constexpr TransferProfile kAllProfiles[] = {TransferProfile::kStep, TransferProfile::kLinear,
+                                            TransferProfile::kSigmoid,
+                                            TransferProfile::kJerkLimited};
+
+TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
+  for (const TransferProfile profile : kAllProfiles) {
+    for (const bool gate : {false, true}) {
+      UnderWay sum;
+      for (Scenario scenario : {Paper(), DenseFog()}) {
+        scenario.arbitrator.transfer.profile = profile;
+        scenario.arbitrator.transfer.duration_s = 1.3;
+        scenario.arbitrator.transfer.jerk_mps3 = 0.8;
+        scenario.arbitrator.transfer.gate = gate;
+        for (scenario.seed = 1; scenario.seed <= 5; ++scenario.seed) {
+          SCOPED_TRACE(testing::Message()
+                       << scenario.title << ", profile " << static_cast<int>(profile) << ", gate "
+                       << gate << ", seed " << scenario.seed);
+          const UnderWay under_way = ExpectTheDefinition(scenario);
+          sum.there += under_way.there;
+          sum.back += under_way.back;
+        }
+        ASSERT_FALSE(HasFailure());
+      }
+      const bool abrupt = profile == TransferProfile::kStep && !gate;
+      EXPECT_EQ(sum.there > 5, !abrupt) << sum.there;
+      EXPECT_EQ(sum.back > 5, !abrupt) << sum.back;
+    }
+  }
+}
+
+// The ACC plans from the acceleration that the host really has. So in every step of a return, jump
+// or ramp, what it offers is within the engine's share of one change of u of what was commanded
+// before, whoever commanded it; and the share of the command that is its own makes no bump.
+TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
+  constexpr double kRounding = 1e-9;
+  for (const TransferProfile profile : kAllProfiles) {
+    int returning = 0;
+    for (Scenario scenario : {Paper(), DenseFog()}) {
+      scenario.arbitrator.transfer.profile = profile;
+      scenario.arbitrator.transfer.duration_s = 1.3;
+      const double share = -std::expm1(-scenario.step_s / scenario.acc.engine_time_constant_s);
+      const double bump_mps2 = share * scenario.acc.max_jerk_mps3 * scenario.step_s;
+      for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
+        const std::vector<Step> run = StepsOf(scenario);
+        for (std::size_t k = 1; k < run.size(); ++k) {
+          if (run[k].human_wanted || run[k - 1].lambda_human == 0) continue;
+          const double before_mps2 = run[k - 1].command_mps2;
+          const double outside_mps2 =
+              std::abs(before_mps2 - std::clamp(before_mps2, scenario.acc.min_acceleration_mps2,
+                                                scenario.acc.max_acceleration_mps2));
+          const double most_mps2 = bump_mps2 + share * outside_mps2;
+          EXPECT_LE(std::abs(run[k].automation_mps2 - before_mps2), most_mps2 + kRounding)
+              << scenario.title << " seed " << scenario.seed << " step " << k;
+          const double humans_mps2 =
+              run[k].lambda_human * std::abs(run[k].human_mps2 - before_mps2);
+          EXPECT_LE(std::abs(run[k].command_mps2 - before_mps2),
+                    humans_mps2 + (1 - run[k].lambda_human) * most_mps2 + kRounding)
+              << scenario.title << " seed " << scenario.seed << " step " << k;
+          ++returning;
+        }
+      }
+    }
+    EXPECT_GE(returning, 20);
+  }
 }
 
 }  // namespace
