@@ -1,63 +1,42 @@
 // Every policy has one digest, however the messages travel: it has a say in two processes, and each
 // has an instance of its own.
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
 
 #include "scenario/scenario.h"
-#include "tests/support/command.h"
+#include "tests/integration/transports.h"
 
 namespace fogline::test {
 namespace {
 
-class PolicyTransportTest : public testing::TestWithParam<std::size_t> {
- protected:
-  static std::string_view Name(std::size_t row) { return ChoiceNames<Policy>::kNames[row]; }
+/// The LiDAR loses the car in step 15 or so; the wheel changes hands with all that is smooth.
+const std::vector<std::string> kFoggy{"/steps=60",
+                                      "/fog/start_s=1",
+                                      "/fog/duration_s=4",
+                                      "/arbitrator/transfer/profile=sigmoid",
+                                      "/arbitrator/transfer/gate=true",
+                                      "/arbitrator/transfer/hysteresis=sprt",
+                                      "/arbitrator/transfer/min_dwell_s=1"};
 
-  /// The LiDAR loses the car in step 15 or so; the wheel changes hands with all that is smooth.
-  nlohmann::json Run(const std::string& transport) const {
-    const Outcome outcome = RunCommand({Program("fogline"),
-                                        "run",
-                                        "scenario/dense_fog.json",
-                                        "--json",
-                                        "--quiet",
-                                        "--transport",
-                                        transport,
-                                        "--log",
-                                        folder_.File(transport + ".lcm"),
-                                        "--set",
-                                        "/steps=60",
-                                        "--set",
-                                        "/fog/start_s=1",
-                                        "--set",
-                                        "/fog/duration_s=4",
-                                        "--set",
-                                        "/arbitrator/policy=" + std::string(Name(GetParam())),
-                                        "--set",
-                                        "/arbitrator/transfer/profile=sigmoid",
-                                        "--set",
-                                        "/arbitrator/transfer/gate=true",
-                                        "--set",
-                                        "/arbitrator/transfer/hysteresis=sprt",
-                                        "--set",
-                                        "/arbitrator/transfer/min_dwell_s=1"});
-    EXPECT_EQ(outcome.code, 0) << transport << ": " << outcome.err;
-    return nlohmann::json::parse(outcome.out, nullptr, false);
-  }
+void ExpectOneDigest(std::string_view policy, const std::vector<std::string>& more = {}) {
+  const ScratchFolder folder;
+  std::vector<std::string> fields = kFoggy;
+  fields.push_back("/arbitrator/policy=" + std::string(policy));
+  fields.insert(fields.end(), more.begin(), more.end());
+  ExpectTheSameOnAnyTransport(
+      [&](const std::string& transport) {
+        return RunOn(transport, "scenario/dense_fog.json", folder.File(transport + ".lcm"), fields);
+      },
+      60);
+}
 
-  ScratchFolder folder_;
-};
+class PolicyTransportTest : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(PolicyTransportTest, HasTheSameDigestInOneProcessInMemoryAndOverTheNetwork) {
-  const auto direct = Run("direct");
-  ASSERT_EQ(direct["digest"].get<std::string>().size(), 64U);
-  for (const char* transport : {"memq", "udpm"}) {
-    const auto other = Run(transport);
-    EXPECT_EQ(other["steps"], 60) << transport;
-    EXPECT_EQ(other["digest"], direct["digest"]) << transport;
-  }
+  ExpectOneDigest(ChoiceNames<Policy>::kNames[GetParam()]);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheTable, PolicyTransportTest,
@@ -65,6 +44,29 @@ INSTANTIATE_TEST_SUITE_P(OfTheTable, PolicyTransportTest,
                          [](const auto& row) {
                            return std::string(ChoiceNames<Policy>::kNames[row.param]);
                          });
+
+TEST(PolicyOnAPosteriorTest, HasTheSameDigestInOneProcessInMemoryAndOverTheNetwork) {
+  ExpectOneDigest("bayes",
+                  {"/arbitrator/measure=lidar_modes", "/arbitrator/measure_scale=probability"});
+}
+
+TEST(PolicyThatSharesTest, HasOneDigestAlsoWithADriverWhoMustBeAsked) {
+  ExpectOneDigest("blend",
+                  {"/arbitrator/take_over/mode=requested", "/arbitrator/take_over/time/mean_s=1",
+                   "/arbitrator/take_over/time/std_s=0.01"});
+}
+
+TEST(PolicyOnAPosteriorTest, IsRefusedBeforeTheRunForAMeasureThatIsNone) {
+  for (const char* transport : {"direct", "udpm"}) {
+    const Outcome outcome =
+        RunCommand({Program("fogline"), "run", "scenario/dense_fog.json", "--transport", transport,
+                    "--set", "/arbitrator/measure_scale=probability"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err,
+              "scenario/dense_fog.json: error: /arbitrator/measure_scale: \"probability\" is for "
+              "measures that are one, as \"lidar_modes\"; /arbitrator/measure is \"doc\"\n");
+  }
+}
 
 }  // namespace
 }  // namespace fogline::test

@@ -158,6 +158,44 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
+// Behind him a column of ACCs and people, none of whom may miss a step.
+TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
+  constexpr int kSteps = 140;
+  constexpr int kColumn = 5;
+  RealtimeRun run(
+      "scenario/dense_fog.json", kSteps, kSpeed,
+      {"/fog/start_s=1", "/fog/duration_s=4", "/arbitrator/take_over/mode=requested",
+       "/arbitrator/take_over/time/mean_s=10.55", "/arbitrator/take_over/time/std_s=0.01",
+       "/followers/count=5", "/followers/driver=drawn", "/followers/style=drawn"});
+  const auto result = run.Finish();
+  EXPECT_EQ(result["steps"], kSteps);
+  EXPECT_EQ(result["realtime"]["missed_messages"], 0) << result["realtime"].dump(2);
+
+  const Outcome events = RunCommand({Program("fogline"), "events", run.log(), "--json"});
+  ASSERT_EQ(events.code, 0) << events.err;
+  const auto requests = nlohmann::json::parse(events.out).at(0)["requests"];
+  ASSERT_EQ(requests.size(), 1U) << events.out;
+  const auto after_s = [&](const char* what) {
+    return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
+  };
+  // A decision may be a step late when its inputs are.
+  EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
+  EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
+  EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);
+  EXPECT_EQ(after_s("transferred_s"), after_s("acknowledged_s"));
+  EXPECT_GE(after_s("effective_s"), after_s("transferred_s"));
+  EXPECT_LE(after_s("effective_s"), after_s("transferred_s") + 2 * kStepS);
+
+  const Log log(run.log());
+  ExpectNoCollision(log);
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    ASSERT_TRUE(log.follower.contains(step)) << step;
+    EXPECT_EQ(log.follower.at(step).num_followers, kColumn) << step;
+    EXPECT_EQ(log.truth.at(step).num_followers, kColumn) << step;
+  }
+}
+
 /// How a role fails, in which scenario.
 struct Fault {
   std::string scenario;

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/command.h"
+#include "tests/integration/transports.h"
 
 namespace fogline::test {
 namespace {
@@ -40,13 +40,20 @@ class TrafficTest : public testing::Test {
 };
 
 TEST_F(TrafficTest, HasTheSameDigestAndMeasuresOnAnyTransport) {
-  const nlohmann::json direct = Run("direct");
-  EXPECT_EQ(direct["steps"], 80);
-  for (const char* transport : {"memq", "udpm"}) {
-    const nlohmann::json other = Run(transport);
-    EXPECT_EQ(other["digest"], direct["digest"]) << transport;
-    EXPECT_EQ(other["metrics"], direct["metrics"]) << transport;
-  }
+  ExpectTheSameOnAnyTransport([this](const std::string& on) { return Run(on); }, 80);
+}
+
+TEST_F(TrafficTest, OfPeopleWhoSeeInFogHasTheSameDigestToo) {
+  const std::vector<std::string> foggy{"/steps=60", "/fog/start_s=0", "/followers/count=3",
+                                       "/followers/driver=human", "/followers/style=drawn"};
+  const auto run = [&](const std::string& transport, const std::string& sight) {
+    std::vector<std::string> fields = foggy;
+    fields.push_back("/followers/sight=" + sight);
+    return RunOn(transport, "scenario/dense_fog.json", folder_.File(transport + ".lcm"), fields);
+  };
+  const auto direct = ExpectTheSameOnAnyTransport(
+      [&](const std::string& transport) { return run(transport, "fog"); }, 60);
+  EXPECT_NE(direct["digest"], run("direct", "perfect")["digest"]) << "it makes a difference";
 }
 
 TEST_F(TrafficTest, IsMeasuredCarByCarFromTheLogAlone) {

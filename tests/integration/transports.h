@@ -1,0 +1,47 @@
+// One run on every transport: the same digest however the messages travel.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+
+/// The result of `fogline run` with these fields set, as JSON; it must have succeeded.
+/// @param more further arguments
+inline nlohmann::json RunOn(const std::string& transport, const std::string& scenario,
+                            const std::string& log, const std::vector<std::string>& fields,
+                            const std::vector<std::string>& more = {}) {
+  std::vector<std::string> command{Program("fogline"), "run",     scenario, "--json", "--quiet",
+                                   "--transport",      transport, "--log",  log,      "--force"};
+  for (const std::string& field : fields) command.insert(command.end(), {"--set", field});
+  command.insert(command.end(), more.begin(), more.end());
+  const Outcome outcome = RunCommand(command, std::chrono::seconds(120));
+  EXPECT_EQ(outcome.code, 0) << transport << ": " << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+/// In one process, in memory and over the network it has the same digest, measures, and steps.
+/// @param run runs it on a transport
+/// @return the result of the run in one process
+inline nlohmann::json ExpectTheSameOnAnyTransport(
+    const std::function<nlohmann::json(const std::string& transport)>& run, int steps) {
+  const nlohmann::json direct = run("direct");
+  EXPECT_EQ(direct["steps"], steps);
+  EXPECT_EQ(direct["digest"].get<std::string>().size(), 64U);
+  for (const char* transport : {"memq", "udpm"}) {
+    const nlohmann::json other = run(transport);
+    EXPECT_EQ(other["steps"], steps) << transport;
+    EXPECT_EQ(other["digest"], direct["digest"]) << transport;
+    EXPECT_EQ(other["metrics"], direct["metrics"]) << transport;
+  }
+  return direct;
+}
+
+}  // namespace fogline::test
