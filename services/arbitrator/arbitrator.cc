@@ -1,5 +1,7 @@
 #include "services/arbitrator/arbitrator.h"
 
+#include <algorithm>
+
 #include "services/policies/policies.h"
 
 namespace fogline {
@@ -10,7 +12,8 @@ Arbitrator::Arbitrator(const Scenario& scenario)
       rule_(RowOf(scenario.arbitrator.policy).rule),
       shares_(RowOf(scenario.arbitrator.policy).shares),
       steady_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
-      transfer_(scenario.arbitrator.transfer, scenario.step_s) {
+      transfer_(scenario.arbitrator.transfer, scenario.step_s),
+      easing_per_step_(scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s) {
   out_.threshold = threshold_;
   if (rule_ == Rule::kOwn) policy_ = RowOf(scenario.arbitrator.policy).make(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
@@ -102,9 +105,13 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     // run.
     const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
     granted_ = shared ? wanted : 1;
+    // On a ramp the automation that leaves goes on easing: it does not accelerate again.
+    eased_mps2_ = std::max(0.0, eased_mps2_ - easing_per_step_);
+    if (!shared) offers.automation_mps2 = std::min(offers.automation_mps2, eased_mps2_);
   } else {
     granted_ = 0;
     offers.automation_mps2 = asked.acceleration_mps2;
+    eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
   // Who ends a manoeuvre has the wheel at once: the automation is off and has no share to give.
   if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});

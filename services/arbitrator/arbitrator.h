@@ -85,6 +85,8 @@ class Arbitrator {
   Transfer transfer_;
   Surroundings surroundings_;
   std::optional<TakeOver> take_over_;  // only of a driver who must be asked
+  double easing_per_step_;             // m/s2; how fast an acceleration is let go after a request
+  double eased_mps2_ = 0;              // more than this the automation does not accelerate then
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H, where the transfer ends
   std::optional<double> sent_mps2_;  // command of the step before

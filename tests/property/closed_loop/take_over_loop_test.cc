@@ -1,5 +1,8 @@
 // The fallback in the closed loop of the shipped scenarios, with drivers who come and who do not.
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -102,6 +105,69 @@ TEST_F(TakeOverLoopTest, KeepsTheRulesWhoeverComes) {
   }
   EXPECT_GE(requests, 20);
   EXPECT_GT(manoeuvres, 3);
+}
+
+/// What is left of the wheel, in [0, 1], for him who leaves it in the first step of a transfer.
+double LeftInTheFirstStep(const Scenario& scenario) {
+  const TransferSection& section = scenario.arbitrator.transfer;
+  const double progress = scenario.step_s / section.duration_s;
+  const auto logistic = [](double x) { return 1 / (1 + std::exp(-x)); };
+  switch (section.profile) {
+    case TransferProfile::kLinear:
+      return 1 - progress;
+    case TransferProfile::kSigmoid:
+      return 1 - (logistic(10 * progress - 5) - logistic(-5.0)) / (logistic(5.0) - logistic(-5.0));
+    default:
+      return 0;
+  }
+}
+
+// The command of the step in which the driver gets the wheel, or the automation has it back, is
+// made of the new one's offer: all of it, or, on a ramp, as much as its first step gives him. So it
+// differs from what the old one would have commanded by that share of the difference of the two.
+// Who ends a manoeuvre has all of it at once.
+TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
+  for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
+                                        TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {
+    std::array<int, 3> felt{};  // to the driver, from a manoeuvre, to the automation
+    for (std::int64_t seed = 1; seed <= 40; ++seed) {
+      Scenario scenario = Paper();
+      scenario.seed = seed;
+      scenario.steps = 700;
+      scenario.arbitrator.transfer.profile = profile;
+      scenario.arbitrator.transfer.duration_s = 1.3;
+      scenario.arbitrator.take_over.time = {.mean_s = 8, .std_s = 3};
+      const Driven driven = Drive(scenario);
+      const double easing = scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s;
+      const double jerk = scenario.arbitrator.transfer.jerk_mps3 * scenario.step_s;
+      for (std::size_t k = 1; k < driven.commands.size(); ++k) {
+        const Authority from = AuthorityOf(StateOf(driven.commands[k - 1].mode));
+        const Authority to = AuthorityOf(StateOf(driven.commands[k].mode));
+        const bool to_human = to == Authority::kHuman && from != Authority::kHuman;
+        const bool to_automation = to == Authority::kAutomation && from == Authority::kHuman;
+        if (!to_human && !to_automation) continue;
+        SCOPED_TRACE(testing::Message() << "profile " << static_cast<int>(profile) << ", seed "
+                                        << seed << ", step " << k);
+        const bool ends_manoeuvre = to_human && from >= Authority::kComfort;
+        const double before = driven.commands[k - 1].acceleration_mps2;
+        const double eased = std::min(driven.automation_mps2[k], std::max(0.0, before - easing));
+        const double old_offer = to_human ? eased : driven.human_mps2[k];
+        const double new_offer = to_human ? driven.human_mps2[k] : driven.automation_mps2[k];
+        const double left = ends_manoeuvre ? 0 : LeftInTheFirstStep(scenario);
+        double expected = left * old_offer + (1 - left) * new_offer;
+        if (profile == TransferProfile::kJerkLimited && !ends_manoeuvre) {
+          expected = std::clamp(expected, before - jerk, before + jerk);
+        }
+        const arbitration_t& command = driven.commands[k];
+        EXPECT_NEAR(to_human ? command.lambda_automation : command.lambda_human, left, kRounding);
+        EXPECT_NEAR(command.acceleration_mps2, expected, kRounding);
+        ASSERT_GT(std::abs(new_offer - old_offer), 1e-6) << "they want the same";
+        EXPECT_NE(command.acceleration_mps2, old_offer);
+        ++felt[ends_manoeuvre ? 1 : to_human ? 0 : 2];
+      }
+    }
+    for (const int count : felt) EXPECT_GE(count, 3);
+  }
 }
 
 TEST_F(TakeOverLoopTest, StandsAtTheEndIfNobodyComes) {
