@@ -12,6 +12,7 @@
 #include "services/follower_models/safety_response.h"
 #include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
+#include "services/policies/policies.h"
 #include "services/vehicle/longitudinal_vehicle.h"
 #include "tests/property/acc/draw.h"
 #include "tests/property/closed_loop/shipped.h"
@@ -156,6 +157,7 @@ bool CheckTraffic(const Shipped& shipped) {
   scenario.followers.count = 7;
   scenario.followers.driver = FollowerDriver::kDrawn;
   scenario.followers.style = FollowerStyle::kDrawn;
+  scenario.followers.sight = Sight::kFog;
   scenario.followers.safety_model = SafetyModelChoice::kReferenceHuman;
   scenario.host_vehicle.model = VehicleModel::kLongitudinal;
   scenario.follower_vehicle = {.model = VehicleModel::kLongitudinal, .car = CarKind::kCompact};
@@ -173,9 +175,12 @@ bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.time.mean_s = scenario.arbitrator.take_over.lead_s;
   scenario.arbitrator.take_over.absent_probability = 0.3;
   bool clean = true;
-  for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
-    std::int64_t steps = 0;
-    clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;
+  for (const char* policy : {"traded", "blend"}) {
+    scenario.arbitrator.policy = FindPolicy(policy).value();
+    for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
+      std::int64_t steps = 0;
+      clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;
+    }
   }
   std::printf("take-over: %s\n", clean ? "0 allocations" : "it allocates");
   return clean;
