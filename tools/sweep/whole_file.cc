@@ -1,5 +1,8 @@
 #include "tools/sweep/whole_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -12,12 +15,45 @@
 
 namespace fogline {
 
-WholeFile::WholeFile(std::filesystem::path file)
-    : file_(std::move(file)), part_(file_.string() + ".part"), out_(part_, std::ios::binary) {
-  if (!out_) {
-    throw InputError(
-        fmt::format("{}: error: cannot write: {}", file_.string(), std::strerror(errno)));
+namespace {
+
+std::filesystem::path PartOf(const std::filesystem::path& file) { return file.string() + ".part"; }
+
+/// Why no file can replace what has this name; "" if one can.
+std::string_view Obstacle(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(status)) return "it is a folder";
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return "it is no regular file";
   }
+  return "";
+}
+
+InputError CannotWrite(const std::filesystem::path& file, std::string_view option,
+                       std::string_view why) {
+  return InputError(fmt::format("{}: error: {}{}cannot write: {}", file.string(), option,
+                                option.empty() ? "" : ": ", why));
+}
+
+/// Makes an empty file and removes it again. @throws InputError that speaks of `result`
+void TryFile(const std::filesystem::path& file, const std::filesystem::path& result,
+             std::string_view option) {
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw CannotWrite(result, option, std::strerror(errno));
+  close(descriptor);
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+}
+
+}  // namespace
+
+WholeFile::WholeFile(std::filesystem::path file) : file_(std::move(file)), part_(PartOf(file_)) {
+  if (const std::string_view why = Obstacle(file_); !why.empty()) {
+    throw CannotWrite(file_, "", why);
+  }
+  out_.open(part_, std::ios::binary);
+  if (!out_) throw CannotWrite(file_, "", std::strerror(errno));
 }
 
 WholeFile::~WholeFile() {
@@ -47,6 +83,23 @@ void MakeFolderOf(const std::filesystem::path& file) {
     throw InputError(
         fmt::format("{}: error: cannot make the folder: {}", file.string(), error.message()));
   }
+}
+
+void RequireWritable(const std::filesystem::path& file, std::string_view option) {
+  if (const std::string_view why = Obstacle(file); !why.empty()) {
+    throw CannotWrite(file, option, why);
+  }
+  std::error_code error;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
+  if (error) throw CannotWrite(file, option, error.message());
+  TryFile(PartOf(file), file, option);
+}
+
+void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw CannotWrite(folder, option, error.message());
+  TryFile(folder / fmt::format(".fogline-{}", getpid()), folder, option);
 }
 
 }  // namespace fogline

@@ -11,7 +11,7 @@ namespace fogline {
 /// once.
 class WholeFile {
  public:
-  /// @throws InputError if no file can be there
+  /// @throws InputError if no file can be there, or what is there is a folder or device
   explicit WholeFile(std::filesystem::path file);
   /// Removes what was written unless Finish() has succeeded.
   ~WholeFile();
@@ -34,5 +34,15 @@ class WholeFile {
 
 /// Makes the folder of a file that is to be written. @throws InputError
 void MakeFolderOf(const std::filesystem::path& file);
+
+/// Finds out before long work whether its result could be kept: makes the folder of `file`, and for
+/// a moment a "FILE.part" in it. What has the name of `file` itself stays as it is.
+/// @param option that names it, such as "--out"
+/// @throws InputError "FILE: error: --out: cannot write: ..."
+void RequireWritable(const std::filesystem::path& file, std::string_view option);
+
+/// The same for a folder that is to hold files, whatever their names: makes it.
+/// @throws InputError "FOLDER: error: --png: cannot write: ..."
+void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option);
 
 }  // namespace fogline
