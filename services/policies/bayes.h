@@ -20,6 +20,7 @@ namespace fogline {
 class Bayes final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;
+  static constexpr bool kUsesThreshold = false;
 
   explicit Bayes(const Scenario& scenario) : section_(scenario.arbitrator.bayes) {}
 

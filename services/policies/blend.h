@@ -12,6 +12,7 @@ namespace fogline {
 class Blend final : public EngagementPolicy {
  public:
   static constexpr bool kShares = true;
+  static constexpr bool kUsesThreshold = false;
 
   explicit Blend(const Scenario& scenario) : section_(scenario.arbitrator.blend) {}
 

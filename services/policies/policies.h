@@ -16,6 +16,7 @@ struct PolicyRow {
   std::string_view doc;   // in a line
   bool trusts;            // has a say in the fusion
   Rule rule;              // what its say in the arbitrator comes to
+  bool uses_threshold;    // the scenario's threshold changes what it decides
   bool needs_true_gap;
   bool needs_surroundings;
   bool shares;
@@ -31,6 +32,7 @@ constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
           .doc = doc,
           .trusts = kTrusts,
           .rule = P::kRule,
+          .uses_threshold = P::kUsesThreshold && P::kRule != Rule::kNever,
           .needs_true_gap = P::kNeedsTrueGap,
           .needs_surroundings = P::kNeedsSurroundings,
           .shares = P::kShares,

@@ -100,6 +100,9 @@ class EngagementPolicy {
   /// Whether it shares: its wishes lie between all and nothing. A driver who must be asked is asked
   /// for any share, and has that share once he has come.
   static constexpr bool kShares = false;
+  /// Whether its decisions depend on the scenario's threshold; hidden by a policy of which they do
+  /// not, though it has a rule of its own.
+  static constexpr bool kUsesThreshold = true;
   /// Hidden by a policy that has no rule of its own.
   static constexpr Rule kRule = Rule::kOwn;
 

@@ -78,7 +78,8 @@ std::string ErrorOf(const std::vector<std::string>& more) {
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
-            "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters\n");
+            "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters; one does "
+            "with traded, adaptive, availability\n");
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),
             "fogline table: error: --set /arbitrator/threshold: the thresholds are those of "
             "--thresholds\n");

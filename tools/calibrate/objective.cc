@@ -7,6 +7,7 @@
 #include "scenario/loader.h"
 #include "scenario/wording.h"
 #include "tools/sweep/engine.h"
+#include "tools/sweep/threshold_curve.h"
 
 namespace fogline {
 namespace {
@@ -29,11 +30,7 @@ double Residual(const Statistics& reached, const std::optional<double>& target,
 
 Objective::Objective(CalibrationProblem problem)
     : problem_(std::move(problem)), thresholds_{.pointer = "/arbitrator/threshold", .values = {}} {
-  if (problem_.scenario.arbitrator.policy == Policy::kNone) {
-    throw InputError(
-        "error: /arbitrator/policy: without traded control there is no table to meet; "
-        "--set /arbitrator/policy=traded");
-  }
+  RequireThreshold(problem_.scenario, "scenario");
   for (const TargetRow& row : problem_.target) {
     thresholds_.values.push_back(NumberText(row.threshold));
   }

@@ -54,7 +54,7 @@ using GoOn = std::function<bool()>;
 /// way out.
 class Objective {
  public:
-  /// @throws InputError if the scenario never trades control
+  /// @throws InputError if no threshold matters to the scenario's policy
   explicit Objective(CalibrationProblem problem);
 
   /// The table with these values of the free fields, each within its bounds; none if `go_on` said

@@ -16,6 +16,7 @@
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/engine.h"
+#include "tools/sweep/threshold_curve.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -87,6 +88,7 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
                              .rhe_weight = arguments.rhe_weight,
                              .spread_weight = arguments.spread_weight,
                              .jobs = arguments.jobs};
+  RequireThreshold(problem.scenario, arguments.scenario);
   problem.target =
       arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
   if (problem.target.empty()) {
@@ -108,6 +110,7 @@ std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scen
   }
   const fs::path folder = fs::absolute(arguments.out).parent_path();
   if (!fs::is_directory(folder)) refuse(fmt::format("there is no folder {}", folder.string()));
+  RequireWritable(arguments.out, "--out");
   const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
   if (!read.error.empty()) refuse(fmt::format("{} {}", arguments.scenario.string(), read.error));
   std::string text = read.text;

@@ -162,7 +162,7 @@ ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<do
 
 ReportCurves ComputeCurves(const ReportArguments& arguments) {
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
-  RequireTradedControl(scenario, arguments.curves);
+  RequireThreshold(scenario, arguments.curves);
   std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
@@ -183,6 +183,8 @@ int RunReport(const ReportArguments& arguments) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
   }
   RefuseToReplaceOther(arguments.output);
+  RequireWritable(arguments.output, "--output");
+  if (!arguments.png.empty()) RequireWritableFolder(arguments.png, "--png");
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);

@@ -15,6 +15,7 @@
 #include "tools/fogline/threshold_rows.h"
 #include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -75,7 +76,6 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
 std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                      const ExperimentOptions& options, Scenario scenario,
                                      std::span<const double> thresholds, const SeedRange& seeds) {
-  if (!arguments.logs.empty()) std::filesystem::create_directories(arguments.logs);
   for (const Role role : options.external) {
     fmt::print(stderr, "each of {} runs waits on {} for the {}, which is started elsewhere\n",
                seeds.count() * (std::ssize(thresholds) + 1), options.transport, NameOf(role));
@@ -179,7 +179,7 @@ Scenario ScenarioOf(const TableArguments& arguments) {
     arguments.scenario.RefuseOverrideOf("/seed", "the seeds are those of --seeds");
   }
   Scenario scenario = arguments.scenario.Load();
-  RequireTradedControl(scenario, arguments.scenario.file());
+  RequireThreshold(scenario, arguments.scenario.file());
   return scenario;
 }
 
@@ -190,6 +190,7 @@ int RunTable(const TableArguments& arguments) {
                                                   : ParseSeeds(arguments.seeds);
   const std::int64_t seeds = range.count();
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
+  if (!arguments.logs.empty()) RequireWritableFolder(arguments.logs, "--logs");
   WatchInterrupts();
   const std::vector<ThresholdRow> rows =
       options.transport == "direct" && arguments.logs.empty()

@@ -4,9 +4,23 @@
 
 #include <fmt/format.h>
 
+#include "scenario/loader.h"
+#include "services/policies/policies.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline {
+
+void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file) {
+  const PolicyRow& policy = RowOf(scenario.arbitrator.policy);
+  if (policy.uses_threshold) return;
+  std::string others;
+  for (const PolicyRow& row : Policies()) {
+    if (row.uses_threshold) others += fmt::format("{}{}", others.empty() ? "" : ", ", row.name);
+  }
+  throw InputError(
+      fmt::format("{}: error: /arbitrator/policy is {}: no threshold matters; one does with {}",
+                  file.string(), policy.name, others));
+}
 
 std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
                                           std::span<const double> thresholds,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -29,6 +30,11 @@ struct ThresholdRow {
   Statistics rhe_pct;
   std::int64_t collisions = 0;  // runs with one
 };
+
+/// Refuses a scenario whose policy pays no heed to the threshold: its rows would all be the same.
+/// @param file where it comes from
+/// @throws InputError that names the policies which do
+void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file);
 
 /// Called after every seed with the number of seeds done; returns false to stop.
 using SeedsDone = std::function<bool(std::int64_t seeds)>;

@@ -112,7 +112,7 @@ TEST(ObjectiveTest, StopsWhenAsked) {
   EXPECT_FALSE(Objective(ShortProblem()).Evaluate(values, [] { return false; }));
 }
 
-TEST(ObjectiveTest, NeedsTradedControl) {
+TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
   CalibrationProblem problem = ShortProblem();
   problem.scenario.arbitrator.policy = Policy::kNone;
   try {
@@ -120,8 +120,8 @@ TEST(ObjectiveTest, NeedsTradedControl) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "error: /arbitrator/policy: without traded control there is no table to meet; "
-                 "--set /arbitrator/policy=traded");
+                 "scenario: error: /arbitrator/policy is none: no threshold matters; one does with "
+                 "traded, adaptive, availability");
   }
 }
 
