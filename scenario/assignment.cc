@@ -52,14 +52,34 @@ class Assigner {
     done_ = done_ || inner.done_;
   }
   void Text(std::string_view, std::string&, std::string_view) {}
-  void Numbers(std::string_view, std::vector<double>&, const NumberSpec&, const ListSpec&) {}
+  void Numbers(std::string_view name, std::vector<double>& list, const NumberSpec&,
+               const ListSpec&) {
+    double* const item = path_.size() == 2 ? ItemOf(name, list) : nullptr;
+    if (item != nullptr && value_.number) Done(*item = *value_.number);
+  }
   template <class Item>
-  void List(std::string_view, std::vector<Item>&, const ListSpec&) {}
+  void List(std::string_view name, std::vector<Item>& list, const ListSpec&) {
+    Item* const item = path_.size() > 2 ? ItemOf(name, list) : nullptr;
+    if (item == nullptr) return;
+    Assigner inner(path_.subspan(2), value_);
+    Item::Fields(*item, inner);
+    done_ = done_ || inner.done_;
+  }
 
   void Needs(const NeedSpec&) {}
 
  private:
   bool Here(std::string_view name) const { return path_.size() == 1 && path_.front() == name; }
+  /// The item of a list that the path leads to; nullptr if it leads elsewhere or there is none.
+  template <class Item>
+  Item* ItemOf(std::string_view name, std::vector<Item>& list) const {
+    if (path_.front() != name) return nullptr;
+    const std::string& text = path_[1];
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool is_index = error == std::errc() && end == text.data() + text.size();
+    return is_index && index < list.size() ? &list[index] : nullptr;
+  }
   template <class T>
   void Done(const T&) {
     done_ = true;

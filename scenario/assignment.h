@@ -10,14 +10,15 @@
 
 namespace fogline {
 
-/// A number, integer, flag or choice outside lists, by its JSON pointer.
+/// A number, integer, flag or choice, by its JSON pointer; in a list too, which then has the item.
 class FieldAssignment {
  public:
   /// @throws InputError if the pointer names no such field
   explicit FieldAssignment(std::string_view pointer);
 
-  /// Sets the field. The value is not checked against the field's range: ParseScenario() with an
-  /// override does that, once.
+  /// Sets the field. @throws InputError if that is none of its values, or its list has no such
+  /// item. The value is not checked against the field's range: ParseScenario() with an override
+  /// does that, once.
   void Set(Scenario& scenario, double number) const;
   /// The same for a value as it stands in a file: 0.5, true, traded.
   void Set(Scenario& scenario, std::string_view text) const;
