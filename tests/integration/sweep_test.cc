@@ -14,6 +14,7 @@
 namespace fogline::test {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 using SweepTest = SweepFixture;
@@ -205,7 +206,8 @@ TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
     const Outcome outcome = Sweep(jobs, sweep + Words{"--jobs", jobs});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err,
-                StartsWith("fogline sweep: error: /acc/weight_distance=1e6, seed 1: ACC: "));
+                StartsWith("scenario/paper.json: error: ACC: the weights make an ill-conditioned"));
+    EXPECT_THAT(outcome.err, EndsWith(" (at /acc/weight_distance=1e6, seed 1)\n"));
     EXPECT_EQ(Lines(Content(File(jobs))), 1 + 4) << jobs;
   }
 }

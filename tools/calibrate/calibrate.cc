@@ -138,7 +138,7 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
   search.Run(nlopt::GN_DIRECT_L, static_cast<int>(kGlobalPart * max_evaluations));
   search.Run(nlopt::LN_SBPLX, max_evaluations);
   if (search.found()) return search.TakeResult();
-  if (!search.refusal().empty()) throw InputError("error: " + search.refusal());
+  if (!search.refusal().empty()) throw InputError(search.refusal());
   return std::nullopt;
 }
 

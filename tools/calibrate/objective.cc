@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "scenario/loader.h"
 #include "scenario/wording.h"
 #include "tools/sweep/engine.h"
@@ -30,7 +32,7 @@ double Residual(const Statistics& reached, const std::optional<double>& target,
 
 Objective::Objective(CalibrationProblem problem)
     : problem_(std::move(problem)), thresholds_{.pointer = "/arbitrator/threshold", .values = {}} {
-  RequireThreshold(problem_.scenario, "scenario");
+  RequireThreshold(problem_.scenario, problem_.file);
   for (const TargetRow& row : problem_.target) {
     thresholds_.values.push_back(NumberText(row.threshold));
   }
@@ -42,9 +44,18 @@ Scenario Objective::With(std::span<const double> values) const {
   return scenario;
 }
 
+std::string Objective::NameOf(std::span<const double> values) const {
+  std::string name;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    name += fmt::format("{}{}={}", i == 0 ? "" : ", ", problem_.fields[i].pointer(),
+                        NumberText(values[i]));
+  }
+  return name;
+}
+
 std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                                               const GoOn& go_on) const {
-  const SweepPlan plan(With(values), {thresholds_}, problem_.seeds);
+  const SweepPlan plan(With(values), {thresholds_}, problem_.seeds, problem_.file);
   Evaluation evaluation;
   evaluation.rows.resize(problem_.target.size());
   bool complete = true;
@@ -60,8 +71,9 @@ std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
              });
   } catch (const InputError& error) {
     // Fields that are fine one by one can be impossible together, such as the weights of an ACC.
-    return Evaluation{
-        .rows = {}, .objective = std::numeric_limits<double>::max(), .refusal = error.what()};
+    return Evaluation{.rows = {},
+                      .objective = std::numeric_limits<double>::max(),
+                      .refusal = fmt::format("{} with {}", error.what(), NameOf(values))};
   }
   if (!complete) return std::nullopt;
   evaluation.objective = Sum(evaluation.rows);

@@ -17,6 +17,7 @@ namespace fogline {
 
 /// What a calibration starts from.
 struct CalibrationProblem {
+  std::string file = "scenario";  // where it comes from, for messages
   Scenario scenario;
   std::vector<FreeField> fields;
   std::vector<TargetRow> target;
@@ -67,6 +68,8 @@ class Objective {
   const CalibrationProblem& problem() const { return problem_; }
 
  private:
+  /// "/fog/bias_m=0.3": the values of the free fields, for messages.
+  std::string NameOf(std::span<const double> values) const;
   double Sum(const std::vector<TableRow>& rows) const;
 
   CalibrationProblem problem_;

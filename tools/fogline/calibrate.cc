@@ -81,7 +81,8 @@ struct CalibrateArguments {
 };
 
 CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
-  CalibrationProblem problem{.scenario = LoadScenario(arguments.scenario, arguments.overrides),
+  CalibrationProblem problem{.file = arguments.scenario.string(),
+                             .scenario = LoadScenario(arguments.scenario, arguments.overrides),
                              .fields = ParseFreeFields(arguments.free),
                              .target = {},
                              .seeds = ParseSeeds(arguments.seeds),

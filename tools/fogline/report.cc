@@ -163,6 +163,7 @@ ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<do
 ReportCurves ComputeCurves(const ReportArguments& arguments) {
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
   RequireThreshold(scenario, arguments.curves);
+  CheckPossible(scenario, arguments.curves);
   std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());

@@ -68,7 +68,7 @@ SweepPlan MakePlan(const SweepArguments& arguments) {
   for (const std::string& axis : arguments.grid) axes.push_back(ParseAxis(axis));
   const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
                                                   : ParseSeeds(arguments.seeds);
-  return SweepPlan(std::move(scenario), std::move(axes), seeds);
+  return SweepPlan(std::move(scenario), std::move(axes), seeds, arguments.scenario.string());
 }
 
 int Merge(const SweepArguments& arguments) {

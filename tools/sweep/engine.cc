@@ -30,9 +30,11 @@ void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
       plan_.Configure(unit, row, scenario_);
       rows.push_back(ComputeRow());
     } catch (const InputError& error) {
-      throw InputError(fmt::format("error: {}: {}", plan_.NameOf(unit, row), error.what()));
+      throw InputError(fmt::format("{}: error: {} (at {})", plan_.file(), error.what(),
+                                   plan_.NameOf(unit, row)));
     } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("{}: {}", plan_.NameOf(unit, row), error.what()));
+      throw std::runtime_error(
+          fmt::format("{}: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, row)));
     }
   }
 }

@@ -138,8 +138,8 @@ Shard ParseShard(const std::string& text) {
   return shard;
 }
 
-SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds)
-    : base_(std::move(base)), axes_(std::move(axes)), seeds_(seeds) {
+SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std::string file)
+    : base_(std::move(base)), file_(std::move(file)), axes_(std::move(axes)), seeds_(seeds) {
   const std::string text = PrintScenario(base_);
   CheckSetting(fmt::format("--seeds {}", seeds_.last), text, "/seed",
                fmt::format("{}", seeds_.last));

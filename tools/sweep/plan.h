@@ -55,8 +55,9 @@ Shard ParseShard(const std::string& text);
 /// arbitrator's axes.
 class SweepPlan {
  public:
+  /// @param file where the scenario comes from, for messages
   /// @throws InputError, ScenarioError if a value is none that its field can have
-  SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds);
+  SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std::string file = "scenario");
 
   std::int64_t units() const { return outer_points_ * seeds_.count(); }
   std::int64_t rows_per_unit() const { return inner_points_; }
@@ -77,6 +78,7 @@ class SweepPlan {
   std::int64_t SeedOf(std::int64_t unit) const { return seeds_.first + unit % seeds_.count(); }
 
   const Scenario& base() const { return base_; }
+  const std::string& file() const { return file_; }
   const std::vector<Axis>& axes() const { return axes_; }
   const SeedRange& seeds() const { return seeds_; }
 
@@ -86,6 +88,7 @@ class SweepPlan {
   std::size_t ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const;
 
   Scenario base_;
+  std::string file_;
   std::vector<Axis> axes_;
   SeedRange seeds_;
   std::vector<FieldAssignment> fields_;  // of each axis

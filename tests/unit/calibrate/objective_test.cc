@@ -101,9 +101,9 @@ TEST(ObjectiveTest, TellsWhyAScenarioCannotRun) {
   acc.weight_control = 1e-6;
   acc.weight_control_change = 0;
   EXPECT_EQ(Evaluate(problem).refusal,
-            "error: /arbitrator/threshold=0.5, seed 1: ACC: the weights make an ill-conditioned "
-            "problem; raise weight_control or lower the "
-            "other weights or horizon_steps");
+            "scenario: error: ACC: the weights make an ill-conditioned problem; raise "
+            "weight_control or lower the other weights or horizon_steps (at "
+            "/arbitrator/threshold=0.5, seed 1) with /fog/bias_m=0.4");
   EXPECT_THROW(Calibrate(Objective(problem), 5, Always, [](int, double) {}), InputError);
 }
 
