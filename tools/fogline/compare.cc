@@ -47,8 +47,8 @@ std::size_t FindColumn(const std::vector<std::string_view>& header, const std::s
                        const std::filesystem::path& file) {
   const auto it = std::ranges::find(header, name);
   if (it == header.end()) {
-    Refuse(file, fmt::format("no column {}; it has {}{}", QuoteShort(name), Shown(Names(header)),
-                             DidYouMean(Nearest(name, header))));
+    Refuse(file, fmt::format("no column {}; the first line names {}{}", QuoteShort(name),
+                             Shown(Names(header)), DidYouMean(Nearest(name, header))));
   }
   return static_cast<std::size_t>(it - header.begin());
 }
@@ -58,6 +58,10 @@ Recording ReadRecording(const CompareArguments& arguments, const std::string& ti
   const FileText csv = ReadFile(file, kMaxFileBytes);
   if (!csv.error.empty()) Refuse(file, csv.error);
   const std::vector<std::string_view> header = CsvHeader(csv.text);
+  if (header.empty()) {
+    Refuse(file, csv.text.empty() ? "the file is empty; it needs a header line that names columns"
+                                  : "the first line is empty; it must name the columns");
+  }
   const auto column = [&](const std::string& name) { return FindColumn(header, name, file); };
   auto columns = ReadCsvColumns(
       csv.text, {column(time_column), column(arguments.speed_column), column(arguments.gap_column)},
