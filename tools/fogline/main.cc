@@ -30,9 +30,9 @@ int Main(int argc, char** argv) {
       "  fogline run scenario/paper.json\n"
       "  fogline table --help");
   Action action;
-  for (const auto add :
-       {AddRun, AddTable, AddSweep, AddCalibrate, AddStudy, AddMetrics, AddCompare, AddReport,
-        AddDigest, AddDiff, AddEvents, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen}) {
+  for (const auto add : {AddRun, AddTable, AddSweep, AddCalibrate, AddStudy, AddMetrics, AddCompare,
+                         AddReport, AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph,
+                         AddCheck, AddTop, AddDoctor, AddKeygen}) {
     add(app, action);
   }
   try {

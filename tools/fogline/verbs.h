@@ -31,6 +31,8 @@ void AddReport(CLI::App& app, Action& action);
 void AddDigest(CLI::App& app, Action& action);
 void AddEvents(CLI::App& app, Action& action);
 void AddDiff(CLI::App& app, Action& action);
+void AddReplay(CLI::App& app, Action& action);
+void AddExport(CLI::App& app, Action& action);
 void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 void AddTop(CLI::App& app, Action& action);

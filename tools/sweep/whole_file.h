@@ -21,6 +21,9 @@ class WholeFile {
   /// @throws std::runtime_error when the disk is full
   void Write(std::string_view text);
 
+  /// Where it is until then, for somebody else to write it instead of Write().
+  const std::filesystem::path& part() const { return part_; }
+
   /// Replaces what has this name. @throws std::runtime_error
   void Finish();
 

@@ -1,0 +1,246 @@
+// `fogline export`: other programs get every number of a log to the last bit.
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/recorder/run_log.h"
+#include "services/runtime/wire.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Calls visit(name, values) for every field of a message, that of the header by its dotted names.
+template <class M, class Visit>
+void ForEachField(const M& message, const Visit& visit) {
+  VisitFields(message, [&]<class V>(std::string_view name, const V& value) {
+    if constexpr (std::is_same_v<V, header_t>) {
+      VisitFields(value, [&](std::string_view inner, const auto& number) {
+        visit(fmt::format("{}.{}", name, inner), std::span(&number, 1), false);
+      });
+    } else if constexpr (requires { value.data(); }) {
+      visit(std::string(name), std::span(value.data(), value.size()), true);
+    } else {
+      visit(std::string(name), std::span(&value, 1), false);
+    }
+  });
+}
+
+/// Calls visit.operator()<M>(message) for every message of a step.
+template <class Visit>
+void ForEachMessage(const StepMessages& messages, const Visit& visit) {
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    M message{};
+    ASSERT_TRUE(Decode(messages[channel], message));
+    visit(message);
+  });
+}
+
+class ExportTest : public testing::Test {
+ protected:
+  /// A run with fog and two following cars.
+  ExportTest() {
+    const Outcome run =
+        RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                    "--quiet", "--log", log_, "--set", "/steps=230", "--set", "/followers/count=2",
+                    "--set", "/title=\"F\u00f6hn\""});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+
+  Outcome Export(const Words& more) const {
+    Words command{Program("fogline"), "export", log_};
+    command.insert(command.end(), more.begin(), more.end());
+    return RunCommand(command);
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  const std::string out_ = folder_.File("csv");
+  const std::string mat_ = folder_.File("run.mat");
+};
+
+/// A CSV file that is read line by line.
+class Csv {
+ public:
+  explicit Csv(const std::filesystem::path& file) : stream_(Content(file)) { names_ = Cells(); }
+  const Words& names() const { return names_; }
+  Words Cells() {
+    std::string line;
+    Words cells;
+    std::getline(stream_, line);
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+  bool AtEnd() { return stream_.peek() == std::char_traits<char>::eof(); }
+
+ private:
+  std::istringstream stream_;
+  Words names_;
+};
+
+TEST_F(ExportTest, WritesEveryNumberOfEveryChannelAsCsvToTheLastBit) {
+  const Outcome outcome = Export({"--out", out_, "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["files"].size(), 10U);
+  std::map<std::string_view, Csv> files;
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    const std::string_view name = kChannels[channel].name;
+    files.emplace(name, out_ + "/" + std::string(name) + ".csv");
+  });
+  RunLogReader reader(log_);
+  while (const StepMessages* messages = reader.Next()) {
+    ForEachMessage(*messages, [&]<class M>(const M& message) {
+      Csv& file = files.at(ChannelOf<M>().name);
+      const Words cells = file.Cells();
+      ASSERT_EQ(cells.size(), file.names().size());
+      std::size_t next = 0;
+      ForEachField(
+          message, [&]<class T>(const std::string& name, std::span<const T> values, bool is_list) {
+            for (std::size_t i = 0; i < values.size(); ++i, ++next) {
+              ASSERT_LT(next, cells.size());
+              EXPECT_EQ(file.names()[next], is_list ? fmt::format("{}.{}", name, i) : name);
+              // int8_t is a number here, too.
+              std::conditional_t<std::is_same_v<T, std::int8_t>, int, T> number{};
+              const std::string& cell = cells[next];
+              std::from_chars(cell.data(), cell.data() + cell.size(), number);
+              EXPECT_EQ(std::memcmp(&number, &values[i], sizeof(T)), 0) << name << ": " << cell;
+            }
+          });
+      EXPECT_EQ(next, cells.size());
+    });
+  }
+  EXPECT_EQ(reader.run().steps, 230);
+  for (auto& [name, file] : files) EXPECT_TRUE(file.AtEnd()) << name;
+  EXPECT_EQ(nlohmann::json::parse(Content(out_ + "/scenario.json")),
+            nlohmann::json::parse(reader.run().scenario_text));
+}
+
+TEST_F(ExportTest, WritesEqualMatFilesOfLevel5ForEqualLogs) {
+  ASSERT_EQ(Export({"--out", mat_}).code, 0);
+  const std::string again = folder_.File("again.mat");
+  ASSERT_EQ(Export({"--out", again}).code, 0);
+  const std::string content = Content(mat_);
+  EXPECT_EQ(content, Content(again));
+  EXPECT_THAT(content, StartsWith("MATLAB 5.0 MAT-file"));
+  // Version 0x0100 and the mark of little endian, as level 5 files have it at byte 124.
+  EXPECT_EQ(content.substr(124, 4), std::string("\0\1IM", 4));
+}
+
+TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
+  ASSERT_EQ(Export({"--out", mat_}).code, 0);
+  ASSERT_EQ(Export({"--out", out_}).code, 0);
+  const auto error = [&](const std::string& out) {
+    const Outcome outcome = Export({"--out", out});
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_EQ(error(mat_), mat_ + ": error: --out: the file exists; --force replaces it\n");
+  EXPECT_EQ(error(out_), out_ + "/TRUTH.csv: error: --out: the file exists; --force replaces it\n");
+  EXPECT_EQ(Export({"--out", mat_, "--force"}).code, 0);
+  EXPECT_EQ(Export({"--out", out_, "--force"}).code, 0);
+  EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: Not a directory\n");
+  EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
+}
+
+TEST_F(ExportTest, WritesWhatALogThatWasCutOffHasAndSaysSo) {
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
+  const Outcome outcome = Export({"--out", out_});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("ends after step "));
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/HOST_COMMAND.csv"));
+}
+
+// The bytes of every field in Octave, column by column, in hexadecimal.
+constexpr const char* kOctave = R"(
+  s = load(argv(){1});
+  function show(name, x)
+    if isstruct(x)
+      for f = fieldnames(x)'
+        show([name "." f{1}], x.(f{1}));
+      end
+    else
+      printf("%s %s %d %d %s\n", name, class(x), rows(x), columns(x), ...
+             sprintf("%02x", typecast(x(:), "uint8")));
+    end
+  end
+  for f = fieldnames(s)'
+    if isstruct(s.(f{1})), show(f{1}, s.(f{1})); end
+  end
+  printf("title %s\n", jsondecode(s.scenario).title);
+)";
+
+/// Needs Octave: `tools/setup bench`.
+class OctaveExportTest : public ExportTest, public testing::WithParamInterface<int> {};
+
+TEST_P(OctaveExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
+  ASSERT_EQ(Export({"--out", mat_}).code, 0);
+  std::ofstream(folder_.File("show.m")) << kOctave;
+  const Outcome octave = RunCommand({"octave-cli", "--norc", folder_.File("show.m"), mat_});
+  ASSERT_EQ(octave.code, 0) << octave.err;
+  // GIVEN the same fields out of the log: for each a row of numbers for each message
+  struct Field {
+    std::string type;
+    std::vector<std::string> rows;  // bytes
+    std::size_t size = 0;           // of a number
+  };
+  std::map<std::string, Field> fields;
+  RunLogReader reader(log_);
+  while (const StepMessages* messages = reader.Next()) {
+    ForEachMessage(*messages, [&]<class M>(const M& message) {
+      ForEachField(message, [&]<class T>(const std::string& name, std::span<const T> values, bool) {
+        Field& field = fields[fmt::format("{}.{}", ChannelOf<M>().name, name)];
+        field.size = sizeof(T);
+        field.type = std::is_same_v<T, double> ? "double" : fmt::format("int{}", 8 * sizeof(T));
+        field.rows.emplace_back(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+      });
+    });
+  }
+  std::vector<std::string> expected;
+  for (const auto& [name, field] : fields) {
+    const std::size_t columns = field.rows.front().size() / field.size;
+    std::string hex;
+    for (std::size_t i = 0; i < columns; ++i) {
+      for (const std::string& row : field.rows) {
+        for (const char c : row.substr(i * field.size, field.size)) {
+          hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
+        }
+      }
+    }
+    expected.push_back(
+        fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), columns, hex));
+  }
+  expected.emplace_back("title F\u00f6hn");
+  // THEN they are what Octave shows
+  std::vector<std::string> shown;
+  std::istringstream lines(octave.out);
+  for (std::string line; std::getline(lines, line);) shown.push_back(line);
+  EXPECT_TRUE(std::ranges::is_permutation(shown, expected)) << octave.out.substr(0, 400);
+}
+
+INSTANTIATE_TEST_SUITE_P(Campaign, OctaveExportTest, testing::Values(0));
+
+}  // namespace
+}  // namespace fogline::test

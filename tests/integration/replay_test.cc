@@ -1,0 +1,159 @@
+// `fogline replay`: a role computes from a log's inputs what the log says that it has computed.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/wire.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+// All that roles read on demand, remember or draw.
+const Words kEverything{"--set", "/human/loses_awareness=true",
+                        "--set", "/human/misjudges=true",
+                        "--set", "/human/sight=fog",
+                        "--set", "/human/following=acc_idm",
+                        "--set", "/followers/count=4",
+                        "--set", "/followers/driver=drawn",
+                        "--set", "/host_vehicle/model=longitudinal",
+                        "--set", "/arbitrator/transfer/profile=sigmoid",
+                        "--set", "/arbitrator/transfer/gate=true",
+                        "--set", "/arbitrator/transfer/hysteresis=sprt",
+                        "--set", "/arbitrator/transfer/min_dwell_s=1"};
+
+class ReplayTest : public testing::Test {
+ protected:
+  std::string Log(const std::string& scenario, const Words& more) const {
+    const std::string log = folder_.File("run.lcm");
+    Words command{Program("fogline"), "run", scenario, "--quiet", "--log", log};
+    command.insert(command.end(), more.begin(), more.end());
+    const Outcome run = RunCommand(command);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return log;
+  }
+
+  static Outcome Replay(const Words& arguments) {
+    Words command{Program("fogline"), "replay"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return RunCommand(command);
+  }
+
+  /// Expects that every role computes every step of a log again.
+  static void ExpectSame(const std::string& log, int steps) {
+    const Outcome replay = Replay({log, "--all", "--json"});
+    EXPECT_EQ(replay.code, 0) << replay.out << replay.err;
+    const auto json = nlohmann::json::parse(replay.out, nullptr, false);
+    EXPECT_EQ(json["same"], true);
+    EXPECT_EQ(json["steps"], steps);
+    ASSERT_EQ(json["roles"].size(), 8U);
+    for (const auto& role : json["roles"]) EXPECT_EQ(role["same"], true) << role;
+  }
+
+  /// A copy of a log in which the track of a step has a distance that is 0.25 m larger.
+  std::string Altered(const std::string& log, std::int64_t step) const {
+    const std::string altered = folder_.File("altered.lcm");
+    EventLogReader reader(log);
+    EventLogWriter writer(altered);
+    while (const auto event = reader.Next()) {
+      std::vector<std::uint8_t> bytes(event->data.begin(), event->data.end());
+      track_t track{};
+      if (event->channel == "TRACK" && Decode(bytes, track) && track.header.step == step) {
+        track.state[0] += 0.25;
+        Encode(track, bytes);
+      }
+      writer.Write(event->channel, event->utime, bytes);
+    }
+    return altered;
+  }
+
+  const ScratchFolder folder_;
+};
+
+TEST_F(ReplayTest, ComputesALogOfProcessesOnANetworkAgain) {
+  ExpectSame(Log("scenario/paper.json", {"--set", "/steps=250"}), 250);
+}
+
+TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
+  ExpectSame(Log("scenario/paper.json", {"--transport", "direct"}), 500);
+}
+
+TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
+  // bayes: the arbitrator reads the truth on demand; oracle: the fusion. The driver reads who
+  // drives.
+  for (const char* policy : {"bayes", "oracle"}) {
+    SCOPED_TRACE(policy);
+    Words more = kEverything;
+    more.insert(more.end(), {"--transport", "direct", "--force", "--set",
+                             std::string("/arbitrator/policy=") + policy});
+    ExpectSame(Log("scenario/dense_fog.json", more), 700);
+  }
+}
+
+TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
+  const std::string log =
+      Altered(Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=250"}), 200);
+  // The fusion's output is not what it computes; that the next steps are shows that its inputs are
+  // the log's.
+  const Outcome fusion = Replay({log, "--role", "fusion", "--json"});
+  EXPECT_EQ(fusion.code, 1);
+  const auto role = nlohmann::json::parse(fusion.out)["roles"][0];
+  EXPECT_EQ(role["steps_that_differ"], 1);
+  EXPECT_EQ(role["first"]["step"], 200);
+  EXPECT_EQ(role["first"]["channel"], "TRACK");
+  EXPECT_EQ(role["first"]["field"], "state[0]");
+  EXPECT_NEAR(std::stod(role["first"]["log"].get<std::string>()),
+              std::stod(role["first"]["replay"].get<std::string>()) + 0.25, 1e-9);
+  // The ACC reads it, and computes another command from it.
+  const Outcome acc = Replay({log, "--role", "acc"});
+  EXPECT_EQ(acc.code, 1);
+  EXPECT_THAT(acc.out, HasSubstr("first in step 200: ACC_COMMAND acceleration_mps2: "));
+  // The radar does not.
+  EXPECT_EQ(Replay({log, "--role", "radar"}).code, 0);
+}
+
+TEST_F(ReplayTest, TakesALogThatWasCutOffAsFarAsItGoes) {
+  const std::string log = Log("scenario/paper.json", {"--transport", "direct"});
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
+  const Outcome replay = Replay({log, "--role", "world"});
+  EXPECT_EQ(replay.code, 1);
+  EXPECT_THAT(replay.out, HasSubstr("same: 2"));
+  EXPECT_THAT(replay.err, HasSubstr("ends after step 2"));
+}
+
+TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {
+  const std::string log =
+      Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=5"});
+  const auto error = [](const Words& arguments) {
+    const Outcome outcome = Replay(arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    return outcome.err;
+  };
+  EXPECT_EQ(error({log}), "fogline replay: error: give one of --role and --all\n");
+  EXPECT_EQ(error({log, "--role", "fusio"}),
+            "fogline replay: error: --role fusio: not one of \"world\", \"radar\", \"lidar\", "
+            "\"fusion\", \"acc\", \"driver\", \"arbitrator\", \"follower\"; did you mean "
+            "\"fusion\"?\n");
+  EXPECT_THAT(error({log, "--role", "recorder"}), HasSubstr("--role recorder: not one of"));
+  EXPECT_THAT(error({"scenario/paper.json", "--all"}), HasSubstr("scenario/paper.json: error: "));
+}
+
+TEST_F(ReplayTest, RefusesALogOfARunInRealtime) {
+  const std::string log =
+      Log("scenario/paper.json", {"--realtime", "--pace", "100", "--set", "/steps=20"});
+  const Outcome replay = Replay({log, "--all"});
+  EXPECT_EQ(replay.code, 2);
+  EXPECT_THAT(replay.err, HasSubstr(log + ": error: a run in real time"));
+}
+
+}  // namespace
+}  // namespace fogline::test

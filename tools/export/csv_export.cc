@@ -1,0 +1,82 @@
+#include "tools/export/csv_export.h"
+
+#include <iterator>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "services/graph.h"
+#include "tools/sweep/whole_file.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::string_view kScenarioFile = "scenario.json";
+// Text is handed over in pieces of about this size, so that it takes little memory.
+constexpr std::size_t kPieceBytes = 1 << 16;
+
+std::filesystem::path FileOf(std::string_view channel, const std::filesystem::path& folder) {
+  return folder / fmt::format("{}.csv", channel);
+}
+
+std::string HeaderLine(const ChannelTable& table) {
+  std::string line;
+  for (const FieldTable& field : table.fields) {
+    for (std::size_t i = 0; i < field.width; ++i) {
+      if (!line.empty()) line += ',';
+      line += field.is_list ? fmt::format("{}.{}", field.name, i) : field.name;
+    }
+  }
+  return line + '\n';
+}
+
+void AppendRow(const ChannelTable& table, std::size_t row, std::string& text) {
+  bool first = true;
+  for (const FieldTable& field : table.fields) {
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t i = row * field.width; i < (row + 1) * field.width; ++i) {
+            if (!first) text += ',';
+            first = false;
+            fmt::format_to(std::back_inserter(text), "{}", values[i]);
+          }
+        },
+        field.values);
+  }
+  text += '\n';
+}
+
+void WriteChannel(const ChannelTable& table, const std::filesystem::path& path) {
+  WholeFile file(path);
+  std::string text = HeaderLine(table);
+  for (std::size_t row = 0; row < table.messages; ++row) {
+    AppendRow(table, row, text);
+    if (text.size() < kPieceBytes) continue;
+    file.Write(text);
+    text.clear();
+  }
+  file.Write(text);
+  file.Finish();
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace == Pace::kStep) files.push_back(FileOf(channel.name, folder));
+  }
+  files.push_back(folder / kScenarioFile);
+  return files;
+}
+
+void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
+  for (const ChannelTable& table : tables.channels) {
+    WriteChannel(table, FileOf(table.name, folder));
+  }
+  WholeFile scenario(folder / kScenarioFile);
+  scenario.Write(tables.scenario + '\n');
+  scenario.Finish();
+}
+
+}  // namespace fogline

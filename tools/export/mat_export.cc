@@ -1,0 +1,146 @@
+#include "tools/export/mat_export.h"
+
+#include <matio.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "tools/sweep/whole_file.h"
+
+namespace fogline {
+namespace {
+
+// What a level 5 file begins with; readers look at its first word alone. Without the time of day,
+// which matio would put there.
+constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
+// Sizes are 32 bits there, and readers take them as signed.
+constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
+constexpr std::string_view kHeaderStruct = "header";
+
+struct Free {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+using Variable = std::unique_ptr<matvar_t, Free>;
+
+[[noreturn]] void Fail(const std::filesystem::path& file) {
+  throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", file.string()));
+}
+
+template <class T>
+struct MatType;
+template <>
+struct MatType<double> {
+  static constexpr matio_classes kClass = MAT_C_DOUBLE;
+  static constexpr matio_types kType = MAT_T_DOUBLE;
+};
+template <>
+struct MatType<std::int8_t> {
+  static constexpr matio_classes kClass = MAT_C_INT8;
+  static constexpr matio_types kType = MAT_T_INT8;
+};
+template <>
+struct MatType<std::int32_t> {
+  static constexpr matio_classes kClass = MAT_C_INT32;
+  static constexpr matio_types kType = MAT_T_INT32;
+};
+template <>
+struct MatType<std::int64_t> {
+  static constexpr matio_classes kClass = MAT_C_INT64;
+  static constexpr matio_types kType = MAT_T_INT64;
+};
+
+/// A field as a matrix with a row for each message; MAT-files have it column by column.
+matvar_t* MatrixOf(const FieldTable& field, std::size_t messages) {
+  return std::visit(
+      [&]<class T>(const std::vector<T>& values) {
+        std::vector<T> columns(values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          columns[i % field.width * messages + i / field.width] = values[i];
+        }
+        std::array<std::size_t, 2> size{messages, field.width};
+        return Mat_VarCreate(nullptr, MatType<T>::kClass, MatType<T>::kType, size.size(),
+                             size.data(), columns.data(), 0);
+      },
+      field.values);
+}
+
+/// A struct with these fields; those of the header are named by what follows "header.".
+Variable StructOf(const char* name, const std::vector<std::string>& names) {
+  std::vector<const char*> pointers;
+  for (const std::string& one : names) pointers.push_back(one.c_str());
+  const std::array<std::size_t, 2> size{1, 1};
+  pointers.push_back(nullptr);  // marks their end
+  return Variable(Mat_VarCreateStruct2(name, size.size(), size.data(), pointers.data()));
+}
+
+Variable StructOf(const ChannelTable& table) {
+  const std::string prefix = std::string(kHeaderStruct) + '.';
+  std::vector<std::string> of_header;
+  std::vector<std::string> names{std::string(kHeaderStruct)};
+  for (const FieldTable& field : table.fields) {
+    const bool in_header = field.name.starts_with(prefix);
+    (in_header ? of_header : names).push_back(field.name.substr(in_header ? prefix.size() : 0));
+  }
+  Variable all = StructOf(std::string(table.name).c_str(), names);
+  Variable header = StructOf(nullptr, of_header);
+  if (all == nullptr || header == nullptr) throw std::bad_alloc();
+  for (const FieldTable& field : table.fields) {
+    const bool in_header = field.name.starts_with(prefix);
+    const std::string name = field.name.substr(in_header ? prefix.size() : 0);
+    Mat_VarSetStructFieldByName((in_header ? header : all).get(), name.c_str(), 0,
+                                MatrixOf(field, table.messages));
+  }
+  Mat_VarSetStructFieldByName(all.get(), kHeaderStruct.data(), 0, header.release());
+  return all;
+}
+
+std::size_t BytesOf(const ChannelTable& table) {
+  std::size_t bytes = 0;
+  for (const FieldTable& field : table.fields) {
+    std::visit([&]<class T>(const std::vector<T>& values) { bytes += values.size() * sizeof(T); },
+               field.values);
+  }
+  return bytes;
+}
+
+Variable TextVariable(const char* name, std::string text) {
+  std::array<std::size_t, 2> size{1, text.size()};
+  return Variable(
+      Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
+}
+
+}  // namespace
+
+void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
+  for (const ChannelTable& table : tables.channels) {
+    if (BytesOf(table) < kMaxBytes) continue;
+    throw InputError(fmt::format(
+        "{}: error: {} has more than the 2 GB that a variable of a MAT-file can have; export the "
+        "log as CSV",
+        path.string(), table.name));
+  }
+  WholeFile file(path);
+  std::unique_ptr<mat_t, Free> mat(Mat_CreateVer(file.part().c_str(), kHeader, MAT_FT_MAT5));
+  if (mat == nullptr) Fail(path);
+  const auto write = [&](const Variable& variable) {
+    if (variable == nullptr || Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
+      Fail(path);
+    }
+  };
+  for (const ChannelTable& table : tables.channels) write(StructOf(table));
+  write(TextVariable("scenario", tables.scenario));
+  if (Mat_Close(mat.release()) != 0) Fail(path);
+  file.Finish();
+}
+
+}  // namespace fogline

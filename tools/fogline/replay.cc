@@ -1,0 +1,160 @@
+// fogline replay: whether a role still computes what it did when a log was made.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "scenario/wording.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/role_replay.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+struct ReplayArguments {
+  std::filesystem::path log;
+  std::string role;
+  bool all = false;
+  bool json = false;
+};
+
+/// A role, and what has come of it so far.
+struct Replayed {
+  Role role;
+  std::unique_ptr<RoleReplay> replay;
+  std::int64_t steps_that_differ = 0;
+  std::optional<Difference> first;  // `a` in the log, `b` computed here
+};
+
+[[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
+  throw InputError(fmt::format("{}: error: {}", log.string(), why));
+}
+
+/// The run that a log holds, without its steps. @throws InputError for a run in real time
+RunLog ReadRun(const std::filesystem::path& log) {
+  RunLogReader reader(log);
+  while (reader.Next() != nullptr) {
+  }
+  const RunLog& run = reader.run();
+  if (run.realtime) {
+    Refuse(log,
+           "a run in real time: a role uses what has come by its deadline, which no log tells; "
+           "replay takes runs in lockstep");
+  }
+  return run;
+}
+
+/// @throws InputError for a role that is none, or computes nothing
+std::vector<Replayed> ChosenRoles(const ReplayArguments& arguments, const RunLog& run) {
+  std::vector<Replayed> chosen;
+  std::vector<std::string_view> names;
+  for (const RoleInfo& info : kRoles) {
+    auto replay = MakeRoleReplay(info.role, run);
+    if (replay == nullptr) continue;
+    names.push_back(info.name);
+    if (!arguments.all && info.name != arguments.role) continue;
+    chosen.push_back({.role = info.role, .replay = std::move(replay)});
+  }
+  if (!chosen.empty()) return chosen;
+  throw InputError(fmt::format("error: --role {}: not one of {}{}", Shown(arguments.role),
+                               Shown(Names(names)), DidYouMean(Nearest(arguments.role, names))));
+}
+
+void Replay(const std::filesystem::path& log, std::vector<Replayed>& roles) {
+  RunLogReader reader(log);
+  StepMessages before{};  // its bytes live as long as the reader
+  std::int64_t step = 0;
+  try {
+    for (; const StepMessages* messages = reader.Next(); ++step) {
+      for (Replayed& one : roles) {
+        std::optional<Difference> difference = one.replay->Step(step, *messages, before);
+        if (!difference) continue;
+        ++one.steps_that_differ;
+        if (!one.first) one.first = std::move(difference);
+      }
+      before = *messages;
+    }
+  } catch (const InputError& error) {
+    Refuse(log, error.what());
+  }
+}
+
+nlohmann::ordered_json ToJson(const Replayed& one) {
+  nlohmann::ordered_json json{{"role", NameOf(one.role)},
+                              {"same", !one.first},
+                              {"steps_that_differ", one.steps_that_differ}};
+  if (!one.first) return json;
+  json["first"] = {{"step", one.first->step},
+                   {"channel", one.first->channel},
+                   {"field", one.first->field},
+                   {"log", one.first->a},
+                   {"replay", one.first->b}};
+  return json;
+}
+
+void PrintText(const Replayed& one, std::int64_t steps) {
+  if (!one.first) {
+    fmt::print("{:<11} same: {} steps\n", NameOf(one.role), steps);
+    return;
+  }
+  fmt::print("{:<11} differs in {} of {} steps, first in step {}: {} {}: {} in the log, {} here\n",
+             NameOf(one.role), one.steps_that_differ, steps, one.first->step, one.first->channel,
+             one.first->field, one.first->a, one.first->b);
+}
+
+int RunReplay(const ReplayArguments& arguments) {
+  if (arguments.all == !arguments.role.empty()) {
+    throw InputError("error: give one of --role and --all");
+  }
+  const RunLog run = ReadRun(arguments.log);
+  std::vector<Replayed> roles = ChosenRoles(arguments, run);
+  Replay(arguments.log, roles);
+  const bool same =
+      std::ranges::all_of(roles, [](const Replayed& one) { return !one.first.has_value(); });
+  if (arguments.json) {
+    nlohmann::ordered_json json{{"log", arguments.log.string()},
+                                {"steps", run.steps},
+                                {"complete", run.complete},
+                                {"same", same},
+                                {"roles", nlohmann::ordered_json::array()}};
+    for (const Replayed& one : roles) json["roles"].push_back(ToJson(one));
+    PrintJson(json.dump(2));
+  } else {
+    for (const Replayed& one : roles) PrintText(one, run.steps);
+  }
+  if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
+  return same && run.complete ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void AddReplay(CLI::App& app, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("replay", "Compute a log's steps again, role by role, and compare");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  verb->add_option("LOG", arguments->log, "Event log of a run in lockstep")->required();
+  CLI::Option* role =
+      verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
+  verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
+  verb->add_flag("--json", arguments->json, "Print as JSON");
+  verb->footer(
+      "Each step's inputs are the log's, so what one role computes otherwise does not carry over\n"
+      "to another. Scenario and seed are the log's, too. Outputs are compared bit by bit: a log "
+      "of\n"
+      "before a change tells which steps of which role the change has altered.\n\n"
+      "Exit code 0 when all outputs are the log's, 1 when one differs or the log is not complete,\n"
+      "2 when the log is none or is of a run in real time.\n\n"
+      "Examples:\n"
+      "  fogline run scenario/paper.json --log before.lcm\n"
+      "  fogline replay before.lcm --role fusion      # after a change of the fusion\n"
+      "  fogline replay before.lcm --all --json");
+  verb->callback([&action, arguments] { action = [arguments] { return RunReplay(*arguments); }; });
+}
+
+}  // namespace fogline
