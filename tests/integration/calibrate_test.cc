@@ -209,6 +209,11 @@ TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {
             scenario_ + ": error: --out: the file exists; --force replaces it\n");
   EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", "/nowhere/x.json"}),
             "/nowhere/x.json: error: --out: there is no folder /nowhere\n");
+  EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", folder_.path().string(), "--force"}),
+            folder_.path().string() + ": error: --out: cannot write: it is a folder\n");
+  EXPECT_THAT(with({"/fog/bias_m=0:1", "--set", "/arbitrator/policy=oracle"}),
+              testing::StartsWith(scenario_ + ": error: /arbitrator/policy is oracle: no threshold "
+                                              "matters; one does with traded, "));
   EXPECT_EQ(ErrorOf({"--free", "/fog/bias_m=0:1"}),
             scenario_ + ": error: /published: no rows to meet; give a --target\n");
   EXPECT_THAT(ErrorOf({}), testing::HasSubstr("--free is required"));

@@ -16,6 +16,7 @@
 namespace fogline::test {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -118,6 +119,10 @@ TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderrAndInThePage) 
   EXPECT_EQ(report.out, page + "\n");
   EXPECT_THAT(report.err, HasSubstr(log + ": cut off after event"));
   EXPECT_THAT(Read(page), HasSubstr(">incomplete log</span>"));
+  // AND both say how far it goes, the page where everybody sees it
+  EXPECT_THAT(report.err, HasSubstr("; ends after step "));
+  EXPECT_THAT(Read(page), ContainsRegex("<span class=\"origin\">cut off after event [^<]*; ends "
+                                        "after step [0-9]+ of 220"));
 }
 
 TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {
@@ -150,6 +155,25 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
               StartsWith("fogline report: error: --seeds 9:1: neither A:B"));
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=none"}),
               HasSubstr("/arbitrator/policy is none: no threshold matters"));
+}
+
+TEST(ReportVerbTest, TriesItsOutputsBeforeItComputes) {
+  // GIVEN curves that take minutes
+  const auto error_of = [](std::vector<std::string> more) {
+    more.insert(more.end(), {"--curves", "scenario/paper.json", "--seeds", "1:1000000"});
+    const Outcome outcome = Report(more);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  const ScratchFolder folder;
+  const std::string page = folder.File("report.html");
+  EXPECT_EQ(error_of({"--output", "/dev/null"}),
+            "/dev/null: error: --output: cannot write: it is no regular file\n");
+  EXPECT_EQ(error_of({"--output", "/proc/report.html"}),
+            "/proc/report.html: error: --output: cannot write: No such file or directory\n");
+  EXPECT_EQ(error_of({"--output", page, "--png", "/proc"}),
+            "/proc: error: --png: cannot write: No such file or directory\n");
+  EXPECT_FALSE(std::filesystem::exists(page));
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {

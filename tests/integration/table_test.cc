@@ -77,9 +77,14 @@ std::string ErrorOf(const std::vector<std::string>& more) {
 }
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
-  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
-            "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters; one does "
-            "with traded, adaptive, availability\n");
+  EXPECT_EQ(
+      ErrorOf({"--set", "/arbitrator/policy=none"}),
+      "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters; one does "
+      "with traded, adaptive, availability\n");
+  EXPECT_THAT(ErrorOf({"--set", "/arbitrator/policy=isolate"}),
+              HasSubstr("/arbitrator/policy is isolate: no threshold matters"));
+  EXPECT_EQ(ErrorOf({"--logs", "/proc"}),
+            "/proc: error: --logs: cannot write: No such file or directory\n");
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),
             "fogline table: error: --set /arbitrator/threshold: the thresholds are those of "
             "--thresholds\n");

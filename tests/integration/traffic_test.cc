@@ -164,6 +164,22 @@ TEST_F(CompareTest, ReplacesNoFile) {
   EXPECT_EQ(std::filesystem::file_size(recording), size);
 }
 
+TEST_F(CompareTest, SaysWhatARecordingWithoutAHeaderLacks) {
+  const std::string file = folder_.File("real.csv");
+  const auto error_of = [&](const std::string& content) {
+    std::ofstream(file) << content;
+    const Outcome outcome = Compare({file});
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_EQ(error_of(""),
+            file + ": error: the file is empty; it needs a header line that names columns\n");
+  EXPECT_EQ(error_of("\n1,2,3\n"),
+            file + ": error: the first line is empty; it must name the columns\n");
+  EXPECT_EQ(error_of("1,2,3\n4,5,6\n"),
+            file + ": error: no column \"Time\"; the first line names \"1\", \"2\", \"3\"\n");
+}
+
 TEST_F(CompareTest, RefusesARunBehindNoRecordedLeader) {
   const std::string log = folder_.File("paper.lcm");
   ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",

@@ -47,6 +47,12 @@ std::string OriginElement(const ReportRun& run) {
   return fmt::format("<span class=\"origin\">{}seed {}</span>", parts, run.seed);
 }
 
+/// How far a log goes that is not complete; nothing if it is.
+std::string ShortageElement(const ReportRun& run) {
+  if (run.shortage.empty()) return "";
+  return fmt::format("<span class=\"origin\">{}</span>", EscapeHtml(run.shortage));
+}
+
 /// Says that a log is not complete; nothing if it is.
 std::string Badge(const ReportRun& run) {
   if (run.shortage.empty()) return "";
@@ -68,9 +74,9 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   facts += CollisionFact(measures);
   return fmt::format(
       "<label class=\"run c{}\"><input type=\"checkbox\" value=\"{}\" checked>"
-      "<span class=\"name\">{}{}</span>{}<dl>{}</dl></label>\n",
+      "<span class=\"name\">{}{}</span>{}{}<dl>{}</dl></label>\n",
       index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), Badge(run), OriginElement(run),
-      facts);
+      ShortageElement(run), facts);
 }
 
 std::string FigureElement(const Figure& figure, std::size_t number) {
