@@ -149,7 +149,7 @@ TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {
 
 TEST_F(ReplayTest, RefusesALogOfARunInRealtime) {
   const std::string log =
-      Log("scenario/paper.json", {"--realtime", "--pace", "100", "--set", "/steps=20"});
+      Log("scenario/paper.json", {"--realtime", "--speed", "10", "--set", "/steps=20"});
   const Outcome replay = Replay({log, "--all"});
   EXPECT_EQ(replay.code, 2);
   EXPECT_THAT(replay.err, HasSubstr(log + ": error: a run in real time"));

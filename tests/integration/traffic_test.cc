@@ -177,7 +177,7 @@ TEST_F(CompareTest, SaysWhatARecordingWithoutAHeaderLacks) {
   EXPECT_EQ(error_of("\n1,2,3\n"),
             file + ": error: the first line is empty; it must name the columns\n");
   EXPECT_EQ(error_of("1,2,3\n4,5,6\n"),
-            file + ": error: no column \"Time\"; the first line names \"1\", \"2\", \"3\"\n");
+            file + ": error: the first line is \"1\", \"2\", \"3\"; it must name the columns\n");
 }
 
 TEST_F(CompareTest, RefusesARunBehindNoRecordedLeader) {

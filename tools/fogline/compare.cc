@@ -1,6 +1,7 @@
 // fogline compare: how a run's host drove beside a real car that was recorded behind the same
 // leader.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -47,10 +48,16 @@ std::size_t FindColumn(const std::vector<std::string_view>& header, const std::s
                        const std::filesystem::path& file) {
   const auto it = std::ranges::find(header, name);
   if (it == header.end()) {
-    Refuse(file, fmt::format("no column {}; the first line names {}{}", QuoteShort(name),
-                             Shown(Names(header)), DidYouMean(Nearest(name, header))));
+    Refuse(file, fmt::format("no column {}; it has {}{}", QuoteShort(name), Shown(Names(header)),
+                             DidYouMean(Nearest(name, header))));
   }
   return static_cast<std::size_t>(it - header.begin());
+}
+
+bool IsNumber(std::string_view text) {
+  double ignored = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+  return error == std::errc() && end == text.data() + text.size();
 }
 
 Recording ReadRecording(const CompareArguments& arguments, const std::string& time_column) {
@@ -61,6 +68,10 @@ Recording ReadRecording(const CompareArguments& arguments, const std::string& ti
   if (header.empty()) {
     Refuse(file, csv.text.empty() ? "the file is empty; it needs a header line that names columns"
                                   : "the first line is empty; it must name the columns");
+  }
+  if (std::ranges::all_of(header, IsNumber)) {
+    Refuse(file,
+           fmt::format("the first line is {}; it must name the columns", Shown(Names(header))));
   }
   const auto column = [&](const std::string& name) { return FindColumn(header, name, file); };
   auto columns = ReadCsvColumns(
