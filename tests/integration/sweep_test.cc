@@ -16,6 +16,7 @@ namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 using SweepTest = SweepFixture;
 
@@ -188,6 +189,26 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
   EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "--merge", "x"}).err,
             "fogline sweep: error: --merge needs --out\n");
   EXPECT_THAT(RunCommand({Program("fogline"), "sweep", "--help"}).out, HasSubstr("Examples:"));
+}
+
+TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
+  const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
+  const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
+  const std::string rows = Made("rows.csv", kShort + cars + axis);
+  // A row is that of the same car without a grid: the second one, behind its own values.
+  const Words aggressive{
+      "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
+      "--seeds", "1:1"};
+  const std::string alone = Made("alone.csv", kShort + aggressive);
+  const std::string row = alone.substr(alone.find('\n') + 1);
+  EXPECT_THAT(rows, EndsWith("\naggressive," + row));
+  EXPECT_THAT(rows, Not(HasSubstr("\nnormal," + row)));
+  const Outcome outcome =
+      Sweep("none.csv", kShort + cars + Words{"--grid", "/followers/cars/2/style=normal"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "fogline sweep: error: --grid /followers/cars/2/style=normal: no such item: "
+            "/followers/cars has 2 items, counted from 0\n");
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
