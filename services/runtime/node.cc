@@ -26,9 +26,11 @@ constexpr Duration kPartPatience = milliseconds(20);
 constexpr std::size_t kMaxErrorBytes = 700;
 // Announcements that repeat are answered this often at most.
 constexpr Duration kAnnouncedPatience = milliseconds(20);
-// The runner repeats itself five times a second; a role that hears nothing for so long is an
-// orphan. Disks have been seen to hold a runner up for five seconds.
+// The runner repeats itself five times a second. A role that hears nothing for so long is an
+// orphan: longer than a busy disk holds a runner up.
 constexpr Duration kRunnerSilence = milliseconds(15'000);
+// One that has not heard all of the scenario yet loses nothing and looks for another run.
+constexpr Duration kAnnouncerSilence = milliseconds(5'000);
 
 /// The requests that a role can answer: for its own channels. The recorder has them all.
 Contents RequestsTo(Role role) {
@@ -91,12 +93,14 @@ std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
 
 TimePoint Node::Poll(TimePoint now) {
   if (left_) return now + kHeartbeat;
-  if (runner_heard_ != TimePoint{} && now - runner_heard_ > kRunnerSilence) {
-    if (status_.state != status_t::WAITING) {
+  if (runner_heard_ != TimePoint{}) {
+    const Duration silence = now - runner_heard_;
+    if (Waits()) {
+      if (silence > kAnnouncerSilence && !chosen_) Unbind();
+    } else if (silence > kRunnerSilence) {
       Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
       return now + kHeartbeat;
     }
-    if (!chosen_) Unbind();
   }
   TimePoint next = now + kHeartbeat;
   if (Running()) {
