@@ -139,6 +139,8 @@ TEST_F(NetworkTest, ARoleWhoseRunnerHasDiedTakesNoPartInTheNextRun) {
   Background orphan(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background first(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
   ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
+  // A dozen steps: the driver takes part.
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
   const std::string id = first.Err().substr(4, first.Err().find(" on ") - 4);
   first.Signal(SIGKILL);
   first.Wait();

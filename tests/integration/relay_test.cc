@@ -186,14 +186,7 @@ TEST(RelayTest, EndsARunWithOneClearLineWhenItIsKilled) {
   command.insert(command.end(), {"--pace", "1", "--quiet"});
   Background run(command);
   // GIVEN a run that is well under way
-  const auto size = [&] {
-    std::error_code ignored;
-    const auto bytes = std::filesystem::file_size(folder.File("run.lcm"), ignored);
-    return ignored ? 0 : bytes;
-  };
-  const TimePoint end = Clock::now() + kPatience;
-  while (size() < 20'000 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
-  ASSERT_GE(size(), 20'000U);
+  ASSERT_TRUE(GrowsTo(20'000, folder.File("run.lcm")));
   // WHEN its relay is killed
   relay.process().Signal(SIGKILL);
   // THEN it ends with code 3 and that reason, and its log is readable

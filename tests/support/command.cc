@@ -117,6 +117,17 @@ bool Background::WaitFor(const std::filesystem::path& file, const std::string& t
   return true;
 }
 
+bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file, std::chrono::seconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (std::chrono::steady_clock::now() < end) {
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+    if (!ignored && size >= bytes) return true;
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return false;
+}
+
 Outcome RunCommand(const std::vector<std::string>& command, std::chrono::seconds limit) {
   Background process(command);
   const int code = process.Wait(limit);

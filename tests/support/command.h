@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,6 +55,10 @@ struct Outcome {
   std::string out;
   std::string err;
 };
+
+/// Waits until somebody has written so much into a file; false after the time limit.
+bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
+             std::chrono::seconds limit = std::chrono::seconds(20));
 
 /// Runs a program to its end.
 Outcome RunCommand(const std::vector<std::string>& command,

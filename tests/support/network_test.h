@@ -23,6 +23,7 @@ class NetworkTest : public testing::Test {
 
   /// The command line of a run of the paper's scenario with a log of its own.
   std::vector<std::string> Run(const std::vector<std::string>& more) {
+    ++logs_;
     std::vector<std::string> command{Program("fogline"),
                                      "run",
                                      "scenario/paper.json",
@@ -30,10 +31,13 @@ class NetworkTest : public testing::Test {
                                      "--stall-timeout",
                                      "30",
                                      "--log",
-                                     folder_.File(std::to_string(++logs_) + ".lcm")};
+                                     Log()};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
+
+  /// The log of the last run.
+  std::string Log() const { return folder_.File(std::to_string(logs_) + ".lcm"); }
 
   /// What a run printed.
   static nlohmann::json Result(const Outcome& outcome) {
