@@ -86,7 +86,7 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
       continue;
     }
     const std::string text =
-        fmt::format("{} ({} points against {} at RHE {} %)", member.name, Text(difference, 1),
+        fmt::format("{} ({} points against {} at RHE {} %)", member.name, Text(difference, 2),
                     ThresholdText(mixed, *place), Text(member.rhe(), 2));
     if (difference.low == 0 && difference.high == 0) {
       equal.push_back(member.name);
@@ -263,7 +263,7 @@ StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
     const auto& [place, difference] = beside.si[i];
     table.rows.push_back(
         {member.name, Text(EstimateOf(member.rhe_pct), 2), Text(EstimateOf(member.si_pct), 1),
-         place ? ThresholdText(mixed, *place) : "–", place ? Text(difference, 1) : "–",
+         place ? ThresholdText(mixed, *place) : "–", place ? Text(difference, 2) : "–",
          Text(EstimateOf(member.shortfall_m), 3),
          Text(ClopperPearson(member.collisions, mixed.situations))});
   }
