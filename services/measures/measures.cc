@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "services/minimal_risk/modes.h"
+
 namespace fogline {
 namespace {
 
@@ -14,8 +16,6 @@ constexpr double kSecondsPerMinute = 60.0;
 
 // Times are whole microseconds: two that differ by less are the same.
 constexpr double kSameTime_s = 0.5e-6;
-
-bool HumanDrives(const Sample& sample) { return sample.lambda_human > 0; }
 
 std::optional<double> Root(std::optional<double> mean_square) {
   if (!mean_square) return std::nullopt;
@@ -68,11 +68,13 @@ void MeasureAccumulator::AddPairs(const Sample& sample) {
 }
 
 void MeasureAccumulator::AddAuthority(const Sample& sample) {
-  if (!sample.fog_present) human_in_clear_air_.Add(HumanDrives(sample) ? 1 : 0);
+  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
-  if (HumanDrives(*previous_)) measures_.human_time_s += sample.time_s - previous_->time_s;
+  if (HumanIsEngaged(previous_->lambda_human)) {
+    measures_.human_time_s += sample.time_s - previous_->time_s;
+  }
   if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
-  if (HumanDrives(sample) != HumanDrives(*previous_)) AddTransfer(sample);
+  if (HumanDrives(sample.lambda_human) != HumanDrives(previous_->lambda_human)) AddTransfer(sample);
 }
 
 void MeasureAccumulator::AddTransfer(const Sample& sample) {

@@ -41,12 +41,14 @@ struct RunMeasures {
   /// Its simulated time, s.
   std::optional<double> collision_time_s;
 
-  /// Redundant human engagement: share of the steps in clear air in which the human drives, %
-  /// (Sourav & Cheng 2024). He drives while lambda_H > 0.
+  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
+  /// (Sourav & Cheng 2024): lambda_H > 0, as HumanIsEngaged() in services/minimal_risk/modes.h. In
+  /// traded control he drives then; in shared control he may have a small part.
   std::optional<double> rhe_pct;
-  /// Time during which the human drives, s. The last step's command is never carried out.
+  /// Time during which the human is engaged, s. The last step's command is never carried out.
   double human_time_s = 0;
-  /// Hand-overs in either direction: the human drives in one of two successive steps only.
+  /// Hand-overs in either direction: the human drives in one of two successive steps only, as
+  /// HumanDrives() in services/minimal_risk/modes.h, and as `fogline events` has it.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;
@@ -199,8 +201,8 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
   number("collision_time_s", m.collision_time_s, "s", "time of the first collision");
   number("rhe_pct", m.rhe_pct, "%",
-         "redundant human engagement: share of clear air in which the human drives");
-  number("human_time_s", m.human_time_s, "s", "time during which the human drives");
+         "redundant human engagement: share of clear air in which the human is engaged");
+  number("human_time_s", m.human_time_s, "s", "time during which the human is engaged");
   count("transfers", m.transfers, "", "hand-overs in either direction");
   number("transfers_pmin", m.transfers_pmin, "1/min", "hand-overs per minute");
   number("min_dwell_s", m.min_dwell_s, "s", "smallest time between two hand-overs");

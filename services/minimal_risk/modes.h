@@ -18,6 +18,12 @@ constexpr bool IsLocked(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
 }
 
+/// Authority from which on somebody is the one who drives: the human where both have half.
+inline constexpr double kMainAuthority = 0.5;
+
+/// Who drives is what a mode says, and a transfer changes. Engaged is who has any authority.
+constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
+constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

@@ -12,11 +12,9 @@
 #include "scenario/scenario.h"
 #include "services/conflict/conflict_measure.h"
 #include "services/graph.h"
+#include "services/minimal_risk/modes.h"
 
 namespace fogline {
-
-/// Authority from which on somebody is the one who drives: the human where both have half.
-inline constexpr double kMainAuthority = 0.5;
 
 /// Which sensors the fusion uses in this step. One that is not trusted is compared with the
 /// prediction, but corrects nothing.

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -15,12 +17,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "services/conflict/measures.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 Outcome Study(std::vector<std::string> arguments) {
@@ -65,8 +69,9 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
     EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
   }
   EXPECT_EQ(Files(one), Files(two));
-  // AND every measure in two fog models, five visibilities and three noises
-  EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + 24U * 2 * 5 * 3);
+  // AND every measure of the table in two fog models, five visibilities and three noises
+  const std::size_t measures = ConflictMeasures().size();
+  EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + measures * 2 * 5 * 3);
   EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["findings"][0]));
 }
 
@@ -83,6 +88,61 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
     EXPECT_FALSE(study["findings"].empty()) << study["name"];
     EXPECT_TRUE(std::filesystem::exists(folder.File(study["name"].get<std::string>() + ".csv")));
   }
+}
+
+/// Rows of a study's CSV file: what is said of each case, by variant, in the order of the file.
+std::map<std::string, std::map<std::string, std::string>> ByVariantAndCase(const std::string& csv) {
+  std::map<std::string, std::map<std::string, std::string>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    const std::size_t one = line.find(',');
+    const std::size_t two = line.find(',', one + 1);
+    rows[line.substr(one + 1, two - one - 1)][line.substr(0, one)] += line.substr(two) + '\n';
+  }
+  return rows;
+}
+
+TEST(StudyVerbTest, EveryCarOfTheVehicleStudyDrivesInAWayOfItsOwn) {
+  const ScratchFolder folder;
+  const Outcome made = Study({"vehicle", "--seeds", "1:2", "--out", folder.path()});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const auto variants = ByVariantAndCase(Read(folder.File("vehicle.csv")));
+  ASSERT_EQ(variants.size(), 3U);
+  for (const auto& [variant, cases] : variants) {
+    EXPECT_GT(cases.size(), 10U);
+    std::map<std::string, std::string> by_measures;
+    for (const auto& [name, measures] : cases) {
+      const auto [other, is_new] = by_measures.emplace(measures, name);
+      EXPECT_TRUE(is_new) << variant << ": " << name << " is the same as " << other->second;
+    }
+  }
+}
+
+TEST(StudyVerbTest, SaysWhenThereAreTooFewRunsForAnInterval) {
+  const ScratchFolder folder;
+  const Outcome made = Study({"all", "--seeds", "1", "--out", folder.path(), "--json"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const nlohmann::json said = nlohmann::json::parse(made.out);
+  for (const auto& study : said["studies"]) {
+    for (const std::string finding : study["findings"]) {
+      EXPECT_THAT(finding, Not(HasSubstr("1 pairs"))) << study["name"];
+      EXPECT_THAT(finding, Not(HasSubstr(": ."))) << study["name"];
+    }
+  }
+  const std::string transfer = said["studies"][2]["findings"][1];
+  EXPECT_THAT(transfer, HasSubstr("too few runs for an interval"));
+}
+
+TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("file");
+  std::ofstream(file) << "in the way";
+  // A hundred thousand seeds would take an hour.
+  const Outcome refused = Study({"policy", "--seeds", "1:100000", "--out", file + "/studies"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("/file/studies: error: --out: cannot write: "));
 }
 
 TEST(StudyVerbTest, RefusesWhatItCannotFollow) {

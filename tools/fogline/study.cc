@@ -137,9 +137,31 @@ void PrintText(const StudyArguments& arguments, const Made& made) {
   }
 }
 
+/// The folder for the files, which is there before long work. Removed again if it was made for
+/// nothing.
+class OutFolder {
+ public:
+  /// @throws InputError
+  explicit OutFolder(const std::filesystem::path& folder)
+      : folder_(folder), is_new_(!std::filesystem::exists(folder)) {
+    RequireWritableFolder(folder, "--out");
+  }
+  ~OutFolder() {
+    std::error_code not_empty;
+    if (is_new_) std::filesystem::remove(folder_, not_empty);
+  }
+  OutFolder(const OutFolder&) = delete;
+  OutFolder& operator=(const OutFolder&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool is_new_;
+};
+
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
   if (!arguments.seeds.empty()) SeedsOf(arguments.seeds);
+  const OutFolder folder(arguments.out);
   WatchInterrupts();
   std::vector<Made> all;
   std::vector<StudySection> sections;

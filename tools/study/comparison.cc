@@ -45,10 +45,6 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
   return scenarios;
 }
 
-std::string CsvNumber(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
-}
-
 }  // namespace
 
 std::span<const ComparedMeasure> ComparedMeasures() {
@@ -139,8 +135,8 @@ std::size_t Comparison::VariantNamed(std::string_view name) const {
 
 std::string Comparison::Csv(std::size_t reference) const {
   std::string csv =
-      "case,variant,measure,unit,n,mean,std,ci95_low,ci95_high,reference,difference_n,difference,"
-      "difference_ci95_low,difference_ci95_high\n";
+      "case,variant,measure,unit,n,infinite,mean,std,ci95_low,ci95_high,reference,difference_n,"
+      "difference_infinite,difference,difference_ci95_low,difference_ci95_high\n";
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMeasure& measure : ComparedMeasures()) {
@@ -151,11 +147,12 @@ std::string Comparison::Csv(std::size_t reference) const {
           mean.high = share.upper;
         }
         const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
-        csv += fmt::format(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name, variants_[v].name,
-            measure.name, measure.unit, mean.n, CsvNumber(mean.mean), CsvNumber(mean.deviation),
-            CsvNumber(mean.low), CsvNumber(mean.high), variants_[reference].name, difference.n,
-            CsvNumber(difference.mean), CsvNumber(difference.low), CsvNumber(difference.high));
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
+                           variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
+                           CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
+                           CsvText(mean.high), variants_[reference].name, difference.n,
+                           difference.infinite, CsvText(difference.mean), CsvText(difference.low),
+                           CsvText(difference.high));
       }
     }
   }

@@ -22,6 +22,7 @@ struct StudyCase {
   std::string name;
   std::string file;
   std::vector<std::string> overrides;  // as of --set
+  std::string group;  // cases that differ in one thing only, such as those in the same fog
 };
 
 /// Who drives, and how. Its overrides concern the arbitrator alone: the run without traded control

@@ -9,6 +9,7 @@
 
 #include "scenario/loader.h"
 #include "services/conflict/measures.h"
+#include "tools/study/conflict_intervals.h"
 #include "tools/sweep/in_order.h"
 
 namespace fogline {
@@ -83,9 +84,7 @@ ClearRuns RunClear(DetectorBench& bench, const Scenario& scenario, std::int64_t 
     for (std::size_t m = 0; m < scores.size(); ++m) {
       ClearRun& run = runs[m];
       run.duration_s = time_s;
-      if (run.records.empty() || scores[m] > run.records.back().score) {
-        run.records.push_back({scores[m], time_s});
-      }
+      AddScore(scores[m], time_s, run.records);
       if (truth.header.step % kClearStride == 0) run.scores.push_back(scores[m]);
     }
   });
@@ -113,99 +112,206 @@ std::vector<std::vector<ClearRun>> CollectClear(const StudyContext& context,
 
 /// What is known of a measure from clear air.
 struct Calibrated {
-  double threshold;
-  AlarmCount calibrated;
-  AlarmCount clear;
-  std::vector<double> scores;  // sorted
+  std::vector<ClearRun> runs;  // for the threshold
+  DetectorThreshold threshold;
+  std::vector<std::vector<double>> scores;  // of other runs; by batch, sorted
 };
+
+std::size_t BatchOf(std::int64_t unit) { return static_cast<std::size_t>(unit % kBatches); }
 
 template <class Show>
 std::vector<Calibrated> Calibrate(const StudyContext& context, const Scenario& clear_air,
                                   const Show& show) {
-  const auto calibration = CollectClear(context, clear_air, kCalibrationSeeds, show);
+  auto calibration = CollectClear(context, clear_air, kCalibrationSeeds, show);
   const auto validation = CollectClear(context, clear_air, kValidationSeeds, show);
   std::vector<Calibrated> all;
   for (std::size_t m = 0; m < calibration.size(); ++m) {
     Calibrated& one = all.emplace_back();
-    one.threshold = CalibrateThreshold(calibration[m], kArlZero_s);
-    one.calibrated = CountAlarms(calibration[m], one.threshold);
-    one.clear = CountAlarms(validation[m], one.threshold);
-    for (const ClearRun& run : validation[m]) {
-      one.scores.insert(one.scores.end(), run.scores.begin(), run.scores.end());
+    one.runs = std::move(calibration[m]);
+    DetectorThreshold& threshold = one.threshold;
+    threshold.threshold = ThresholdFinder(one.runs).Threshold(kArlZero_s);
+    threshold.calibrated = CountAlarms(one.runs, threshold.threshold);
+    threshold.clear = CountAlarms(validation[m], threshold.threshold);
+    one.scores.resize(static_cast<std::size_t>(std::min(kBatches, context.seeds.count())));
+    for (std::size_t i = 0; i < validation[m].size(); ++i) {
+      std::vector<double>& batch = one.scores[BatchOf(static_cast<std::int64_t>(i))];
+      batch.insert(batch.end(), validation[m][i].scores.begin(), validation[m][i].scores.end());
     }
-    std::sort(one.scores.begin(), one.scores.end());
+    for (std::vector<double>& batch : one.scores) std::ranges::sort(batch);
   }
   return all;
 }
 
 /// One measure in one run with fog.
 struct FogRun {
-  double delay_s = std::numeric_limits<double>::quiet_NaN();  // NaN: missed
-  std::vector<double> scores;                                 // in fog of kFogLevel and more
+  ScoreRecords records;        // since the begin of the fog
+  std::vector<double> scores;  // in fog of kFogLevel and more
   double auc = 0;
   std::array<double, kFalsePositives.size()> true_positives{};
 };
 
 std::vector<FogRun> RunFog(DetectorBench& bench, const Scenario& scenario, std::int64_t seed,
-                           std::span<const Calibrated> calibrated) {
+                           std::size_t batch, std::span<const Calibrated> calibrated) {
   std::vector<FogRun> runs(calibrated.size());
   bench.Run(scenario, seed, [&](const truth_t& truth, std::span<const double> scores) {
     if (!truth.fog_present) return;
     const double since_s = static_cast<double>(truth.header.utime) * 1e-6 - scenario.fog.start_s;
     for (std::size_t m = 0; m < scores.size(); ++m) {
-      FogRun& run = runs[m];
-      if (std::isnan(run.delay_s) && scores[m] >= calibrated[m].threshold) run.delay_s = since_s;
-      if (truth.fog_level >= kFogLevel) run.scores.push_back(scores[m]);
+      AddScore(scores[m], since_s, runs[m].records);
+      if (truth.fog_level >= kFogLevel) runs[m].scores.push_back(scores[m]);
     }
   });
   for (std::size_t m = 0; m < runs.size(); ++m) {
     FogRun& run = runs[m];
-    run.auc = AreaUnderRoc(run.scores, calibrated[m].scores);
+    const std::vector<double>& clear = calibrated[m].scores[batch];
+    run.auc = AreaUnderRoc(run.scores, clear);
     for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-      run.true_positives[i] = TruePositives(run.scores, calibrated[m].scores, kFalsePositives[i]);
+      run.true_positives[i] = TruePositives(run.scores, clear, kFalsePositives[i]);
     }
     run.scores = {};
   }
   return runs;
 }
 
-void Add(const FogRun& run, DetectorOutcome& outcome) {
-  const bool detected = !std::isnan(run.delay_s);
-  outcome.delay_s.push_back(detected ? run.delay_s : kFog_s);
-  outcome.auc.push_back(run.auc);
-  for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-    outcome.true_positives[i].push_back(run.true_positives[i]);
+/// Means over the runs of each batch, which are independent of each other: every one has runs in
+/// fog and in clear air of its own.
+class BatchMeans {
+ public:
+  explicit BatchMeans(std::size_t batches) : sums_(batches, 0.0), counts_(batches, 0.0) {}
+  void Add(std::size_t batch, double value) {
+    sums_[batch] += value;
+    counts_[batch] += 1;
   }
-  if (!detected) return;
-  ++outcome.detected;
-  outcome.delay_if_detected_s += run.delay_s;  // a sum until all are there
-}
+  std::vector<double> Result() const {
+    std::vector<double> means = sums_;
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] /= counts_[i];
+    return means;
+  }
+
+ private:
+  std::vector<double> sums_;
+  std::vector<double> counts_;
+};
+
+/// What the seeds of one condition left of one measure.
+struct Gathered {
+  explicit Gathered(std::size_t batches)
+      : auc(batches), true_positives(kFalsePositives.size(), BatchMeans(batches)) {}
+  std::vector<ScoreRecords> records;
+  BatchMeans auc;
+  std::vector<BatchMeans> true_positives;
+};
 
 template <class Show>
-ConflictOutcome RunCondition(const StudyContext& context, const ConflictCondition& condition,
-                             const Scenario& scenario, std::span<const Calibrated> calibrated,
-                             const Show& show) {
-  ConflictOutcome outcome{.condition = condition, .detectors = {}};
-  for (const Calibrated& one : calibrated) {
-    DetectorOutcome& detector = outcome.detectors.emplace_back();
-    detector.threshold = one.threshold;
-    detector.calibrated = one.calibrated;
-    detector.clear = one.clear;
-  }
+std::vector<Gathered> RunCondition(const StudyContext& context, const Scenario& scenario,
+                                   std::span<const Calibrated> calibrated, const Show& show) {
+  std::vector<Gathered> gathered(calibrated.size(), Gathered(calibrated.front().scores.size()));
   ComputeInOrder(
       0, context.seeds.count(), context.jobs, [] { return DetectorBench(); },
       [&](DetectorBench& bench, std::int64_t unit) {
-        return RunFog(bench, scenario, context.seeds.first + unit, calibrated);
+        return RunFog(bench, scenario, context.seeds.first + unit, BatchOf(unit), calibrated);
       },
-      [&](std::int64_t, const std::vector<FogRun>& runs) {
-        for (std::size_t m = 0; m < runs.size(); ++m) Add(runs[m], outcome.detectors[m]);
+      [&](std::int64_t unit, std::vector<FogRun> runs) {
+        for (std::size_t m = 0; m < runs.size(); ++m) {
+          gathered[m].records.push_back(std::move(runs[m].records));
+          gathered[m].auc.Add(BatchOf(unit), runs[m].auc);
+          for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
+            gathered[m].true_positives[i].Add(BatchOf(unit), runs[m].true_positives[i]);
+          }
+        }
         show();
         return true;
       });
-  for (DetectorOutcome& detector : outcome.detectors) {
-    detector.delay_if_detected_s /= static_cast<double>(detector.detected);
+  return gathered;
+}
+
+/// What needs no threshold.
+void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
+  const std::vector<double> doc = gathered.front().auc.Result();
+  for (const Gathered& one : gathered) {
+    DetectorOutcome& detector = outcome.detectors.emplace_back();
+    const std::vector<double> auc = one.auc.Result();
+    detector.auc = EstimateOf(auc);
+    detector.auc_minus_doc = PairedDifference(auc, doc);
+    for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
+      detector.true_positives[i] = EstimateOf(one.true_positives[i].Result());
+    }
   }
-  return outcome;
+}
+
+/// Seeds that are noticed, and how soon these are.
+void AddDetected(std::span<const ScoreRecords> records, double threshold,
+                 DetectorOutcome& detector) {
+  for (const ScoreRecords& one : records) {
+    const std::optional<double> alarm = FirstAlarm(one, threshold);
+    if (!alarm) continue;
+    ++detector.detected;
+    detector.delay_if_detected_s += *alarm;
+  }
+  detector.delay_if_detected_s /= static_cast<double>(detector.detected);
+}
+
+/// What needs one. `records` by measure, visibility and seed.
+void AddDetection(std::span<const Calibrated> calibrated,
+                  std::span<const std::vector<std::vector<ScoreRecords>>> records,
+                  ConflictSet& set) {
+  std::vector<std::size_t> measures;
+  std::vector<DetectorRuns> runs;
+  std::optional<std::size_t> doc;
+  for (std::size_t m = 0; m < calibrated.size(); ++m) {
+    if (!calibrated[m].threshold.is_determined()) continue;
+    if (m == 0) doc = 0;  // the first measure
+    measures.push_back(m);
+    runs.push_back({.clear = calibrated[m].runs, .fog = records[m]});
+  }
+  const std::vector<DetectionComparison> compared = CompareDetection(runs, doc, kArlZero_s, kFog_s);
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const std::size_t m = measures[i];
+    set.means[m].delay_s = compared[i].detector.delay_s;
+    set.means[m].delay_minus_doc_s = compared[i].mean_delay_minus_other_s;
+    for (std::size_t v = 0; v < set.outcomes.size(); ++v) {
+      DetectorOutcome& detector = set.outcomes[v].detectors[m];
+      detector.delay_s = compared[i].detector.by_visibility[v].delay_s;
+      detector.detection = compared[i].detector.by_visibility[v].detection;
+      detector.delay_minus_doc_s = compared[i].delay_minus_other_s[v];
+      AddDetected(records[m][v], calibrated[m].threshold.threshold, detector);
+    }
+  }
+}
+
+template <class Show>
+ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Noise& noise,
+                   const Show& show) {
+  ConflictSet set{
+      .fog = std::string(fog), .noise = std::string(noise.name), .seeds = context.seeds.count()};
+  const std::vector<Calibrated> calibrated =
+      Calibrate(context, ClearAir(context, fog, noise), show);
+  for (const Calibrated& one : calibrated) set.thresholds.push_back(one.threshold);
+  std::vector<std::vector<std::vector<ScoreRecords>>> records(calibrated.size());
+  std::vector<std::vector<std::vector<double>>> auc(calibrated.size());  // by visibility, batch
+  for (const double visibility_m : kVisibilities_m) {
+    std::vector<Gathered> gathered =
+        RunCondition(context, InFog(context, fog, noise, visibility_m), calibrated, show);
+    AddRoc(gathered,
+           set.outcomes.emplace_back(ConflictOutcome{
+               .condition = {.fog = set.fog, .noise = set.noise, .visibility_m = visibility_m}}));
+    for (std::size_t m = 0; m < gathered.size(); ++m) {
+      records[m].push_back(std::move(gathered[m].records));
+      auc[m].push_back(gathered[m].auc.Result());
+    }
+  }
+  set.means.resize(calibrated.size());
+  for (std::size_t m = 0; m < calibrated.size(); ++m) {
+    std::vector<double> means(auc[m].front().size(), 0.0);
+    for (const std::vector<double>& batches : auc[m]) {
+      for (std::size_t i = 0; i < means.size(); ++i) {
+        means[i] += batches[i] / static_cast<double>(kVisibilities_m.size());
+      }
+    }
+    set.means[m].auc = EstimateOf(means);
+  }
+  AddDetection(calibrated, records, set);
+  return set;
 }
 
 }  // namespace
@@ -215,25 +321,14 @@ std::int64_t ConflictRuns(const StudyContext& context) {
   return context.seeds.count() * static_cast<std::int64_t>(kSets * (2 + kVisibilities_m.size()));
 }
 
-std::vector<ConflictOutcome> RunConflictConditions(const StudyContext& context) {
-  std::vector<ConflictOutcome> outcomes;
+std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
+  std::vector<ConflictSet> sets;
   std::int64_t done = 0;
   const auto show = [&] { context.Show(++done, ConflictRuns(context)); };
   for (const std::string_view fog : kFogModels) {
-    for (const Noise& noise : kNoises) {
-      const std::vector<Calibrated> calibrated =
-          Calibrate(context, ClearAir(context, fog, noise), show);
-      for (const double visibility_m : kVisibilities_m) {
-        outcomes.push_back(RunCondition(context,
-                                        {.fog = std::string(fog),
-                                         .noise = std::string(noise.name),
-                                         .visibility_m = visibility_m},
-                                        InFog(context, fog, noise, visibility_m), calibrated,
-                                        show));
-      }
-    }
+    for (const Noise& noise : kNoises) sets.push_back(RunSet(context, fog, noise, show));
   }
-  return outcomes;
+  return sets;
 }
 
 }  // namespace fogline

@@ -10,7 +10,9 @@
 
 #include "scenario/loader.h"
 #include "services/conflict/measures.h"
+#include "tools/study/bootstrap.h"
 #include "tools/study/conflict_runs.h"
+#include "tools/study/findings.h"
 #include "tools/study/study.h"
 
 namespace fogline {
@@ -18,181 +20,227 @@ namespace {
 
 constexpr double kHour_s = 3600;
 
-/// Mean over the visibilities of a group of conditions, seed by seed.
-std::vector<double> MeanOverVisibilities(std::span<const ConflictOutcome> group,
-                                         std::size_t measure,
-                                         std::vector<double> DetectorOutcome::*values) {
-  const std::size_t seeds = (group.front().detectors[measure].*values).size();
-  std::vector<double> means(seeds, 0.0);
-  for (const ConflictOutcome& outcome : group) {
-    for (std::size_t i = 0; i < seeds; ++i) {
-      means[i] += (outcome.detectors[measure].*values)[i] / static_cast<double>(group.size());
-    }
-  }
-  return means;
+std::string_view NameOfMeasure(std::size_t measure) { return ConflictMeasures()[measure].name; }
+
+std::string NameOfSet(const ConflictSet& set) {
+  return fmt::format("{}, {} noise", set.fog, set.noise);
 }
 
-/// A measure in a group: one fog model and noise, all visibilities.
-struct Ranked {
-  std::size_t measure;
-  Estimate delay;
-  Estimate delay_minus_doc;
-  Estimate auc;
-  EventShare detected;
-  AlarmCount clear;  // of runs that no threshold was calibrated on
-};
-
-std::vector<Ranked> Rank(std::span<const ConflictOutcome> group) {
-  std::vector<Ranked> ranked;
-  const std::vector<double> doc = MeanOverVisibilities(group, 0, &DetectorOutcome::delay_s);
-  for (std::size_t m = 0; m < ConflictMeasures().size(); ++m) {
-    const std::vector<double> delay = MeanOverVisibilities(group, m, &DetectorOutcome::delay_s);
-    std::int64_t detected = 0;
-    std::int64_t runs = 0;
-    for (const ConflictOutcome& outcome : group) {
-      detected += outcome.detectors[m].detected;
-      runs += static_cast<std::int64_t>(outcome.detectors[m].delay_s.size());
-    }
-    ranked.push_back({.measure = m,
-                      .delay = EstimateOf(delay),
-                      .delay_minus_doc = PairedDifference(delay, doc),
-                      .auc = EstimateOf(MeanOverVisibilities(group, m, &DetectorOutcome::auc)),
-                      .detected = ClopperPearson(detected, runs),
-                      .clear = group.front().detectors[m].clear});
+/// Measures that have a threshold, soonest first.
+std::vector<std::size_t> Rank(const ConflictSet& set) {
+  std::vector<std::size_t> ranked;
+  for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
+    if (set.thresholds[m].is_determined()) ranked.push_back(m);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.delay.mean < b.delay.mean; });
+  std::ranges::stable_sort(ranked, {}, [&](std::size_t m) { return set.means[m].delay_s.mean; });
   return ranked;
 }
 
-std::string_view NameOfMeasure(std::size_t measure) { return ConflictMeasures()[measure].name; }
+/// Measures without a threshold, in two kinds.
+struct Unranked {
+  std::vector<std::string> never;   // no alarm in clear air at all
+  std::vector<std::string> seldom;  // too few
+};
 
-/// "a, b and c"; at most `most` of them by name.
-std::string Listed(const std::vector<std::string_view>& names, std::size_t most) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
+Unranked UnrankedOf(const ConflictSet& set) {
+  Unranked unranked;
+  for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
+    const DetectorThreshold& threshold = set.thresholds[m];
+    if (threshold.is_determined()) continue;
+    (threshold.calibrated.alarms == 0 ? unranked.never : unranked.seldom)
+        .emplace_back(NameOfMeasure(m));
   }
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return unranked;
+}
+
+std::string UnrankedText(const ConflictSet& set) {
+  const auto [never, seldom] = UnrankedOf(set);
+  std::string text;
+  if (!never.empty()) {
+    text += fmt::format(
+        " Not ranked, for they never alarm in clear air at the least threshold that is quiet "
+        "enough, and with a lower one too often: {}.",
+        ListText(never));
+  }
+  if (!seldom.empty()) {
+    text += fmt::format(
+        " Not ranked, for the alarms of their least threshold that is quiet enough are more than "
+        "{:g} times as rare as asked for: {}.",
+        kLoosest, ListText(seldom));
+  }
   return text;
 }
 
-std::string FindingOf(std::span<const ConflictOutcome> group, std::span<const Ranked> ranked) {
-  std::vector<std::string_view> sooner;
-  std::vector<std::string_view> later;
-  std::size_t doc = 0;
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    if (ranked[i].measure == 0) doc = i;
-    const Verdict verdict = VerdictOf(ranked[i].delay_minus_doc);
-    if (verdict == Verdict::kLess) sooner.push_back(NameOfMeasure(ranked[i].measure));
-    if (verdict == Verdict::kMore) later.push_back(NameOfMeasure(ranked[i].measure));
+/// Names, at most some of them.
+std::string Listed(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 6;
+  if (names.size() <= kMost) return ListText(names);
+  const std::size_t more = names.size() - kMost;
+  names.resize(kMost);
+  names.push_back(fmt::format("{} more", more));
+  return ListText(names);
+}
+
+/// The others against the Degree of Conflict, which is measure 0.
+std::string AgainstDoc(const ConflictSet& set, std::span<const std::size_t> ranked) {
+  std::vector<std::string> sooner;
+  std::vector<std::string> later;
+  std::vector<std::string> undecided;
+  std::vector<std::string> too_few;
+  for (const std::size_t m : ranked) {
+    if (m == 0) continue;
+    const std::string name(NameOfMeasure(m));
+    switch (VerdictOf(set.means[m].delay_minus_doc_s)) {
+      case Verdict::kLess:
+        sooner.push_back(name);
+        break;
+      case Verdict::kMore:
+        later.push_back(name);
+        break;
+      case Verdict::kUndecided:
+        undecided.push_back(name);
+        break;
+      case Verdict::kTooFew:
+        too_few.push_back(name);
+        break;
+    }
   }
-  const Ranked& best = ranked.front();
-  const ConflictCondition& condition = group.front().condition;
-  std::string text = fmt::format(
-      "Fog model {}, {} noise: {} is first with a mean delay of {} s; the Degree of Conflict needs "
-      "{} s and is number {} of {}.",
-      condition.fog, condition.noise, NameOfMeasure(best.measure), Text(best.delay, 2),
-      Text(ranked[doc].delay, 2), doc + 1, ranked.size());
-  const std::size_t undecided = ranked.size() - 1 - sooner.size() - later.size();
-  text += sooner.empty() ? " No measure is sooner than it by more than chance."
-                         : fmt::format(" {} of the others {} sooner ({}).", sooner.size(),
-                                       sooner.size() == 1 ? "is" : "are", Listed(sooner, 6));
-  if (!later.empty()) {
-    text += fmt::format(" {} {} later ({}).", later.size(), later.size() == 1 ? "is" : "are",
-                        Listed(later, 6));
-  }
-  if (undecided > 0) text += fmt::format(" {} cannot be told apart from it.", undecided);
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& names, std::string_view what) {
+    if (names.empty()) return;
+    text += fmt::format(" {} of the others {}: {}.", names.size(), what, Listed(names));
+  };
+  add(sooner, "sooner than it");
+  add(later, "later");
+  add(undecided, "not to be told apart from it");
+  add(too_few, "with too few runs for an interval");
   return text;
+}
+
+std::string FindingOf(const ConflictSet& set, std::span<const std::size_t> ranked) {
+  std::string text = fmt::format("Fog model {}:", NameOfSet(set));
+  if (ranked.empty()) {
+    return text + fmt::format(
+                      " no measure has a threshold: {} runs of {:g} s in clear air have too few "
+                      "alarms for a mean time of {:g} s between them.",
+                      set.seeds, kClearRun_s, kArlZero_s);
+  }
+  text += fmt::format(" {} is first with a mean delay of {} s", NameOfMeasure(ranked.front()),
+                      Text(set.means[ranked.front()].delay_s, 2));
+  const auto doc = std::ranges::find(ranked, std::size_t{0});
+  if (doc == ranked.end()) {
+    text += "; the Degree of Conflict has no threshold.";
+  } else {
+    text += fmt::format("; the Degree of Conflict needs {} s and is number {} of {}.{}",
+                        Text(set.means[0].delay_s, 2), doc - ranked.begin() + 1, ranked.size(),
+                        AgainstDoc(set, ranked));
+  }
+  return text + UnrankedText(set);
 }
 
 /// Whether a measure gives alarms as often in other runs in clear air as in those that its
 /// threshold was found in: given the alarms of both, those of the former are binomial.
-bool KeepsItsPromise(const DetectorOutcome& detector) {
-  const AlarmCount& found = detector.calibrated;
-  const AlarmCount& other = detector.clear;
-  if (found.alarms + other.alarms == 0) return true;
+bool KeepsItsPromise(const DetectorThreshold& threshold) {
+  const AlarmCount& found = threshold.calibrated;
+  const AlarmCount& other = threshold.clear;
   const EventShare share = ClopperPearson(other.alarms, found.alarms + other.alarms);
   const double expected = other.time_s / (found.time_s + other.time_s);
   return share.lower <= expected && expected <= share.upper;
 }
 
 /// How many thresholds keep what they promise in runs that they were not found in.
-std::string FindingOfArlZero(std::span<const ConflictOutcome> group, const std::string& name) {
-  const std::vector<DetectorOutcome>& detectors = group.front().detectors;
-  return fmt::format("{}: {} of {}", name, std::ranges::count_if(detectors, KeepsItsPromise),
-                     detectors.size());
+std::string FindingOfArlZero(const ConflictSet& set, std::span<const std::size_t> ranked) {
+  const auto kept = std::ranges::count_if(
+      ranked, [&](std::size_t m) { return KeepsItsPromise(set.thresholds[m]); });
+  return fmt::format("{}: {} of {} with a threshold", NameOfSet(set), kept, ranked.size());
 }
 
-StudyTable TableOf(const std::string& name, std::span<const Ranked> ranked) {
-  StudyTable table{.caption = fmt::format("{}: mean over visibilities, soonest first", name),
-                   .columns = {"measure", "delay (s)", "less or more than DoC (s)", "detected",
-                               "AUC", "ARL0 in other clear runs (s)"}};
-  for (const Ranked& one : ranked) {
-    const auto [low, high] = one.clear.ArlZeroBounds_s();
-    table.rows.push_back(
-        {std::string(NameOfMeasure(one.measure)), Text(one.delay, 2), Text(one.delay_minus_doc, 2),
-         fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100 * one.detected.share,
-                     100 * one.detected.lower, 100 * one.detected.upper),
-         Text(one.auc, 3),
-         fmt::format("{} [{}, {}]", Text(one.clear.ArlZero_s(), 0), Text(low, 0), Text(high, 0))});
+std::string ArlText(const AlarmCount& clear) {
+  const auto [low, high] = clear.ArlZeroBounds_s();
+  return fmt::format("{} [{}, {}]", Text(clear.ArlZero_s(), 0), Text(low, 0), Text(high, 0));
+}
+
+std::string PercentText(const Estimate& share) {
+  Estimate percent = share;
+  for (double* value : {&percent.mean, &percent.low, &percent.high}) *value *= 100;
+  return Text(percent, 0);
+}
+
+StudyTable TableOf(const ConflictSet& set, std::span<const std::size_t> ranked) {
+  StudyTable table{
+      .caption = fmt::format("Fog model {}: mean over visibilities, soonest first", NameOfSet(set)),
+      .columns = {"measure", "delay (s)", "less or more than DoC (s)", "AUC",
+                  "ARL0 in other clear runs (s)"}};
+  for (const double visibility_m : kVisibilities_m) {
+    table.columns.push_back(fmt::format("detected at {:g} m (%)", visibility_m));
+  }
+  const auto add = [&](std::size_t m) {
+    const bool has_threshold = set.thresholds[m].is_determined();
+    const DetectorMean& mean = set.means[m];
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row = {std::string(NameOfMeasure(m)), has_threshold ? Text(mean.delay_s, 2) : "no threshold",
+           Text(mean.delay_minus_doc_s, 2), Text(mean.auc, 3),
+           has_threshold ? ArlText(set.thresholds[m].clear) : "–"};
+    for (const ConflictOutcome& outcome : set.outcomes) {
+      row.push_back(PercentText(outcome.detectors[m].detection));
+    }
+  };
+  for (const std::size_t m : ranked) add(m);
+  for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
+    if (!set.thresholds[m].is_determined()) add(m);
   }
   return table;
 }
 
-std::string CsvNumber(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
-}
-
-std::string CsvOf(std::span<const ConflictOutcome> outcomes) {
+std::string CsvOf(std::span<const ConflictSet> sets) {
   std::string csv =
-      "fog,visibility_m,noise,measure,n,threshold,calibrated_arl0_s,clear_alarms,arl0_s,"
-      "arl0_ci95_low_s,arl0_ci95_high_s,detected,p_detected,p_ci95_low,p_ci95_high,delay_s,"
-      "delay_ci95_low_s,delay_ci95_high_s,delay_if_detected_s,delay_minus_doc_s,"
-      "delay_minus_doc_ci95_low_s,delay_minus_doc_ci95_high_s,auc,auc_ci95_low,auc_ci95_high,"
-      "auc_minus_doc,auc_minus_doc_ci95_low,auc_minus_doc_ci95_high\n";
-  for (const ConflictOutcome& outcome : outcomes) {
-    const DetectorOutcome& doc = outcome.detectors.front();
-    for (std::size_t m = 0; m < outcome.detectors.size(); ++m) {
-      const DetectorOutcome& one = outcome.detectors[m];
-      const auto n = static_cast<std::int64_t>(one.delay_s.size());
-      const EventShare share = ClopperPearson(one.detected, n);
-      const Estimate delay = EstimateOf(one.delay_s);
-      const Estimate auc = EstimateOf(one.auc);
-      const Estimate delay_minus_doc = PairedDifference(one.delay_s, doc.delay_s);
-      const Estimate auc_minus_doc = PairedDifference(one.auc, doc.auc);
-      const auto [arl_low, arl_high] = one.clear.ArlZeroBounds_s();
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", outcome.condition.fog,
-                         outcome.condition.visibility_m, outcome.condition.noise, NameOfMeasure(m),
-                         n, CsvNumber(one.threshold), CsvNumber(one.calibrated.ArlZero_s()),
-                         one.clear.alarms, CsvNumber(one.clear.ArlZero_s()), CsvNumber(arl_low),
-                         CsvNumber(arl_high), one.detected);
-      for (const double value :
-           {share.share, share.lower, share.upper, delay.mean, delay.low, delay.high,
-            one.delay_if_detected_s, delay_minus_doc.mean, delay_minus_doc.low,
-            delay_minus_doc.high, auc.mean, auc.low, auc.high, auc_minus_doc.mean,
-            auc_minus_doc.low, auc_minus_doc.high}) {
-        csv += fmt::format(",{}", CsvNumber(value));
+      "fog,visibility_m,noise,measure,n,has_threshold,threshold,calibration_alarms,"
+      "calibrated_arl0_s,clear_alarms,arl0_s,arl0_ci95_low_s,arl0_ci95_high_s,detected,p_detected,"
+      "p_ci95_low,p_ci95_high,delay_s,delay_ci95_low_s,delay_ci95_high_s,delay_if_detected_s,"
+      "delay_minus_doc_s,delay_minus_doc_ci95_low_s,delay_minus_doc_ci95_high_s,auc,auc_ci95_low,"
+      "auc_ci95_high,auc_minus_doc,auc_minus_doc_ci95_low,auc_minus_doc_ci95_high\n";
+  for (const ConflictSet& set : sets) {
+    for (const ConflictOutcome& outcome : set.outcomes) {
+      for (std::size_t m = 0; m < outcome.detectors.size(); ++m) {
+        const DetectorOutcome& one = outcome.detectors[m];
+        const DetectorThreshold& at = set.thresholds[m];
+        const auto [arl_low, arl_high] = at.clear.ArlZeroBounds_s();
+        const bool there = at.is_determined();
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", set.fog,
+                           outcome.condition.visibility_m, set.noise, NameOfMeasure(m), set.seeds,
+                           there ? "yes" : "no", CsvText(at.threshold), at.calibrated.alarms,
+                           CsvText(at.calibrated.ArlZero_s()), at.clear.alarms,
+                           CsvText(at.clear.ArlZero_s()), CsvText(arl_low), CsvText(arl_high),
+                           there ? fmt::to_string(one.detected) : "");
+        const auto add = [&](const Estimate& estimate) {
+          csv += fmt::format(",{},{},{}", CsvText(estimate.mean), CsvText(estimate.low),
+                             CsvText(estimate.high));
+        };
+        add(one.detection);
+        add(one.delay_s);
+        csv += fmt::format(",{}", there ? CsvText(one.delay_if_detected_s) : "");
+        for (const Estimate& e : {one.delay_minus_doc_s, one.auc, one.auc_minus_doc}) add(e);
+        csv += "\n";
       }
-      csv += "\n";
     }
   }
   return csv;
 }
 
-std::string RocCsvOf(std::span<const ConflictOutcome> outcomes) {
+std::string RocCsvOf(std::span<const ConflictSet> sets) {
   std::string csv =
       "fog,visibility_m,noise,measure,false_positives,true_positives,ci95_low,"
       "ci95_high\n";
-  for (const ConflictOutcome& outcome : outcomes) {
-    if (outcome.condition.noise != kUsualNoise) continue;
-    for (std::size_t m = 0; m < outcome.detectors.size(); ++m) {
-      for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-        const Estimate share = EstimateOf(outcome.detectors[m].true_positives[i]);
-        csv += fmt::format("{},{},{},{},{:g},{:.4f},{:.4f},{:.4f}\n", outcome.condition.fog,
-                           outcome.condition.visibility_m, outcome.condition.noise,
-                           NameOfMeasure(m), kFalsePositives[i], share.mean, share.low, share.high);
+  for (const ConflictSet& set : sets) {
+    if (set.noise != kUsualNoise) continue;
+    for (const ConflictOutcome& outcome : set.outcomes) {
+      for (std::size_t m = 0; m < outcome.detectors.size(); ++m) {
+        for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
+          const Estimate& share = outcome.detectors[m].true_positives[i];
+          csv += fmt::format("{},{},{},{},{:g},{},{},{}\n", set.fog, outcome.condition.visibility_m,
+                             set.noise, NameOfMeasure(m), kFalsePositives[i], CsvText(share.mean),
+                             CsvText(share.low), CsvText(share.high));
+        }
       }
     }
   }
@@ -207,18 +255,20 @@ void AddPoint(StudySeries& series, double x, const Estimate& estimate) {
 }
 
 /// Shows the Degree of Conflict, the three soonest, and the latest.
-void ShowTelling(StudyFigure& figure, std::span<const Ranked> ranked) {
+void ShowTelling(StudyFigure& figure, std::span<const std::size_t> ranked) {
   constexpr std::size_t kSoonest = 3;
   for (StudySeries& series : figure.series) series.shown = false;
   figure.series[0].shown = true;
-  for (std::size_t i = 0; i < kSoonest; ++i) figure.series[ranked[i].measure].shown = true;
-  figure.series[ranked.back().measure].shown = true;
+  for (const std::size_t m : ranked.first(std::min(kSoonest, ranked.size()))) {
+    figure.series[m].shown = true;
+  }
+  if (!ranked.empty()) figure.series[ranked.back()].shown = true;
 }
 
 /// A quantity of every measure over the visibility.
-StudyFigure OverVisibility(std::span<const ConflictOutcome> group, std::span<const Ranked> ranked,
+StudyFigure OverVisibility(const ConflictSet& set, std::span<const std::size_t> ranked,
                            std::string id, std::string title, std::string y_label,
-                           std::vector<double> DetectorOutcome::*values) {
+                           Estimate DetectorOutcome::*value) {
   StudyFigure figure{.id = std::move(id),
                      .title = std::move(title),
                      .caption =
@@ -230,16 +280,17 @@ StudyFigure OverVisibility(std::span<const ConflictOutcome> group, std::span<con
   for (std::size_t m = 0; m < ConflictMeasures().size(); ++m) {
     StudySeries& series = figure.series.emplace_back();
     series.name = NameOfMeasure(m);
-    // The densest fog comes last in a group, and first on the axis.
-    for (auto outcome = group.rbegin(); outcome != group.rend(); ++outcome) {
-      AddPoint(series, outcome->condition.visibility_m, EstimateOf(outcome->detectors[m].*values));
+    // The densest fog comes last in a set, and first on the axis.
+    for (auto outcome = set.outcomes.rbegin(); outcome != set.outcomes.rend(); ++outcome) {
+      AddPoint(series, outcome->condition.visibility_m, outcome->detectors[m].*value);
     }
   }
   ShowTelling(figure, ranked);
   return figure;
 }
 
-StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const Ranked> ranked, std::string id) {
+StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const std::size_t> ranked,
+                  std::string id) {
   StudyFigure figure{
       .id = std::move(id),
       .title = fmt::format("ROC: fog model {}, {:g} m, {} noise", outcome.condition.fog,
@@ -254,7 +305,7 @@ StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const Ranked> ranked
     StudySeries& series = figure.series.emplace_back();
     series.name = NameOfMeasure(m);
     for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-      AddPoint(series, kFalsePositives[i], EstimateOf(outcome.detectors[m].true_positives[i]));
+      AddPoint(series, kFalsePositives[i], outcome.detectors[m].true_positives[i]);
     }
   }
   ShowTelling(figure, ranked);
@@ -264,49 +315,53 @@ StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const Ranked> ranked
 std::string MethodOf(const StudyContext& context) {
   return fmt::format(
       "scenario/paper.json with the human at the wheel throughout (threshold 0), so that no "
-      "measure "
-      "changes what the next one sees; {} seeds of fog for each condition. Fog model bias has the "
-      "bias of the scenario at {:g} m of visibility and in proportion to the extinction else (our "
-      "choice: the model itself knows no visibility); model beam is the physics of the LiDAR's "
-      "beam. Every measure is told the true mounting offset and takes a missing value for a "
-      "conflict. Thresholds: the least with a mean time to the first alarm of {:g} s ({:g} false "
-      "alarms an hour) in {} runs of {:g} s in clear air with other seeds; ARL0 is then counted "
-      "in as many runs again, of other seeds. Delay: from the begin of the fog to the first alarm "
-      "within it; a fog that is never noticed counts with its whole length of {:g} s, so that no "
-      "measure gains by missing what is hard to see. AUC: Mann and Whitney, steps in fog of level "
-      "at least 1/2 against every {}th step in clear air, by seed. All measures see the same "
-      "seeds; differences are paired. Intervals hold one by one, not for all comparisons at once.",
-      context.seeds.count(), kReferenceVisibility_m, kArlZero_s, kHour_s / kArlZero_s,
-      context.seeds.count(), kClearRun_s, kFog_s, kClearStride);
+      "measure changes what the next one sees; {0} seeds of fog for each condition. Fog model bias "
+      "has the bias of the scenario at {1:g} m of visibility and in proportion to the extinction "
+      "else (our choice: the model itself knows no visibility); model beam is the physics of the "
+      "LiDAR's beam. Every measure is told the true mounting offset and takes a missing value for "
+      "a conflict; bins are as wide as the larger standard deviation of the two sensors, and the "
+      "SPRT looks for a shift of one standard deviation of their difference, as the CUSUM does. "
+      "Thresholds: the least with a mean time to the first alarm of {2:g} s ({3:g} false alarms an "
+      "hour) in {0} runs of {4:g} s in clear air with other seeds; a measure whose least threshold "
+      "has none or more than {5:g} times that is not ranked. ARL0 is counted again in as many "
+      "runs, of other seeds. Delay: from the begin of the fog to the first alarm within it; a fog "
+      "that is never noticed counts with its whole length of {6:g} s, so that no measure gains by "
+      "missing what is hard to see. Intervals of delay and detection: {7} resamples of the runs in "
+      "clear air, with a threshold found anew in each, and of the seeds of the fog, the same for "
+      "all measures and visibilities; so the uncertainty of the threshold is in them, and "
+      "differences are paired. Detection is given by visibility, with the interval of Clopper and "
+      "Pearson where that is wider. AUC (Mann and Whitney): steps in fog of level at least 1/2 "
+      "against every {8}th step in clear air; AUC and ROC are means over {9} batches of runs in "
+      "fog, each against runs in clear air of its own. Intervals hold one by one, not for all "
+      "comparisons at once.",
+      context.seeds.count(), kReferenceVisibility_m, kArlZero_s, kHour_s / kArlZero_s, kClearRun_s,
+      kLoosest, kFog_s, kReplicates, kClearStride, std::min(kBatches, context.seeds.count()));
 }
 
 }  // namespace
 
 StudyResult RunConflictStudy(const StudyContext& context) {
-  const std::vector<ConflictOutcome> outcomes = RunConflictConditions(context);
+  const std::vector<ConflictSet> sets = RunConflictSets(context);
   StudyResult result;
   result.runs = ConflictRuns(context);
   StudySection& section = result.section;
   std::vector<std::string> arl_zero;
-  constexpr std::size_t kGroup = kVisibilities_m.size();
-  for (std::size_t first = 0; first < outcomes.size(); first += kGroup) {
-    const std::span group = std::span(outcomes).subspan(first, kGroup);
-    const ConflictCondition& condition = group.front().condition;
-    const std::vector<Ranked> ranked = Rank(group);
-    const std::string name = fmt::format("{}, {} noise", condition.fog, condition.noise);
-    section.findings.push_back(FindingOf(group, ranked));
-    section.tables.push_back(TableOf("Fog model " + name, ranked));
-    arl_zero.push_back(FindingOfArlZero(group, name));
-    if (condition.noise != kUsualNoise) continue;
-    section.figures.push_back(OverVisibility(group, ranked,
-                                             fmt::format("conflict-delay-{}", condition.fog),
-                                             fmt::format("Delay of detection: fog model {}", name),
-                                             "Delay (s)", &DetectorOutcome::delay_s));
-    section.figures.push_back(OverVisibility(
-        group, ranked, fmt::format("conflict-auc-{}", condition.fog),
-        fmt::format("Area under the ROC: fog model {}", name), "AUC", &DetectorOutcome::auc));
+  for (const ConflictSet& set : sets) {
+    const std::vector<std::size_t> ranked = Rank(set);
+    section.findings.push_back(FindingOf(set, ranked));
+    section.tables.push_back(TableOf(set, ranked));
+    arl_zero.push_back(FindingOfArlZero(set, ranked));
+    if (set.noise != kUsualNoise) continue;
     section.figures.push_back(
-        RocOf(group[kGroup / 2], ranked, fmt::format("conflict-roc-{}", condition.fog)));
+        OverVisibility(set, ranked, fmt::format("conflict-delay-{}", set.fog),
+                       fmt::format("Delay of detection: fog model {}", NameOfSet(set)), "Delay (s)",
+                       &DetectorOutcome::delay_s));
+    section.figures.push_back(
+        OverVisibility(set, ranked, fmt::format("conflict-auc-{}", set.fog),
+                       fmt::format("Area under the ROC: fog model {}", NameOfSet(set)), "AUC",
+                       &DetectorOutcome::auc));
+    section.figures.push_back(RocOf(set.outcomes[set.outcomes.size() / 2], ranked,
+                                    fmt::format("conflict-roc-{}", set.fog)));
   }
   section.findings.push_back(
       fmt::format("Do thresholds keep their promise of an ARL0 of {:g} s in clear air that they "
@@ -314,7 +369,7 @@ StudyResult RunConflictStudy(const StudyContext& context) {
                   "were calibrated, as far as 95 % bounds can tell: {}.",
                   kArlZero_s, fmt::join(arl_zero, "; ")));
   section.method = MethodOf(context);
-  result.files = {{"conflict.csv", CsvOf(outcomes)}, {"conflict-roc.csv", RocCsvOf(outcomes)}};
+  result.files = {{"conflict.csv", CsvOf(sets)}, {"conflict-roc.csv", RocCsvOf(sets)}};
   return result;
 }
 

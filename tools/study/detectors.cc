@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -12,10 +12,28 @@ namespace {
 
 constexpr double kTail = 0.025;  // on either side of an interval of 95 %
 
-// Halvings of the range of scores: to the last bit of a double.
-constexpr int kHalvings = 60;
-
 }  // namespace
+
+ConflictParameters DetectorParameters(const Scenario& scenario) {
+  ConflictParameters parameters = ConflictParametersOf(scenario.arbitrator);
+  const double radar_m = scenario.radar.range_std_m;
+  const double lidar_m = scenario.lidar.range_std_m;
+  const double frame_m = parameters.bin_width_m * parameters.frame_bins;
+  parameters.bin_width_m = std::max({radar_m, lidar_m, parameters.smallest_std_m});
+  parameters.frame_bins = static_cast<int>(std::lround(frame_m / parameters.bin_width_m));
+  parameters.sprt_delta_m = 2 * parameters.cusum_kappa * std::hypot(radar_m, lidar_m);
+  return parameters;
+}
+
+void AddScore(double score, double time_s, ScoreRecords& records) {
+  if (records.empty() || score > records.back().score) records.push_back({score, time_s});
+}
+
+std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold) {
+  const auto first = std::ranges::lower_bound(records, threshold, {}, &ScoreRecord::score);
+  if (first == records.end()) return std::nullopt;
+  return first->time_s;
+}
 
 void DetectorBench::Prepare(const Scenario& scenario, std::int64_t seed) {
   scenario_ = scenario;
@@ -26,7 +44,7 @@ void DetectorBench::Prepare(const Scenario& scenario, std::int64_t seed) {
     loop_.emplace(scenario_);
   }
   witness_.emplace(scenario_.fusion);
-  const ConflictParameters parameters = ConflictParametersOf(scenario_.arbitrator);
+  const ConflictParameters parameters = DetectorParameters(scenario_);
   measures_.clear();
   for (const ConflictMeasureRow& row : ConflictMeasures()) {
     measures_.push_back(row.make(parameters));
@@ -51,35 +69,47 @@ std::pair<double, double> AlarmCount::ArlZeroBounds_s() const {
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold) {
   AlarmCount count;
   for (const ClearRun& run : runs) {
-    const auto first = std::ranges::find_if(
-        run.records, [&](const ClearRun::Record& record) { return record.score >= threshold; });
-    const bool alarm = first != run.records.end();
+    const std::optional<double> alarm = FirstAlarm(run.records, threshold);
     count.alarms += alarm ? 1 : 0;
-    count.time_s += alarm ? first->time_s : run.duration_s;
+    count.time_s += alarm.value_or(run.duration_s);
   }
   return count;
 }
 
-// Alarms come sooner the lower the threshold, so the mean time to one falls with it.
-double CalibrateThreshold(std::span<const ClearRun> runs, double arl_zero_s) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const ClearRun& run : runs) {
-    if (run.records.empty()) continue;
-    low = std::min(low, run.records.front().score);
-    high = std::max(high, run.records.back().score);
-  }
-  if (!(low <= high)) return low;
-  high = std::nextafter(high, std::numeric_limits<double>::infinity());
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = std::midpoint(low, high);
-    if (CountAlarms(runs, middle).ArlZero_s() >= arl_zero_s) {
-      high = middle;
-    } else {
-      low = middle;
+ThresholdFinder::ThresholdFinder(std::span<const ClearRun> runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    durations_s_.push_back(runs[i].duration_s);
+    for (const ScoreRecord& record : runs[i].records) {
+      records_.push_back({.score = record.score, .time_s = record.time_s, .run = i});
     }
   }
-  return high;
+  std::ranges::stable_sort(records_, std::ranges::greater(), &Record::score);
+}
+
+double ThresholdFinder::Threshold(double arl_zero_s) const {
+  return Threshold(std::vector<double>(durations_s_.size(), 1.0), arl_zero_s);
+}
+
+// From above all scores down, score by score: each lets some runs end sooner, so the mean time to
+// an alarm falls. The first score with which it is too short is just below the threshold.
+double ThresholdFinder::Threshold(std::span<const double> weights, double arl_zero_s) const {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  double alarms = 0;
+  double time_s = 0;
+  for (std::size_t i = 0; i < durations_s_.size(); ++i) time_s += weights[i] * durations_s_[i];
+  std::vector<double> ends_s = durations_s_;
+  std::vector<bool> alarmed(durations_s_.size(), false);
+  for (auto record = records_.begin(); record != records_.end();) {
+    const double score = record->score;
+    for (; record != records_.end() && record->score == score; ++record) {
+      if (!alarmed[record->run]) alarms += weights[record->run];
+      alarmed[record->run] = true;
+      time_s += weights[record->run] * (record->time_s - ends_s[record->run]);
+      ends_s[record->run] = record->time_s;
+    }
+    if (time_s < arl_zero_s * alarms) return std::nextafter(score, kInfinite);
+  }
+  return records_.empty() ? kInfinite : records_.back().score;
 }
 
 double AreaUnderRoc(std::span<const double> fog, std::span<const double> clear) {

@@ -13,9 +13,17 @@
 #include "scenario/scenario.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/conflict/measures.h"
+#include "services/conflict/parameters.h"
 #include "services/policies/evidence.h"
 
 namespace fogline {
+
+/// Parameters of the measures in a scenario. What the scenario says nothing of follows the noise of
+/// its sensors, as the defaults do that of theirs: bins are as wide as the larger standard
+/// deviation of the two, and the SPRT looks for the shift that the CUSUM looks for, 2 kappa
+/// standard deviations of the difference. With fixed ones a test would be tuned to one noise of
+/// several.
+ConflictParameters DetectorParameters(const Scenario& scenario);
 
 /// Runs scenarios and gives every measure of conflict the evidence of each step. For one thread.
 class DetectorBench {
@@ -45,15 +53,22 @@ class DetectorBench {
   std::vector<double> scores_;
 };
 
-/// What a measure does in a run in clear air after its warm-up: enough to know when it would first
-/// have given an alarm, whatever the threshold.
+/// A score above all before it, and when, s after the begin.
+struct ScoreRecord {
+  double score;
+  double time_s;
+};
+/// The records of a run, ascending in both: enough to know when a measure would first have given an
+/// alarm, whatever the threshold.
+using ScoreRecords = std::vector<ScoreRecord>;
+/// Adds a score if it is a record.
+void AddScore(double score, double time_s, ScoreRecords& records);
+/// When a threshold is first reached; nullopt if never.
+std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold);
+
+/// What a measure does in a run in clear air after its warm-up.
 struct ClearRun {
-  /// A score above all before it, and when, s after the warm-up.
-  struct Record {
-    double score;
-    double time_s;
-  };
-  std::vector<Record> records;
+  ScoreRecords records;
   std::vector<double> scores;  // every so many steps
   double duration_s = 0;
 };
@@ -71,9 +86,27 @@ struct AlarmCount {
 };
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
 
-/// The least threshold with at least this mean time to a false alarm in these runs. A score that is
-/// at its greatest value too often has a threshold above all its scores: it never gives an alarm.
-double CalibrateThreshold(std::span<const ClearRun> runs, double arl_zero_s);
+/// Finds thresholds in runs in clear air, again and again with other weights.
+class ThresholdFinder {
+ public:
+  explicit ThresholdFinder(std::span<const ClearRun> runs);
+
+  /// The least threshold with at least this mean time to a false alarm where each run counts as
+  /// often as its weight says. A score that is at its greatest value too often has a threshold
+  /// above all its scores: it never gives an alarm in these runs.
+  double Threshold(std::span<const double> weights, double arl_zero_s) const;
+  /// Where each run counts once.
+  double Threshold(double arl_zero_s) const;
+
+ private:
+  struct Record {
+    double score;
+    double time_s;
+    std::size_t run;
+  };
+  std::vector<Record> records_;  // of all runs, the greatest score first
+  std::vector<double> durations_s_;
+};
 
 /// Probability that a score in fog is above one in clear air, equal ones counted half: the area
 /// under the ROC (Mann & Whitney 1947). @param clear sorted

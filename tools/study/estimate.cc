@@ -14,37 +14,54 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPercent = 100;
 
-Estimate EstimateOf(const Statistics& statistics) {
-  const Summary summary = statistics.Result();
-  const double mean = summary.mean.value_or(kNone);
-  const double half = summary.ci95.value_or(kNone);
-  return {.n = summary.count,
-          .mean = mean,
-          .deviation = summary.deviation.value_or(kNone),
-          .low = mean - half,
-          .high = mean + half};
-}
+/// Collects values as an estimate counts them.
+class Collection {
+ public:
+  void Add(double value) {
+    if (std::isfinite(value)) {
+      statistics_.Add(value);
+    } else if (std::isinf(value)) {
+      ++infinite_;
+    }
+  }
+
+  Estimate Result() const {
+    const Summary summary = statistics_.Result();
+    const double mean = summary.mean.value_or(kNone);
+    const double half = summary.ci95.value_or(kNone);
+    return {.n = summary.count,
+            .mean = mean,
+            .deviation = summary.deviation.value_or(kNone),
+            .low = mean - half,
+            .high = mean + half,
+            .infinite = infinite_};
+  }
+
+ private:
+  Statistics statistics_;
+  std::int64_t infinite_ = 0;
+};
 
 }  // namespace
 
 Estimate EstimateOf(std::span<const double> values) {
-  Statistics statistics;
-  for (const double value : values) {
-    if (std::isfinite(value)) statistics.Add(value);
-  }
-  return EstimateOf(statistics);
+  Collection collection;
+  for (const double value : values) collection.Add(value);
+  return collection.Result();
 }
 
 Estimate PairedDifference(std::span<const double> a, std::span<const double> b) {
-  Statistics statistics;
+  Collection collection;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = a[i] - b[i];
-    if (std::isfinite(difference)) statistics.Add(difference);
+    const bool equal = std::isinf(a[i]) && a[i] == b[i];
+    collection.Add(equal ? 0 : a[i] - b[i]);
   }
-  return EstimateOf(statistics);
+  return collection.Result();
 }
 
 Verdict VerdictOf(const Estimate& difference) {
+  if (!difference.has_interval()) return Verdict::kTooFew;
+  if (difference.infinite > 0) return Verdict::kUndecided;
   if (difference.low > 0) return Verdict::kMore;
   if (difference.high < 0) return Verdict::kLess;
   return Verdict::kUndecided;
@@ -53,14 +70,23 @@ Verdict VerdictOf(const Estimate& difference) {
 std::string Text(double value, int decimals) { return Decimal(value, decimals); }
 
 std::string Text(const Estimate& estimate, int decimals) {
-  if (std::isnan(estimate.low)) return Text(estimate.mean, decimals);
-  return fmt::format("{} [{}, {}]", Text(estimate.mean, decimals), Text(estimate.low, decimals),
-                     Text(estimate.high, decimals));
+  std::string text = Text(estimate.mean, decimals);
+  if (estimate.has_interval()) {
+    text += fmt::format(" [{}, {}]", Text(estimate.low, decimals), Text(estimate.high, decimals));
+  }
+  if (estimate.infinite == 0) return text;
+  const std::int64_t runs = estimate.n + estimate.infinite;
+  return fmt::format("{}∞ in {} of {} runs", estimate.n == 0 ? "" : text + ", ", estimate.infinite,
+                     runs);
 }
 
 std::string Text(const EventShare& share) {
   return fmt::format("{} of {} runs, {:.1f} % [{:.1f} %, {:.1f} %]", share.events, share.runs,
                      kPercent * share.share, kPercent * share.lower, kPercent * share.upper);
+}
+
+std::string CsvText(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
 }
 
 }  // namespace fogline

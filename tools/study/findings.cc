@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -48,7 +49,11 @@ std::string RankingText(const Comparison& comparison, std::size_t test_case,
 
 std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals,
                            std::string_view than) {
-  if (difference.n == 0) return "without a pair of runs to compare";
+  if (difference.n == 0) {
+    return difference.infinite == 0
+               ? std::string("without a pair of runs to compare")
+               : fmt::format("infinitely far apart in {} pairs of runs", difference.infinite);
+  }
   Estimate size = difference;
   const bool less = difference.mean < 0;
   if (less) {
@@ -58,9 +63,11 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
   }
   std::string text =
       fmt::format("{} {} {}{}", Text(size, decimals), unit, less ? "less" : "more", than);
-  if (VerdictOf(difference) == Verdict::kUndecided) {
+  const Verdict verdict = VerdictOf(difference);
+  if (verdict == Verdict::kUndecided) {
     text += fmt::format(", which is no difference that {} pairs of runs can tell", difference.n);
   }
+  if (verdict == Verdict::kTooFew) text += ", with too few runs for an interval";
   return text;
 }
 
@@ -79,6 +86,7 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
   std::vector<std::string> more;
   std::vector<std::string> less;
   std::vector<std::string> undecided;
+  std::vector<std::string> too_few;
   for (const std::size_t v : variants) {
     if (v == reference) continue;
     const Estimate difference =
@@ -94,6 +102,9 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
       case Verdict::kUndecided:
         undecided.push_back(name);
         break;
+      case Verdict::kTooFew:
+        too_few.push_back(name);
+        break;
     }
   }
   std::vector<std::string> parts;
@@ -101,6 +112,9 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
   if (!more.empty()) parts.push_back(fmt::format("more for {}", ListText(more)));
   if (!undecided.empty())
     parts.push_back(fmt::format("not to be told apart for {}", ListText(undecided)));
+  if (!too_few.empty()) {
+    parts.push_back(fmt::format("too few runs for an interval for {}", ListText(too_few)));
+  }
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
@@ -130,21 +144,22 @@ std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
   return text;
 }
 
+std::size_t ReferenceCase(const Comparison& comparison, std::size_t test_case) {
+  const std::string& group = comparison.cases()[test_case].group;
+  std::size_t reference = 0;
+  while (comparison.cases()[reference].group != group) ++reference;
+  return reference;
+}
+
 std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant) {
   constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
-  std::vector<std::string> helped;
-  std::vector<std::string> harmed;
-  std::vector<std::string> undecided;
+  std::map<Verdict, std::vector<std::string>> by_verdict;
   std::vector<std::string> lines;
   const std::string& name = comparison.variants()[variant].name;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    const Estimate effect = comparison.Difference({c, variant}, {c, 0}, kShortfall);
     const std::string& label = comparison.cases()[c].name;
-    const Verdict verdict = VerdictOf(effect);
-    (verdict == Verdict::kLess   ? helped
-     : verdict == Verdict::kMore ? harmed
-                                 : undecided)
-        .push_back(label);
+    const Estimate effect = comparison.Difference({c, variant}, {c, 0}, kShortfall);
+    by_verdict[VerdictOf(effect)].push_back(label);
     const EventShare without = comparison.Collisions({c, 0});
     const EventShare with = comparison.Collisions({c, variant});
     std::string line = fmt::format(
@@ -155,21 +170,27 @@ std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t 
     if (without.events + with.events > 0) {
       line += fmt::format("; collisions {} instead of {}", Text(with), Text(without));
     }
-    if (c > 0) {
+    const std::size_t reference = ReferenceCase(comparison, c);
+    if (reference != c) {
       line += fmt::format(
-          "; SI {}", DifferenceText(comparison.Difference({c, variant}, {0, variant}, "si_pct"),
-                                    "points", 1, " than in the first case"));
+          "; SI {}",
+          DifferenceText(comparison.Difference({c, variant}, {reference, variant}, "si_pct"),
+                         "points", 1,
+                         fmt::format(" than with {}", comparison.cases()[reference].name)));
     }
     lines.push_back(line + ".");
   }
-  const auto part = [&](const std::vector<std::string>& of, std::string_view what) {
-    return of.empty() ? std::string() : fmt::format(" It {} in: {}.", what, ListText(of));
+  const auto part = [&](Verdict verdict, std::string_view what) {
+    const std::vector<std::string>& of = by_verdict[verdict];
+    return of.empty() ? std::string() : fmt::format(" {}: {}.", what, ListText(of));
   };
   std::vector<std::string> findings;
   findings.push_back(fmt::format(
-      "{} reduces the compromised safety in fog in {} of {} cases.{}{}{}", Capital(name),
-      helped.size(), comparison.cases().size(), part(helped, "reduces it"),
-      part(harmed, "increases it"), part(undecided, "makes no difference that can be told")));
+      "{} reduces the compromised safety in fog in {} of {} cases.{}{}{}{}", Capital(name),
+      by_verdict[Verdict::kLess].size(), comparison.cases().size(),
+      part(Verdict::kLess, "It reduces it in"), part(Verdict::kMore, "It increases it in"),
+      part(Verdict::kUndecided, "It makes no difference that can be told in"),
+      part(Verdict::kTooFew, "Too few runs for an interval in")));
   findings.insert(findings.end(), lines.begin(), lines.end());
   return findings;
 }

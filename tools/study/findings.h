@@ -18,7 +18,8 @@ std::string RankingText(const Comparison& comparison, std::size_t test_case,
                         std::string_view measure, int decimals, Better better);
 
 /// "12.3 [11.0, 13.6] points more than before", "0.1 [-0.2, 0.4] points more than before, which is
-/// no difference that 300 pairs of runs can tell". @param than such as " than before", or ""
+/// no difference that 300 pairs of runs can tell", "..., with too few runs for an interval". @param
+/// than such as " than before", or ""
 std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals,
                            std::string_view than = "");
 
@@ -29,7 +30,7 @@ std::string Capital(std::string text);
 std::string ListText(const std::vector<std::string>& names);
 
 /// `variants` by what they do to a measure against variant `reference`: "more for a (...), less for
-/// b (...), undecided for c".
+/// b (...), undecided for c, too few runs for d".
 std::string AgainstText(const Comparison& comparison, std::size_t test_case,
                         const std::vector<std::size_t>& variants, std::size_t reference,
                         std::string_view measure, std::string_view unit, int decimals);
@@ -37,8 +38,11 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
 /// Collisions of every variant; "No car collides in any run." where none does.
 std::string CollisionText(const Comparison& comparison, std::size_t test_case);
 
+/// The first case of the same group: what the others of the group are compared with.
+std::size_t ReferenceCase(const Comparison& comparison, std::size_t test_case);
+
 /// Of a comparison whose variant 0 is without traded control: what variant `variant` does to safety
-/// in each case, and how far that differs from the first case.
+/// in each case, and how far that differs from the reference case of its group.
 std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant);
 
 }  // namespace fogline

@@ -9,9 +9,18 @@
 namespace fogline {
 namespace {
 
+/// Where a pair of cars was there and never closed in, its least time to collision is infinite, not
+/// missing.
+void KeepInfinite(PairMeasures& pair) {
+  const bool there = pair.tet_s.has_value();
+  if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
+}
+
 // In the order of ComparedMeasures().
-RunValues ValuesOf(const RunMeasures& measures, const std::optional<double>& si_pct) {
+RunValues ValuesOf(RunMeasures measures, const std::optional<double>& si_pct) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  KeepInfinite(measures.host);
+  KeepInfinite(measures.follower);
   RunValues values{si_pct.value_or(kNone),
                    measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
   VisitMeasures(measures,

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "services/policies/policies.h"
 #include "tools/study/comparison.h"
 #include "tools/study/findings.h"
 #include "tools/study/study.h"
@@ -11,11 +12,11 @@
 namespace fogline {
 namespace {
 
+/// Every policy of the table.
 std::vector<StudyVariant> Variants() {
   std::vector<StudyVariant> variants;
-  for (const std::string_view policy :
-       {"none", "traded", "isolate", "blend", "oracle", "adaptive", "bayes", "availability"}) {
-    variants.push_back({std::string(policy), {fmt::format("/arbitrator/policy={}", policy)}});
+  for (const PolicyRow& row : Policies()) {
+    variants.push_back({std::string(row.name), {fmt::format("/arbitrator/policy={}", row.name)}});
   }
   return variants;
 }
@@ -41,12 +42,19 @@ constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
                                                           "wrong_human_s",
                                                           "wrong_automation_s"};
 
-/// Every policy against `isolate`, which hands nothing over.
+/// The policies that have a say in who drives, variant by variant: all but those whose rule is that
+/// nobody takes over.
+std::vector<std::size_t> HandOvers() {
+  std::vector<std::size_t> handovers;
+  for (std::size_t v = 0; v < Policies().size(); ++v) {
+    if (Policies()[v].rule != Rule::kNever) handovers.push_back(v);
+  }
+  return handovers;
+}
+
+/// Every policy that hands over against `isolate`, which does not.
 std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case) {
-  const std::vector<std::size_t> handovers{
-      comparison.VariantNamed("traded"), comparison.VariantNamed("blend"),
-      comparison.VariantNamed("adaptive"), comparison.VariantNamed("bayes"),
-      comparison.VariantNamed("availability")};
+  const std::vector<std::size_t> handovers = HandOvers();
   const std::size_t isolate = comparison.VariantNamed("isolate");
   std::vector<std::string> lose;
   std::vector<std::string> win;
@@ -58,8 +66,14 @@ std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case
     if (verdict == Verdict::kLess) win.push_back(name);
   }
   std::string text;
-  if (!lose.empty()) text += fmt::format("{} lose to isolate. ", Capital(ListText(lose)));
-  if (!win.empty()) text += fmt::format("{} beat isolate. ", Capital(ListText(win)));
+  const auto verb = [](const std::vector<std::string>& names, std::string_view one,
+                       std::string_view many) { return names.size() == 1 ? one : many; };
+  if (!lose.empty()) {
+    text += fmt::format("{} {} to isolate. ", Capital(ListText(lose)), verb(lose, "loses", "lose"));
+  }
+  if (!win.empty()) {
+    text += fmt::format("{} {} isolate. ", Capital(ListText(win)), verb(win, "beats", "beat"));
+  }
   if (lose.empty() && win.empty()) text += "No hand-over can be told apart from isolate. ";
   return text + fmt::format("Mean compromised safety in fog against isolate: {}.",
                             AgainstText(comparison, test_case, handovers, isolate,

@@ -58,17 +58,50 @@ std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::s
                      DifferenceText(si, "points", 2));
 }
 
-/// Which variants are comfortable in the mean and cost no more safety than is tolerable.
+bool IsComfortable(const Comparison& comparison, Cell cell) {
+  const double worst = Greatest(comparison.Values(cell, "max_handover_jerk_mps3"));
+  return worst >= 0 && worst <= kComfortableJerk_mps3;
+}
+
+/// "0.31 [0.31, 0.32] m/s3, worst 0.40".
+std::string JerkText(const Comparison& comparison, Cell cell) {
+  const Estimate jerk = comparison.Mean(cell, "max_handover_jerk_mps3");
+  if (jerk.n == 0) return "no hand-over";
+  return fmt::format("{} m/s3, worst {}", Text(jerk, 2),
+                     Text(Greatest(comparison.Values(cell, "max_handover_jerk_mps3")), 2));
+}
+
+/// In which cases the step leaves anything to be won.
+std::string FindingOfStep(const Comparison& comparison) {
+  std::vector<std::string> matters;
+  std::vector<std::string> enough;
+  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
+    const bool is_comfortable = IsComfortable(comparison, {c, 0});
+    (is_comfortable ? enough : matters)
+        .push_back(
+            fmt::format("{} ({})", comparison.cases()[c].name, JerkText(comparison, {c, 0})));
+  }
+  std::string text = "Where does a smooth transfer matter? The plain step";
+  if (!enough.empty()) {
+    text += fmt::format(" stays within {:g} m/s3 in every run of {} already", kComfortableJerk_mps3,
+                        ListText(enough));
+  }
+  if (!enough.empty() && !matters.empty()) text += "; it";
+  if (!matters.empty()) {
+    text +=
+        fmt::format(" does not in {}, which is where there is jerk to spare", ListText(matters));
+  }
+  return text + ".";
+}
+
+/// Which variants, the step among them, are comfortable in every run and cost no more safety than
+/// is tolerable.
 std::string VerdictText(const Comparison& comparison, std::size_t c) {
   std::vector<std::string> meet;
   std::vector<std::string> fail;
-  for (std::size_t v = 1; v < comparison.variants().size(); ++v) {
-    const Estimate jerk = comparison.Mean({c, v}, "max_handover_jerk_mps3");
+  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
     const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
-    const bool met =
-        jerk.n > 0 &&
-        Greatest(comparison.Values({c, v}, "max_handover_jerk_mps3")) <= kComfortableJerk_mps3 &&
-        si.mean >= -kTolerableLoss;
+    const bool met = IsComfortable(comparison, {c, v}) && si.mean >= -kTolerableLoss;
     (met ? meet : fail).push_back(comparison.variants()[v].name);
   }
   std::string text = fmt::format(
@@ -101,6 +134,7 @@ StudyResult RunTransferStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   StudySection& section = result.section;
+  section.findings.push_back(FindingOfStep(comparison));
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     section.findings.push_back(FindingOf(comparison, c));
     section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));

@@ -44,6 +44,7 @@ const problems = [];
 addEventListener("error", (event) => problems.push(event.message));
 addEventListener("unhandledrejection", (event) => problems.push(String(event.reason)));
 addEventListener("securitypolicyviolation", (event) => problems.push(event.violatedDirective));
+console.error = (...what) => problems.push(what.join(" "));
 </script>)";
 
 /// Runs last, with the test's own part in the middle.

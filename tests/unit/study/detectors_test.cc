@@ -7,11 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include "services/runtime/random.h"
+
 namespace fogline {
 namespace {
 
 // A run of 100 s whose score first passes each of these at that time.
-ClearRun RunOf(std::vector<ClearRun::Record> records) {
+ClearRun RunOf(ScoreRecords records) {
   return {.records = std::move(records), .scores = {}, .duration_s = 100};
 }
 
@@ -37,22 +39,63 @@ TEST(AlarmCountTest, BoundsAreThoseOfAPoissonCount) {
   EXPECT_TRUE(std::isinf(none.ArlZeroBounds_s().second));
 }
 
-TEST(CalibrateThresholdTest, IsTheLeastThatIsQuietEnough) {
+TEST(ThresholdFinderTest, IsTheLeastThatIsQuietEnough) {
   std::vector<ClearRun> runs;
   for (int i = 1; i <= 10; ++i) runs.push_back(RunOf({{0, 0}, {static_cast<double>(i), 50}}));
   // Above k, 10 - k runs give an alarm after 50 s and k last 100 s: 50 + 100 k/(10 - k) s.
-  const double threshold = CalibrateThreshold(runs, 280);
+  const double threshold = ThresholdFinder(runs).Threshold(280);
   EXPECT_GT(threshold, 7);
   EXPECT_LE(threshold, 8);
   EXPECT_GE(CountAlarms(runs, threshold).ArlZero_s(), 280);
   EXPECT_LT(CountAlarms(runs, std::nextafter(7.0, 0.0)).ArlZero_s(), 280);
 }
 
-TEST(CalibrateThresholdTest, IsAboveAllScoresWhereTheGreatestComesTooOften) {
+TEST(ThresholdFinderTest, IsAboveAllScoresWhereTheGreatestComesTooOften) {
   const std::vector runs(5, RunOf({{0, 0}, {1, 2}}));
-  const double threshold = CalibrateThreshold(runs, 600);
+  const double threshold = ThresholdFinder(runs).Threshold(600);
   EXPECT_GT(threshold, 1);
   EXPECT_EQ(CountAlarms(runs, threshold).alarms, 0);
+}
+
+TEST(ThresholdFinderTest, CountsARunAsOftenAsItsWeightSays) {
+  const std::vector runs{RunOf({{0, 0}, {1, 10}}), RunOf({{0, 0}, {2, 50}}),
+                         RunOf({{0, 0}, {3, 40}})};
+  const ThresholdFinder finder(runs);
+  const std::vector doubled{runs[0], runs[1], runs[1]};
+  for (const double arl_s : {20.0, 60.0, 90.0, 130.0, 400.0}) {
+    EXPECT_EQ(finder.Threshold(std::vector{1.0, 2.0, 0.0}, arl_s),
+              ThresholdFinder(doubled).Threshold(arl_s))
+        << arl_s;
+  }
+}
+
+TEST(ThresholdFinderTest, AgreesWithCountingAlarmsAtEveryThreshold) {
+  std::vector<ClearRun> runs;
+  const Random random(3, Stream{1'000'003});
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    ClearRun& run = runs.emplace_back(ClearRun{.duration_s = 100});
+    for (int step = 0; step < 100; ++step) {
+      // Scores in tenths: many of them equal.
+      AddScore(std::floor(10 * random.Uniform2(step, i)[0] * step) / 10, step, run.records);
+    }
+  }
+  for (const double arl_s : {5.0, 50.0, 80.0, 150.0, 400.0}) {
+    const double threshold = ThresholdFinder(runs).Threshold(arl_s);
+    EXPECT_GE(CountAlarms(runs, threshold).ArlZero_s(), arl_s);
+    const double below = std::nextafter(threshold, -1.0);
+    EXPECT_LT(CountAlarms(runs, below).ArlZero_s(), arl_s);
+  }
+}
+
+TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
+  Scenario scenario;
+  scenario.radar.range_std_m = 0.3;
+  scenario.lidar.range_std_m = 0.4;
+  const ConflictParameters parameters = DetectorParameters(scenario);
+  // kappa 1/2: both tests look for a shift of one deviation of the difference, 0.5 m.
+  EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
+  EXPECT_EQ(parameters.bin_width_m, 0.4);
+  EXPECT_EQ(parameters.frame_bins, 625) << "250 m as ever";
 }
 
 TEST(AreaUnderRocTest, IsTheShareOfPairsInOrderTiesCountedHalf) {

@@ -25,8 +25,29 @@ TEST(EstimateTest, OfOneValueHasNoInterval) {
   const Estimate estimate = EstimateOf(std::array{5.0});
   EXPECT_EQ(estimate.mean, 5);
   EXPECT_TRUE(std::isnan(estimate.low));
-  EXPECT_EQ(VerdictOf(estimate), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf(estimate), Verdict::kTooFew);
   EXPECT_TRUE(std::isnan(EstimateOf({}).mean));
+}
+
+TEST(EstimateTest, AnInfiniteValueIsNeitherMissingNorPartOfTheMean) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const Estimate estimate = EstimateOf(std::array{1.0, kInfinite, 3.0, kNone});
+  EXPECT_EQ(estimate.n, 2);
+  EXPECT_EQ(estimate.mean, 2);
+  EXPECT_EQ(estimate.infinite, 1);
+  EXPECT_EQ(Text(EstimateOf(std::array{5.0, kInfinite}), 1), "5.0, ∞ in 1 of 2 runs");
+  EXPECT_EQ(Text(EstimateOf(std::array{kInfinite, kInfinite}), 1), "∞ in 2 of 2 runs");
+}
+
+TEST(PairedDifferenceTest, OfTwoInfiniteValuesIsNoneAndOfOneIsNotDecidedByTheOthers) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const Estimate both = PairedDifference(std::array{kInfinite, 3.0}, std::array{kInfinite, 3.0});
+  EXPECT_EQ(both.n, 2);
+  EXPECT_EQ(both.mean, 0);
+  const Estimate one = PairedDifference(std::array{kInfinite, 3.0, 3.0}, std::array{2.0, 2.0, 2.0});
+  EXPECT_EQ(one.n, 2);
+  EXPECT_EQ(one.infinite, 1);
+  EXPECT_EQ(VerdictOf(one), Verdict::kUndecided);
 }
 
 TEST(PairedDifferenceTest, IsKnownExactlyWhereOnlyTheNoiseOfThePairsDiffers) {

@@ -18,6 +18,13 @@ TEST(DifferenceTextTest, SaysMoreLessOrThatNobodyCanTell) {
       "0.5 [−0.5, 1.5] m less, which is no difference that 9 pairs of runs can tell");
 }
 
+TEST(DifferenceTextTest, SaysWhenThereAreTooFewRuns) {
+  EXPECT_EQ(DifferenceText({.n = 1, .mean = 2}, "points", 1),
+            "2.0 points more, with too few runs for an interval");
+  EXPECT_EQ(DifferenceText({}, "m", 1), "without a pair of runs to compare");
+  EXPECT_EQ(DifferenceText({.infinite = 3}, "s", 1), "infinitely far apart in 3 pairs of runs");
+}
+
 TEST(ListTextTest, JoinsNames) {
   EXPECT_EQ(ListText({}), "");
   EXPECT_EQ(ListText({"a"}), "a");

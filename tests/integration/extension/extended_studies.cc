@@ -1,0 +1,78 @@
+// A ninth policy and another measure of conflict are in every study of them by their row alone.
+#include <map>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario/loader.h"
+#include "services/conflict/measures.h"
+#include "services/policies/policies.h"
+#include "tools/study/study.h"
+
+namespace fogline {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+StudyResult Make(std::string_view name) {
+  const Study* study = FindStudy(name);
+  return study->run({.scenarios = std::string(FOGLINE_SOURCE_DIR) + "/scenario",
+                     .seeds = {1, 2},
+                     .jobs = 2,
+                     .progress = {}});
+}
+
+/// The values of a column, by how many lines have each.
+std::map<std::string, int> Column(const std::string& csv, const std::string& name) {
+  std::istringstream lines(csv);
+  std::string line;
+  int place = -1;
+  std::map<std::string, int> values;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; std::getline(cells, cell, ','); ++i) {
+      if (place < 0 && cell == name) {
+        place = i;
+        break;
+      }
+      if (i == place) ++values[cell];
+    }
+  }
+  return values;
+}
+
+TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
+  ASSERT_TRUE(FindPolicy("cautious"));
+  EXPECT_THAT(ScenarioSchema(), HasSubstr("\"cautious\""));
+  const StudyResult result = Make("policy");
+  const std::map<std::string, int> variants = Column(result.files[0].content, "variant");
+  EXPECT_EQ(variants.size(), Policies().size());
+  ASSERT_TRUE(variants.contains("cautious"));
+  EXPECT_EQ(variants.at("cautious"), variants.at("traded")) << "in every case, by every measure";
+  for (const std::string& finding : result.section.findings) {
+    EXPECT_THAT(finding, HasSubstr("cautious "));
+  }
+  // AND as one that hands over it is weighed against isolation
+  const std::string against =
+      result.section.findings[0].substr(result.section.findings[0].find("against isolate"));
+  EXPECT_THAT(against, HasSubstr("cautious"));
+  EXPECT_THAT(against, testing::Not(HasSubstr("oracle (by")));
+  EXPECT_THAT(result.section.figures[0].categories, Contains("cautious"));
+}
+
+TEST(ExtensionTest, AnotherMeasureOfTheTableIsInTheScenarioAndInTheConflictStudy) {
+  ASSERT_NE(FindConflictMeasure("relative"), nullptr);
+  EXPECT_THAT(ScenarioSchema(), HasSubstr("\"relative\""));
+  const StudyResult result = Make("conflict");
+  const std::map<std::string, int> measures = Column(result.files[0].content, "measure");
+  EXPECT_EQ(measures.size(), ConflictMeasures().size());
+  ASSERT_TRUE(measures.contains("relative"));
+  EXPECT_EQ(measures.at("relative"), measures.at("doc")) << "in every condition";
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,102 @@
+#include "tools/study/equal_engagement.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "services/runtime/random.h"
+
+namespace fogline {
+namespace {
+
+// In order of threshold: RHE falls, then stays at 0 while the gain goes on rising.
+constexpr std::array<CurvePoint, 5> kCurve{
+    {{.rhe_pct = 100, .gain = -50}, {40, 10}, {20, 20}, {0, 22}, {0, 30}}};
+
+TEST(BestAtTest, InterpolatesBetweenNeighbours) {
+  const auto place = BestAt(kCurve, 25);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->below, 1U);
+  EXPECT_EQ(place->share, 0.75);
+  EXPECT_EQ(place->gain, 17.5);
+}
+
+TEST(BestAtTest, TakesTheBestWhereSeveralHaveThisEngagement) {
+  const auto place = BestAt(kCurve, 0);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->below, 4U);
+  EXPECT_EQ(place->gain, 30);
+  // Just above 0 there is one place only, beside the worse of the two.
+  EXPECT_NEAR(BestAt(kCurve, 1e-9)->gain, 22, 1e-6);
+}
+
+TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
+  EXPECT_FALSE(BestAt(kCurve, 100.5));
+  EXPECT_FALSE(BestAt(kCurve, -0.5));
+  EXPECT_FALSE(BestAt(kCurve, std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(LargestInterpolationErrorTest, IsThatOfTheThresholdLeastLikeItsNeighbours) {
+  // 40 % between 100 % and 20 %: three quarters of the way from -50 to 20 are 2.5, not 10. 20 %
+  // between 40 % and 0 %: half of the way from 10 to 22 are 16, not 20.
+  EXPECT_NEAR(LargestInterpolationError(kCurve), 7.5, 1e-12);
+}
+
+/// Situations with a difficulty of their own, which all rules share: the gain of a rule is that,
+/// what its engagement costs, and `more`.
+struct Rule {
+  std::vector<double> rhe_pct;
+  std::vector<double> gain;
+};
+Rule MakeRule(double mean_rhe_pct, double more) {
+  constexpr std::uint32_t kSituations = 200;
+  const Random random(1, Stream{1'000'002});
+  Rule rule;
+  for (std::uint32_t i = 0; i < kSituations; ++i) {
+    const auto [difficulty, noise] = random.Normal2(0, i);
+    rule.rhe_pct.push_back(mean_rhe_pct + noise);
+    rule.gain.push_back(30 * difficulty - mean_rhe_pct + more);
+  }
+  return rule;
+}
+RuleValues ValuesOf(const Rule& rule) { return {.rhe_pct = rule.rhe_pct, .gain = rule.gain}; }
+
+TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
+  const std::vector fixed{MakeRule(80, 0), MakeRule(40, 0), MakeRule(10, 0)};
+  const std::vector values{ValuesOf(fixed[0]), ValuesOf(fixed[1]), ValuesOf(fixed[2])};
+  const Rule better = MakeRule(25, 0.5);
+  const Rule worse = MakeRule(25, -0.5);
+  const Rule beyond = MakeRule(5, 9);
+  const std::vector rules{ValuesOf(better), ValuesOf(worse), ValuesOf(beyond)};
+  const std::vector<AtEqualEngagement> all = AgainstFixed(values, rules);
+  // The deviation of the situations is 30 points; unpaired, 0.5 could not be seen in 200 of them.
+  EXPECT_NEAR(all[0].difference.mean, 0.5, 1e-9);
+  EXPECT_EQ(VerdictOf(all[0].difference), Verdict::kMore);
+  EXPECT_EQ(all[0].place->below, 1U);
+  EXPECT_EQ(VerdictOf(all[1].difference), Verdict::kLess);
+  EXPECT_FALSE(all[2].place) << "it engages less than any threshold";
+  EXPECT_FALSE(all[2].difference.has_interval());
+}
+
+TEST(AgainstFixedTest, KnowsThatTheEngagementIsAnEstimateToo) {
+  // The rule's own RHE has a deviation of 20 points over 200 situations: 1.4 of its mean, and a
+  // point of RHE is worth a point of gain.
+  Rule low = MakeRule(80, 0);
+  Rule high = MakeRule(10, 0);
+  Rule rule = MakeRule(40, 0);
+  const Random random(2, Stream{1'000'002});
+  for (std::size_t i = 0; i < rule.rhe_pct.size(); ++i) {
+    rule.rhe_pct[i] = 40 + 20 * random.Normal2(0, static_cast<std::uint32_t>(i))[0];
+  }
+  const std::vector fixed{ValuesOf(low), ValuesOf(high)};
+  const std::vector rules{ValuesOf(rule)};
+  const Estimate difference = AgainstFixed(fixed, rules).front().difference;
+  const double width = difference.high - difference.low;
+  EXPECT_NEAR(width, 2 * 1.96 * 20 / std::sqrt(200), 0.8);
+}
+
+}  // namespace
+}  // namespace fogline
