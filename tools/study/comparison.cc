@@ -207,7 +207,7 @@ StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows, 
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(name_cases ? cases_[cell.test_case].name : variants_[cell.variant].name);
     for (const std::string_view measure : measures) {
-      row.push_back(measure == "collided" ? Text(Collisions(cell)) : Text(Mean(cell, measure), 2));
+      row.push_back(measure == "collided" ? Text(Collisions(cell)) : Text(Mean(cell, measure)));
     }
   }
   return table;

@@ -1,5 +1,6 @@
 #include "tools/study/estimate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -78,6 +79,16 @@ std::string Text(const Estimate& estimate, int decimals) {
   const std::int64_t runs = estimate.n + estimate.infinite;
   return fmt::format("{}∞ in {} of {} runs", estimate.n == 0 ? "" : text + ", ", estimate.infinite,
                      runs);
+}
+
+std::string Text(const Estimate& estimate) {
+  constexpr double kFewest = 2;
+  constexpr double kMost = 6;
+  const double width = estimate.high - estimate.low;
+  const bool wide = !estimate.has_interval() || !(width > 0);
+  const double decimals =
+      wide ? kFewest : std::clamp(std::ceil(1 - std::log10(width)), kFewest, kMost);
+  return Text(estimate, static_cast<int>(decimals));
 }
 
 std::string Text(const EventShare& share) {

@@ -43,6 +43,8 @@ Verdict VerdictOf(const Estimate& difference);
 
 /// "12.3 [12.0, 12.6]"; "–" without a mean; "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
+/// The same with as many decimals as give the interval two digits: 2 to 6.
+std::string Text(const Estimate& estimate);
 /// "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
 std::string Text(const EventShare& share);
 /// "12.3"; "–" for what is not finite.

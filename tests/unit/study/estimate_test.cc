@@ -39,6 +39,15 @@ TEST(EstimateTest, AnInfiniteValueIsNeitherMissingNorPartOfTheMean) {
   EXPECT_EQ(Text(EstimateOf(std::array{kInfinite, kInfinite}), 1), "∞ in 2 of 2 runs");
 }
 
+TEST(EstimateTest, IsToldWithAsManyDecimalsAsItsIntervalHas) {
+  Estimate estimate{.n = 9, .mean = 0.0195, .deviation = 0, .low = 0.01942, .high = 0.01958};
+  EXPECT_EQ(Text(estimate), "0.01950 [0.01942, 0.01958]");
+  estimate = {.n = 9, .mean = 1191.75, .deviation = 0, .low = 1188.44, .high = 1195.06};
+  EXPECT_EQ(Text(estimate), "1191.75 [1188.44, 1195.06]");
+  estimate = {.n = 9, .mean = 0, .deviation = 0, .low = 0, .high = 0};
+  EXPECT_EQ(Text(estimate), "0.00 [0.00, 0.00]");
+}
+
 TEST(PairedDifferenceTest, OfTwoInfiniteValuesIsNoneAndOfOneIsNotDecidedByTheOthers) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Estimate both = PairedDifference(std::array{kInfinite, 3.0}, std::array{kInfinite, 3.0});
