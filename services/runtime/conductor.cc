@@ -49,8 +49,7 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       hash_(HashOf(options_.scenario_text)),
       host_(HostName()),
       began_(Clock::now()),
-      looked_(began_),
-      attentive_(began_) {
+      looked_(began_) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
     OnStatus(*arrival.As<status_t>());
@@ -61,14 +60,19 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
 
 void Conductor::Attend(TimePoint now) {
   const Duration away = now - looked_;
+  if (away > kAway) {
+    pauses_.push_back({.from = looked_, .to = now});
+    away_ = std::max(away_, away);
+  }
   looked_ = now;
-  if (away <= kAway) return;
-  attentive_ = now;
-  away_ = std::max(away_, away);
 }
 
 Duration Conductor::HeldAgainst(TimePoint since, TimePoint now) const {
-  return now - std::max(since, attentive_);
+  Duration held = now - since;
+  for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
+    held -= pause->to - std::max(pause->from, since);
+  }
+  return held;
 }
 
 TimePoint Conductor::Poll(TimePoint now) {

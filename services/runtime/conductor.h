@@ -131,8 +131,12 @@ class Conductor {
   std::function<void(const status_t&)> on_status_;
   std::string error_;
   TimePoint began_;
-  TimePoint looked_;     // at the clock, last
-  TimePoint attentive_;  // since when it has looked regularly
+  TimePoint looked_;  // at the clock, last
+  struct Pause {
+    TimePoint from;
+    TimePoint to;
+  };
+  std::vector<Pause> pauses_;  // in which it did not look, in order
   Duration away_{};
   TimePoint announce_at_{};
   TimePoint parts_at_{};

@@ -179,6 +179,25 @@ TEST_F(ConductorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) {
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
 }
 
+TEST_F(ConductorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  // GIVEN a runner that looks for a second, and is held up for 0.6 s, again and again
+  const TimePoint began = Clock::now();
+  TimePoint now = began;
+  Duration looked{};
+  while (conductor_.phase() == Conductor::Phase::kRunning && now < began + milliseconds(20'000)) {
+    const Duration away =
+        looked % milliseconds(1000) == Duration::zero() ? milliseconds(600) : milliseconds(20);
+    now += away;
+    looked += milliseconds(20);
+    conductor_.Poll(now);
+  }
+  // THEN the four seconds in which it looked count
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+  EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
+}
+
 TEST_F(ConductorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
   Conductor hasty(script_.bus(), {.run_id = Script::kRunId,
                                   .scenario_text = script_.text(),
