@@ -74,11 +74,8 @@ class Assigner {
   template <class Item>
   Item* ItemOf(std::string_view name, std::vector<Item>& list) const {
     if (path_.front() != name) return nullptr;
-    const std::string& text = path_[1];
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    const bool is_index = error == std::errc() && end == text.data() + text.size();
-    return is_index && index < list.size() ? &list[index] : nullptr;
+    const auto index = ListIndex(path_[1]);
+    return index && *index < list.size() ? &list[*index] : nullptr;
   }
   template <class T>
   void Done(const T&) {

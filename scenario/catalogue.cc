@@ -1,6 +1,7 @@
 #include "scenario/catalogue.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -108,9 +109,7 @@ std::vector<std::string_view> Segments(std::string_view pointer) {
   return segments;
 }
 
-bool IsIndex(std::string_view segment) {
-  return segment.size() > 1 && segment.find_first_not_of("0123456789", 1) == std::string_view::npos;
-}
+bool IsIndex(std::string_view segment) { return !segment.empty() && ListIndex(segment.substr(1)); }
 
 // Each index becomes *.
 std::string WithoutIndices(std::string_view pointer) {
@@ -133,6 +132,14 @@ std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> ListIndex(std::string_view segment) {
+  if (segment.size() > 1 && segment.front() == '0') return std::nullopt;
+  std::size_t index = 0;
+  const char* const last = segment.data() + segment.size();
+  const auto [end, error] = std::from_chars(segment.data(), last, index);
+  return error == std::errc() && end == last ? std::optional(index) : std::nullopt;
+}
 
 const std::vector<FieldInfo>& Catalogue() {
   static const std::vector<FieldInfo> catalogue = BuildCatalogue();

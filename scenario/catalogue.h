@@ -1,6 +1,7 @@
 // Every field of a scenario by its JSON pointer: for explanations, overrides and suggestions.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,6 +24,9 @@ struct FieldInfo {
 
 /// All of them, each section followed by what is in it. The first one is the whole scenario, "/".
 const std::vector<FieldInfo>& Catalogue();
+
+/// The index that a segment of a pointer is: digits, no leading zero (RFC 6901, section 4).
+std::optional<std::size_t> ListIndex(std::string_view segment);
 
 /// What `pointer` means, a list's index standing for any; null if there is no such field.
 const FieldInfo* FindField(std::string_view pointer);

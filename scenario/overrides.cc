@@ -1,7 +1,6 @@
 #include "scenario/overrides.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,10 +36,8 @@ bool IsList(std::string_view pointer) { return FindField(std::string(pointer) + 
 
 // The list's item that a segment names, or null.
 JsonValue* FindItem(JsonArray& items, std::string_view segment) {
-  std::size_t index = 0;
-  const char* const last = segment.data() + segment.size();
-  const auto [end, error] = std::from_chars(segment.data(), last, index);
-  return error == std::errc() && end == last && index < items.size() ? &items[index] : nullptr;
+  const auto index = ListIndex(segment);
+  return index && *index < items.size() ? &items[*index] : nullptr;
 }
 
 // The value at `pointer`, a known field's. Makes missing sections on the way. Null where a list has
