@@ -12,6 +12,7 @@
 #include "tools/calibrate/findings.h"
 #include "tools/calibrate/scenario_text.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
@@ -41,10 +42,10 @@ struct CalibrateArguments {
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
     verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE, where that of SI is 1")
-        ->check(CLI::NonNegativeNumber)
+        ->check(NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--spread-weight", spread_weight, "Weight of SI's variance over the seeds")
-        ->check(CLI::NonNegativeNumber)
+        ->check(NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--jobs", jobs, "Threads; they change no result")
         ->check(CLI::Range(1, 1024))
