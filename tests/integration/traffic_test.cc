@@ -232,6 +232,13 @@ TEST_F(CompareTest, SaysWhatIsWrongWithARecording) {
               HasSubstr("no column \"IVS1\"; it has \"Time\", \"Speed2\", \"IVS2\"; did you mean "
                         "\"IVS2\"?"));
   EXPECT_THAT(refusal("", {}), HasSubstr("error: "));
+  EXPECT_THAT(refusal("Time,Speed2,IVS1\n0,1,1\n9,1,1e300\n", {}),
+              HasSubstr(":3: error: IVS1 is 1e+300, not between 0 and 10000"));
+  EXPECT_THAT(refusal("Time,Speed2,IVS1\n0,1,-1\n9,1,1\n", {}),
+              HasSubstr(":2: error: IVS1 is -1, not between 0 and 10000"));
+  EXPECT_THAT(refusal("Time,Speed1,Speed2,IVS1\n0,20,1,1\n9,5,1,1\n", {}),
+              HasSubstr("error: another leader than that of the run: Speed1 is "));
+  EXPECT_THAT(refusal("Time,Speed1,Speed2,IVS1\n0,20,1,1\n9,,1,1\n", {}), HasSubstr(":3: error: "));
 }
 
 }  // namespace

@@ -33,12 +33,19 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// What was recorded of the real car.
+/// What was recorded of the real car, and of the leader if the file has him.
 struct Recording {
   std::vector<CsvNumber> times_s;
   std::vector<CsvNumber> speeds_mps;
   std::vector<CsvNumber> gaps_m;
+  std::vector<CsvNumber> leader_mps;
 };
+
+// What a car on a road can have; anything else is another quantity or unit, or a marker of nothing.
+constexpr double kFastest_mps = 150;
+constexpr double kFarthest_m = 10'000;
+// The run's leader is the recorded one if they differ by no more, at any time.
+constexpr double kSameLeader_mps = 0.5;
 
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
   throw InputError(fmt::format("{}: error: {}", file.string(), why));
@@ -60,7 +67,25 @@ bool IsNumber(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-Recording ReadRecording(const CompareArguments& arguments, const std::string& time_column) {
+[[noreturn]] void RefuseCell(const std::filesystem::path& file, const std::string& text,
+                             std::uint32_t offset, const std::string& why) {
+  const auto line = 1 + std::count(text.begin(), text.begin() + offset, '\n');
+  throw InputError(fmt::format("{}:{}: error: {}", file.string(), line, why));
+}
+
+/// @throws InputError for the first value of the column that is not between the two
+void RequireBetween(double least, double most, const std::string& column,
+                    const std::vector<CsvNumber>& numbers, const std::filesystem::path& file,
+                    const std::string& text) {
+  for (const CsvNumber& number : numbers) {
+    if (number.value >= least && number.value <= most) continue;
+    RefuseCell(
+        file, text, number.offset,
+        fmt::format("{} is {:g}, not between {:g} and {:g}", column, number.value, least, most));
+  }
+}
+
+Recording ReadRecording(const CompareArguments& arguments, const RecordedSection& leader) {
   const std::filesystem::path& file = arguments.recording;
   const FileText csv = ReadFile(file, kMaxFileBytes);
   if (!csv.error.empty()) Refuse(file, csv.error);
@@ -74,13 +99,19 @@ Recording ReadRecording(const CompareArguments& arguments, const std::string& ti
            fmt::format("the first line is {}; it must name the columns", Shown(Names(header))));
   }
   const auto column = [&](const std::string& name) { return FindColumn(header, name, file); };
-  auto columns = ReadCsvColumns(
-      csv.text, {column(time_column), column(arguments.speed_column), column(arguments.gap_column)},
-      [&](std::uint32_t offset, const std::string& why) {
-        const auto line = 1 + std::count(csv.text.begin(), csv.text.begin() + offset, '\n');
-        throw InputError(fmt::format("{}:{}: error: {}", file.string(), line, why));
+  std::vector<std::size_t> columns{column(leader.time_column), column(arguments.speed_column),
+                                   column(arguments.gap_column)};
+  const bool has_leader = std::ranges::find(header, leader.speed_column) != header.end();
+  if (has_leader) columns.push_back(column(leader.speed_column));
+  auto numbers =
+      ReadCsvColumns(csv.text, columns, [&](std::uint32_t offset, const std::string& why) {
+        RefuseCell(file, csv.text, offset, why);
       });
-  return {std::move(columns[0]), std::move(columns[1]), std::move(columns[2])};
+  if (!has_leader) numbers.emplace_back();
+  RequireBetween(-kFastest_mps, kFastest_mps, arguments.speed_column, numbers[1], file, csv.text);
+  RequireBetween(0, kFarthest_m, arguments.gap_column, numbers[2], file, csv.text);
+  return {std::move(numbers[0]), std::move(numbers[1]), std::move(numbers[2]),
+          std::move(numbers[3])};
 }
 
 /// @throws InputError unless the recording's times ascend and span those of the run
@@ -98,6 +129,22 @@ void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double en
   }
   Refuse(file, fmt::format("has {} s to {} s, but the run is from {} s to {} s",
                            times_s.front().value, times_s.back().value, begin_s, end_s));
+}
+
+/// @throws InputError if the file has another leader than the run
+void CheckLeader(const LoggedRun& run, const Recording& recording,
+                 const std::filesystem::path& file) {
+  if (recording.leader_mps.empty()) return;
+  const RecordedSection& leader = run.scenario.lead.recorded;
+  CsvSeries recorded_mps(recording.times_s, recording.leader_mps);
+  for (const Sample& sample : run.result.samples) {
+    const double time_s = leader.start_s + sample.time_s;
+    const double there_mps = recorded_mps.At(time_s);
+    if (std::abs(there_mps - sample.preceding_speed_mps) <= kSameLeader_mps) continue;
+    Refuse(file, fmt::format("another leader than that of the run: {} is {:.2f} m/s at {:.1f} s, "
+                             "where the run's leader drives {:.2f} m/s",
+                             leader.speed_column, there_mps, time_s, sample.preceding_speed_mps));
+  }
 }
 
 /// Ours beside the recorded, of one quantity over all steps.
@@ -195,9 +242,10 @@ int RunCompare(const CompareArguments& arguments) {
     Refuse(arguments.log, "/lead/profile: the leader of this run is not a recorded one");
   }
   const RecordedSection& recorded = run.scenario.lead.recorded;
-  const Recording recording = ReadRecording(arguments, recorded.time_column);
+  const Recording recording = ReadRecording(arguments, recorded);
   CheckTimes(recording.times_s, recorded.start_s + run.result.samples.front().time_s,
              recorded.start_s + run.result.samples.back().time_s, arguments.recording);
+  CheckLeader(run, recording, arguments.recording);
   std::optional<WholeFile> file;
   if (!arguments.out.empty()) {
     if (std::filesystem::exists(arguments.out)) {
