@@ -150,13 +150,13 @@ TEST(RunTest, LeavesNoEmptyLogOfARunThatNeverBegan) {
 }
 
 TEST(RunTest, FailsWhereItsResultCannotBeWritten) {
-  const Outcome outcome =
-      RunCommand({"sh", "-c",
-                  Program("fogline") +
-                      " run scenario/paper.json --transport direct --set /steps=10 > /dev/full"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_EQ(outcome.err,
-            "fogline run: error: standard output cannot be written, such as on a full disk\n");
+  for (const char* what : {"scenario/paper.json --transport direct --set /steps=10", "--help"}) {
+    const Outcome outcome =
+        RunCommand({"sh", "-c", Program("fogline") + " run " + what + " > /dev/full"});
+    EXPECT_EQ(outcome.code, 3) << what;
+    EXPECT_EQ(outcome.err,
+              "fogline run: error: standard output cannot be written, such as on a full disk\n");
+  }
 }
 
 TEST(RunTest, HangingUpEndsARunAsCtrlCDoes) {

@@ -38,7 +38,7 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
+    action = [&app, asked] { return app.exit(asked); };
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "{}\n", Refusal(app, error));
     return kBadInput;
