@@ -1,5 +1,6 @@
 #include "tools/study/comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -90,6 +91,18 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
       });
 }
 
+Comparison::Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> variants,
+                       std::int64_t seeds, std::vector<double> values)
+    : cases_(std::move(cases)),
+      variants_(std::move(variants)),
+      seeds_(seeds),
+      values_(std::move(values)) {
+  const std::size_t cells = cases_.size() * variants_.size();
+  if (values_.size() != cells * ComparedMeasures().size() * static_cast<std::size_t>(seeds)) {
+    throw std::invalid_argument("a comparison needs a value of every measure of every run");
+  }
+}
+
 std::int64_t Comparison::runs() const {
   return static_cast<std::int64_t>(cases_.size() * (variants_.size() + 1)) * seeds_;
 }
@@ -124,6 +137,30 @@ EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit)
     if (value <= limit) ++events;
   }
   return runs == 0 ? EventShare{} : ClopperPearson(events, runs);
+}
+
+std::span<const double> Comparison::AllOf(Cell cell) const {
+  const std::size_t length = ComparedMeasures().size() * static_cast<std::size_t>(seeds_);
+  const std::size_t place = cell.test_case * variants_.size() + cell.variant;
+  return std::span(values_).subspan(place * length, length);
+}
+
+bool Comparison::HasSameRuns(Cell a, Cell b) const {
+  return std::ranges::equal(AllOf(a), AllOf(b), [](double x, double y) {
+    return x == y || (std::isnan(x) && std::isnan(y));
+  });
+}
+
+std::int64_t Comparison::PairsCutShort(Cell a, Cell b) const {
+  const std::span<const double> crash_a = Values(a, "collided");
+  const std::span<const double> crash_b = Values(b, "collided");
+  const std::span<const double> steps_a = Values(a, "steps");
+  const std::span<const double> steps_b = Values(b, "steps");
+  std::int64_t pairs = 0;
+  for (std::size_t i = 0; i < steps_a.size(); ++i) {
+    if (crash_a[i] > 0 || crash_b[i] > 0 || steps_a[i] != steps_b[i]) ++pairs;
+  }
+  return pairs;
 }
 
 std::size_t Comparison::VariantNamed(std::string_view name) const {

@@ -57,6 +57,10 @@ class Comparison {
   /// Runs everything. @throws InputError, StudyStopped
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
+  /// Of runs that are made already. @param values by case, variant, measure and seed
+  /// @throws std::invalid_argument if there are not as many
+  Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> variants, std::int64_t seeds,
+             std::vector<double> values);
 
   const std::vector<StudyCase>& cases() const { return cases_; }
   const std::vector<StudyVariant>& variants() const { return variants_; }
@@ -73,6 +77,11 @@ class Comparison {
   EventShare Collisions(Cell cell) const;
   /// How often a measure is at most `limit`, of the runs that have it. runs is 0 if none has.
   EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
+  /// Whether two cells have the same runs: every measure, seed by seed.
+  bool HasSameRuns(Cell a, Cell b) const;
+  /// In how many pairs of runs at least one of the two ends early: it collides, or the two have
+  /// not as many steps. What is summed or averaged over time leaves out what would have followed.
+  std::int64_t PairsCutShort(Cell a, Cell b) const;
   /// Place of the variant of that name. @throws std::out_of_range
   std::size_t VariantNamed(std::string_view name) const;
 
@@ -87,6 +96,8 @@ class Comparison {
   StudyTable TableOfVariant(std::size_t variant, std::span<const std::string_view> measures) const;
 
  private:
+  /// All values of a cell, measure by measure.
+  std::span<const double> AllOf(Cell cell) const;
   StudyTable TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
                      std::span<const std::string_view> measures) const;
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/findings.h"
 #include "tools/study/study.h"
@@ -89,6 +90,7 @@ StudyFigure OverVisibility(const Comparison& comparison, std::string_view measur
 std::string FindingOfDensity(const Comparison& comparison) {
   std::vector<std::string> worse_than_paper;
   std::vector<std::string> worse_than_none;
+  std::vector<std::string> cut_short;
   const std::size_t first = Kinds().size();
   constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
   for (std::size_t i = 0; i < kVisibilities_m.size(); ++i) {
@@ -96,6 +98,10 @@ std::string FindingOfDensity(const Comparison& comparison) {
     const Cell human{first + 2 * i + 1, 1};
     const Cell none{first + 2 * i + 1, 0};
     const std::string name = fmt::format("{:g} m", kVisibilities_m[i]);
+    if (comparison.PairsCutShort(human, paper) + comparison.PairsCutShort(human, none) > 0) {
+      cut_short.push_back(name);
+      continue;
+    }
     if (VerdictOf(comparison.Difference(human, paper, kShortfall)) == Verdict::kMore) {
       worse_than_paper.push_back(name);
     }
@@ -108,8 +114,11 @@ std::string FindingOfDensity(const Comparison& comparison) {
   };
   return fmt::format(
       "Over the density of the fog, a human who sees and misjudges it leaves more compromised "
-      "safety than the paper's driver {}, and more than no traded control at all {}.",
-      list(worse_than_paper), list(worse_than_none));
+      "safety than the paper's driver {}, and more than no traded control at all {}.{}",
+      list(worse_than_paper), list(worse_than_none),
+      cut_short.empty()
+          ? ""
+          : fmt::format(" Runs end early, so that it is not compared, {}.", list(cut_short)));
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,10 +26,53 @@ std::string Capital(std::string text) {
   return text;
 }
 
+Estimate Turned(Estimate estimate) {
+  estimate.mean = -estimate.mean;
+  std::tie(estimate.low, estimate.high) = std::pair(-estimate.high, -estimate.low);
+  return estimate;
+}
+
+std::vector<std::size_t> Distinct(const Comparison& comparison, std::size_t test_case,
+                                  std::span<const std::size_t> variants) {
+  std::vector<std::size_t> distinct;
+  for (const std::size_t v : variants) {
+    if (std::ranges::none_of(distinct, [&](std::size_t before) {
+          return comparison.HasSameRuns({test_case, before}, {test_case, v});
+        })) {
+      distinct.push_back(v);
+    }
+  }
+  return distinct;
+}
+
+std::vector<std::size_t> AllVariants(const Comparison& comparison) {
+  std::vector<std::size_t> all(comparison.variants().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+std::string SameRunsText(const Comparison& comparison, std::size_t test_case) {
+  const std::vector<std::size_t> all = AllVariants(comparison);
+  std::string text;
+  for (const std::size_t first : Distinct(comparison, test_case, all)) {
+    std::vector<std::string> same;
+    for (std::size_t v = first + 1; v < all.size(); ++v) {
+      if (comparison.HasSameRuns({test_case, first}, {test_case, v})) {
+        same.push_back(comparison.variants()[v].name);
+      }
+    }
+    if (same.empty()) continue;
+    text += fmt::format("{}{} {} the same runs as {}, in every measure and with every seed.",
+                        text.empty() ? "" : " ", Capital(ListText(same)),
+                        same.size() == 1 ? "has" : "have", comparison.variants()[first].name);
+  }
+  return text.empty() ? text : text + " They are ranked once.";
+}
+
 std::string RankingText(const Comparison& comparison, std::size_t test_case,
                         std::string_view measure, int decimals, Better better) {
   std::vector<std::pair<std::size_t, Estimate>> ranked;
-  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
+  for (const std::size_t v : Distinct(comparison, test_case, AllVariants(comparison))) {
     const Estimate mean = comparison.Mean({test_case, v}, measure);
     if (mean.n > 0) ranked.emplace_back(v, mean);
   }
@@ -54,13 +98,8 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
                ? std::string("without a pair of runs to compare")
                : fmt::format("infinitely far apart in {} pairs of runs", difference.infinite);
   }
-  Estimate size = difference;
   const bool less = difference.mean < 0;
-  if (less) {
-    size.mean = -difference.mean;
-    size.low = -difference.high;
-    size.high = -difference.low;
-  }
+  const Estimate size = less ? Turned(difference) : difference;
   std::string text =
       fmt::format("{} {} {}{}", Text(size, decimals), unit, less ? "less" : "more", than);
   const Verdict verdict = VerdictOf(difference);
@@ -87,8 +126,8 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
   std::vector<std::string> less;
   std::vector<std::string> undecided;
   std::vector<std::string> too_few;
-  for (const std::size_t v : variants) {
-    if (v == reference) continue;
+  for (const std::size_t v : Distinct(comparison, test_case, variants)) {
+    if (comparison.HasSameRuns({test_case, v}, {test_case, reference})) continue;
     const Estimate difference =
         comparison.Difference({test_case, v}, {test_case, reference}, measure);
     const std::string& name = comparison.variants()[v].name;
@@ -97,7 +136,8 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
         more.push_back(fmt::format("{} (by {} {})", name, Text(difference, decimals), unit));
         break;
       case Verdict::kLess:
-        less.push_back(fmt::format("{} (by {} {})", name, Text(difference, decimals), unit));
+        less.push_back(
+            fmt::format("{} (by {} {})", name, Text(Turned(difference), decimals), unit));
         break;
       case Verdict::kUndecided:
         undecided.push_back(name);
@@ -121,7 +161,7 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
 std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
   std::vector<std::string> some;
   std::vector<std::string> none;
-  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
+  for (const std::size_t v : Distinct(comparison, test_case, AllVariants(comparison))) {
     const EventShare share = comparison.Collisions({test_case, v});
     const std::string& name = comparison.variants()[v].name;
     if (share.events == 0) {
@@ -142,57 +182,6 @@ std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
                         comparison.seeds(), upper);
   }
   return text;
-}
-
-std::size_t ReferenceCase(const Comparison& comparison, std::size_t test_case) {
-  const std::string& group = comparison.cases()[test_case].group;
-  std::size_t reference = 0;
-  while (comparison.cases()[reference].group != group) ++reference;
-  return reference;
-}
-
-std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant) {
-  constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
-  std::map<Verdict, std::vector<std::string>> by_verdict;
-  std::vector<std::string> lines;
-  const std::string& name = comparison.variants()[variant].name;
-  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    const std::string& label = comparison.cases()[c].name;
-    const Estimate effect = comparison.Difference({c, variant}, {c, 0}, kShortfall);
-    by_verdict[VerdictOf(effect)].push_back(label);
-    const EventShare without = comparison.Collisions({c, 0});
-    const EventShare with = comparison.Collisions({c, variant});
-    std::string line = fmt::format(
-        "{}: SI {} % (n = {}), mean compromised safety in fog {} m instead of {} m", label,
-        Text(comparison.Mean({c, variant}, "si_pct"), 1), comparison.Mean({c, variant}, "si_pct").n,
-        Text(comparison.Mean({c, variant}, kShortfall), 3),
-        Text(comparison.Mean({c, 0}, kShortfall), 3));
-    if (without.events + with.events > 0) {
-      line += fmt::format("; collisions {} instead of {}", Text(with), Text(without));
-    }
-    const std::size_t reference = ReferenceCase(comparison, c);
-    if (reference != c) {
-      line += fmt::format(
-          "; SI {}",
-          DifferenceText(comparison.Difference({c, variant}, {reference, variant}, "si_pct"),
-                         "points", 1,
-                         fmt::format(" than with {}", comparison.cases()[reference].name)));
-    }
-    lines.push_back(line + ".");
-  }
-  const auto part = [&](Verdict verdict, std::string_view what) {
-    const std::vector<std::string>& of = by_verdict[verdict];
-    return of.empty() ? std::string() : fmt::format(" {}: {}.", what, ListText(of));
-  };
-  std::vector<std::string> findings;
-  findings.push_back(fmt::format(
-      "{} reduces the compromised safety in fog in {} of {} cases.{}{}{}{}", Capital(name),
-      by_verdict[Verdict::kLess].size(), comparison.cases().size(),
-      part(Verdict::kLess, "It reduces it in"), part(Verdict::kMore, "It increases it in"),
-      part(Verdict::kUndecided, "It makes no difference that can be told in"),
-      part(Verdict::kTooFew, "Too few runs for an interval in")));
-  findings.insert(findings.end(), lines.begin(), lines.end());
-  return findings;
 }
 
 }  // namespace fogline

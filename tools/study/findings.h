@@ -2,6 +2,7 @@
 // interval has 0 in it, and on nothing that is known beforehand.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,21 @@ namespace fogline {
 
 /// Whether more of a quantity is better, for sentences that rank.
 enum class Better { kMore, kLess };
+
+/// The same difference, seen from the other side.
+Estimate Turned(Estimate estimate);
+
+/// Every variant, in order.
+std::vector<std::size_t> AllVariants(const Comparison& comparison);
+
+/// Those of `variants` that have no runs which one before them has, measure by measure and seed by
+/// seed. Two rules that decide alike are no rivals: they are ranked once.
+std::vector<std::size_t> Distinct(const Comparison& comparison, std::size_t test_case,
+                                  std::span<const std::size_t> variants);
+
+/// "Blend and bayes have the same runs as traded, in every measure and with every seed. ..."; ""
+/// where no two variants do.
+std::string SameRunsText(const Comparison& comparison, std::size_t test_case);
 
 /// "Safety improvement (SI), best first: isolate 99.1 [98.9, 99.3], traded ...".
 std::string RankingText(const Comparison& comparison, std::size_t test_case,
@@ -29,20 +45,14 @@ std::string Capital(std::string text);
 /// "a, b and c".
 std::string ListText(const std::vector<std::string>& names);
 
-/// `variants` by what they do to a measure against variant `reference`: "more for a (...), less for
-/// b (...), undecided for c, too few runs for d".
+/// `variants` by what they do to a measure against variant `reference`: "less for a (by ...); more
+/// for b (by ...); not to be told apart for c; too few runs for an interval for d". Those with the
+/// runs of the reference are not among them.
 std::string AgainstText(const Comparison& comparison, std::size_t test_case,
                         const std::vector<std::size_t>& variants, std::size_t reference,
                         std::string_view measure, std::string_view unit, int decimals);
 
 /// Collisions of every variant; "No car collides in any run." where none does.
 std::string CollisionText(const Comparison& comparison, std::size_t test_case);
-
-/// The first case of the same group: what the others of the group are compared with.
-std::size_t ReferenceCase(const Comparison& comparison, std::size_t test_case);
-
-/// Of a comparison whose variant 0 is without traded control: what variant `variant` does to safety
-/// in each case, and how far that differs from the reference case of its group.
-std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant);
 
 }  // namespace fogline

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/findings.h"
 #include "tools/study/string_runs.h"

@@ -54,7 +54,7 @@ std::vector<std::size_t> HandOvers() {
 
 /// Every policy that hands over against `isolate`, which does not.
 std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case) {
-  const std::vector<std::size_t> handovers = HandOvers();
+  const std::vector<std::size_t> handovers = Distinct(comparison, test_case, HandOvers());
   const std::size_t isolate = comparison.VariantNamed("isolate");
   std::vector<std::string> lose;
   std::vector<std::string> win;
@@ -81,10 +81,11 @@ std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case
 }
 
 std::string FindingOf(const Comparison& comparison, std::size_t c) {
-  std::vector<std::size_t> all(comparison.variants().size());
-  for (std::size_t v = 0; v < all.size(); ++v) all[v] = v;
+  const std::vector<std::size_t> all = AllVariants(comparison);
+  const std::string same = SameRunsText(comparison, c);
   const std::size_t none = comparison.VariantNamed("none");
-  return fmt::format("{}: {} {} {} Largest jerk against none: {}. {}", comparison.cases()[c].name,
+  return fmt::format("{}: {}{}{} {} {} Largest jerk against none: {}. {}",
+                     comparison.cases()[c].name, same, same.empty() ? "" : " ",
                      RankingText(comparison, c, "si_pct", 1, Better::kMore),
                      CollisionText(comparison, c), AgainstIsolation(comparison, c),
                      AgainstText(comparison, c, all, none, "max_abs_jerk_mps3", "m/s3", 2),

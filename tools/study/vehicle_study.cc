@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "services/vehicle/parameters.h"
+#include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
-#include "tools/study/findings.h"
 #include "tools/study/study.h"
 
 namespace fogline {
@@ -77,6 +77,11 @@ std::vector<StudyCase> Cases() {
   return cases;
 }
 
+// The variants, in their order.
+constexpr std::size_t kNone = 0;
+constexpr std::size_t kTraded = 1;
+constexpr std::size_t kJerkLimited = 2;
+
 constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
                                                          "mean_compromised_safety_fog_m",
                                                          "collided",
@@ -107,10 +112,11 @@ std::string MethodOf(const Comparison& comparison) {
       "{} seeds of paper.json, of dense_fog.json, and of the latter with a leader who brakes with "
       "6 m/s2 from 20 to 7 m/s in the middle of the fog; host and follower as cars of that kind, "
       "without traded control, with the paper's step, and with a jerk-limited transfer. ACC and "
-      "driver are those that were tuned for the point mass. Cases are those in which what they are "
-      "called after binds: delay and lag in every car, the little power that a truck has left on a "
-      "slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
-      "sedan, and differs from it under hard braking only. A wet road is not among them: it holds "
+      "driver are those that were tuned for the point mass. Cases were chosen for what they are "
+      "called after to bind: delay and lag in every car, the little power that a truck has left on "
+      "a slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
+      "sedan, so that it is asked for under hard braking only. A wet road is not among them: it "
+      "holds "
       "{:.1f} m/s2, and the hardest acceleration or braking of a host in any of these runs is "
       "{:.1f} m/s2{}.",
       comparison.seeds(), wet, hardest,
@@ -129,7 +135,9 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   StudySection& section = result.section;
-  section.findings = CaseFindings(comparison, 1);
+  section.findings = CaseFindings(comparison, kTraded);
+  section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kNone));
+  section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kTraded));
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "vehicle-cs",
                                          "Compromised safety by vehicle", true),
                      comparison.FigureOf("max_handover_jerk_mps3", "vehicle-jerk",
