@@ -25,6 +25,8 @@ ConflictParameters DetectorParameters(const Scenario& scenario) {
   return parameters;
 }
 
+std::string_view TwinOf(std::string_view measure) { return measure == "sprt" ? "cusum" : ""; }
+
 void AddScore(double score, double time_s, ScoreRecords& records) {
   if (records.empty() || score > records.back().score) records.push_back({score, time_s});
 }
@@ -64,6 +66,11 @@ std::pair<double, double> AlarmCount::ArlZeroBounds_s() const {
   const double upper = alarms == 0 ? std::numeric_limits<double>::infinity()
                                    : time_s / (quantile(Chi2(2 * count), kTail) / 2);
   return {time_s / most, upper};
+}
+
+bool AlarmCount::MayHave(double arl_zero_s) const {
+  const auto [low, high] = ArlZeroBounds_s();
+  return low <= arl_zero_s && arl_zero_s <= high;
 }
 
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,11 @@ namespace fogline {
 /// standard deviations of the difference. With fixed ones a test would be tuned to one noise of
 /// several.
 ConflictParameters DetectorParameters(const Scenario& scenario);
+
+/// The measure of which another is the same test under DetectorParameters(), for what is to be
+/// counted once: the SPRT restarts at 0 and looks for the shift that the CUSUM looks for, so that
+/// its sum is that of the CUSUM times 2 kappa (Page 1954). "" for all others.
+std::string_view TwinOf(std::string_view measure);
 
 /// Runs scenarios and gives every measure of conflict the evidence of each step. For one thread.
 class DetectorBench {
@@ -83,6 +89,8 @@ struct AlarmCount {
   double ArlZero_s() const;
   /// Exact 95 % bounds of it (chi-square; Garwood 1936).
   std::pair<double, double> ArlZeroBounds_s() const;
+  /// Whether a mean time is within these bounds.
+  bool MayHave(double arl_zero_s) const;
 };
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
 
