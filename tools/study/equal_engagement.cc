@@ -33,6 +33,23 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// As BestOfAtMost(), of the point that engages least where none engages as little.
+double GainOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
+  const double least = std::ranges::min(curve, {}, &CurvePoint::rhe_pct).rhe_pct;
+  const std::optional<std::size_t> best = BestOfAtMost(curve, std::max(rhe_pct, least));
+  return best ? curve[*best].gain : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// How far a point of the curve is from the curve of the others; nullopt at the ends, and where the
+/// RHE stays as it is, so that nothing is interpolated.
+std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
+  if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
+  const std::array neighbours{curve[point - 1], curve[point + 1]};
+  const std::optional<CurvePlace> place = BestAt(neighbours, curve[point].rhe_pct);
+  if (!place || place->share == 0) return std::nullopt;
+  return std::abs(place->gain - curve[point].gain);
+}
+
 }  // namespace
 
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct) {
@@ -58,13 +75,19 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
   const std::vector<CurvePoint> curve = CurveOf(fixed, once);
   std::vector<AtEqualEngagement> all(rules.size());
   std::vector<double> values(rules.size());
+  std::vector<double> cheaper(rules.size());
   for (std::size_t r = 0; r < rules.size(); ++r) {
     const CurvePoint point = PointOf(rules[r], once);
     all[r].place = BestAt(curve, point.rhe_pct);
-    if (all[r].place) values[r] = point.gain - all[r].place->gain;
+    if (!all[r].place) continue;
+    values[r] = point.gain - all[r].place->gain;
+    all[r].interpolation_error = InterpolationErrorAt(curve, *all[r].place);
+    all[r].cheaper = BestOfAtMost(curve, point.rhe_pct);
+    cheaper[r] = point.gain - GainOfAtMost(curve, point.rhe_pct);
   }
   const Resampling resampling(situations, kSituations);
   std::vector<std::vector<double>> replicates(rules.size());
+  std::vector<std::vector<double>> of_cheaper(rules.size());
   std::vector<double> weights;
   for (std::int64_t k = 0; k < kReplicates; ++k) {
     resampling.Draw(k, weights);
@@ -73,26 +96,42 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
       if (!all[r].place) continue;
       const CurvePoint point = PointOf(rules[r], weights);
       replicates[r].push_back(point.gain - GainAt(again, point.rhe_pct));
+      of_cheaper[r].push_back(point.gain - GainOfAtMost(again, point.rhe_pct));
     }
   }
   for (std::size_t r = 0; r < rules.size(); ++r) {
     if (!all[r].place) continue;
-    all[r].difference =
-        FromReplicates(static_cast<std::int64_t>(situations), values[r], std::move(replicates[r]));
+    const auto n = static_cast<std::int64_t>(situations);
+    all[r].difference = FromReplicates(n, values[r], std::move(replicates[r]));
+    all[r].against_cheaper = FromReplicates(n, cheaper[r], std::move(of_cheaper[r]));
   }
   return all;
 }
 
-double LargestInterpolationError(std::span<const CurvePoint> curve) {
-  double largest = 0;
-  for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
-    const std::array neighbours{curve[i - 1], curve[i + 1]};
-    const std::optional<CurvePlace> place = BestAt(neighbours, curve[i].rhe_pct);
-    // Where the RHE stays as it is nothing is interpolated.
-    if (!place || place->share == 0) continue;
-    largest = std::max(largest, std::abs(place->gain - curve[i].gain));
+std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (curve[i].rhe_pct <= rhe_pct && (!best || curve[i].gain > curve[*best].gain)) best = i;
   }
-  return largest;
+  return best;
+}
+
+double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place) {
+  if (place.share == 0) return 0;
+  std::optional<double> largest;
+  for (const std::size_t i : {place.below, place.below + 1}) {
+    const std::optional<double> off = OffTheOthers(curve, i);
+    if (off) largest = std::max(largest.value_or(0), *off);
+  }
+  const double whole = std::abs(curve[place.below + 1].gain - curve[place.below].gain);
+  return 4 * place.share * (1 - place.share) * largest.value_or(whole);
+}
+
+Verdict AtEqualEngagement::verdict() const {
+  Estimate widened = difference;
+  widened.low -= interpolation_error;
+  widened.high += interpolation_error;
+  return VerdictOf(widened);
 }
 
 }  // namespace fogline

@@ -43,14 +43,32 @@ struct AtEqualEngagement {
   /// have equal noise, and that the RHE of either side is an estimate. In a resample where the
   /// rule's RHE is beyond the curve, the curve's end is taken.
   Estimate difference;
+  /// What the curve may be wrong by at the place (InterpolationErrorAt()), in units of gain.
+  double interpolation_error = 0;
+  /// The fixed threshold that gives most of those that engage at most as much; nullopt: none does.
+  /// At an RHE of 0 the curve may jump, and this one is better than any place of equal RHE.
+  std::optional<std::size_t> cheaper;
+  /// Gain of the rule less that of the best fixed threshold of at most its RHE, with an interval as
+  /// above; the threshold is chosen anew in each resample.
+  Estimate against_cheaper;
+
+  /// What can be said at equal RHE: an interval that is no farther from 0 than the curve may be
+  /// wrong decides nothing.
+  Verdict verdict() const;
 };
 
 /// Every rule beside the curve of the `fixed` ones, which are in order of threshold.
 std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
                                             std::span<const RuleValues> rules);
 
-/// What interpolation costs: how far, at most, a fixed threshold is from the curve of the others.
-/// The curve of all errs by a fraction of that.
-double LargestInterpolationError(std::span<const CurvePoint> curve);
+/// The best point of the curve that engages at most this much; nullopt if none does.
+std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct);
+
+/// What interpolation may be wrong by at a place of the curve. A fixed threshold at either end of
+/// the stretch is some way off the curve of the others, on which its neighbours are twice as far
+/// apart. A curve that bends once within the stretch, or steadily, errs by at most the larger of
+/// these times 4 s (1 - s), s being the share of the way; at a point of the curve that is 0. Of a
+/// stretch between two ends of the curve nothing is known, and the whole difference is taken.
+double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline

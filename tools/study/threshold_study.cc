@@ -77,24 +77,32 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
   std::vector<std::string> undecided;
   std::vector<std::string> too_few;
   std::vector<std::string> beyond;
+  std::vector<std::string> dominated;  // of those above
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {
     const RuleMember& member = mixed.members[i];
     if (member.family != family) continue;
-    const auto& [place, difference] = beside.si[i];
+    const AtEqualEngagement& one = beside.si[i];
+    const auto& place = one.place;
+    const Estimate& difference = one.difference;
     if (!place) {
       beyond.push_back(fmt::format("{} (RHE {} %)", member.name, Text(member.rhe(), 2)));
       continue;
     }
-    const std::string text =
-        fmt::format("{} ({} points against {} at RHE {} %)", member.name, Text(difference, 2),
-                    ThresholdText(mixed, *place), Text(member.rhe(), 2));
+    const std::string text = fmt::format("{} ({} points against {} ± {} at RHE {} %)", member.name,
+                                         Text(difference, 2), ThresholdText(mixed, *place),
+                                         Text(one.interpolation_error, 2), Text(member.rhe(), 3));
     if (difference.low == 0 && difference.high == 0) {
       equal.push_back(member.name);
       continue;
     }
-    switch (VerdictOf(difference)) {
+    switch (one.verdict()) {
       case Verdict::kMore:
         above.push_back(text);
+        if (one.cheaper && VerdictOf(one.against_cheaper) == Verdict::kLess) {
+          dominated.push_back(fmt::format("{} ({} points less than {})", member.name,
+                                          Text(Turned(one.against_cheaper), 2),
+                                          mixed.members[*one.cheaper].name));
+        }
         break;
       case Verdict::kLess:
         below.push_back(text);
@@ -115,8 +123,14 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
   if (compared > 0) {
     answer = fmt::format(
         " So at equal RHE its SI is at least that of the best fixed threshold for {} of {} values "
-        "of its parameter, less for {}, and for {} the situations do not tell.",
+        "of its parameter, less for {}, and for {} neither situations nor curve tell.",
         above.size() + equal.size(), compared, below.size(), undecided.size());
+    if (!above.empty()) {
+      answer += fmt::format(
+          " Of the {} with more, {} are dominated by a fixed threshold that engages no more and "
+          "has more SI{}{}.",
+          above.size(), dominated.size(), dominated.empty() ? "" : ": ", ListText(dominated));
+    }
   }
   return fmt::format(
       "{} against the best fixed threshold of the same RHE, by SI.{}{}{}{}{}{}{}",
@@ -244,7 +258,9 @@ std::string CsvOf(const MixedRuns& mixed, const Beside& beside) {
     csv += fmt::format(",{}", member.collisions);
     const std::optional<CurvePlace>& place = beside.si[i].place;
     csv += fmt::format(",{}", place ? ThresholdText(mixed, *place) : "");
-    for (const auto& [at, difference] : {beside.si[i], beside.shortfall[i]}) {
+    for (const AtEqualEngagement* one : {&beside.si[i], &beside.shortfall[i]}) {
+      const std::optional<CurvePlace>& at = one->place;
+      const Estimate& difference = one->difference;
       csv += fmt::format(",{},{},{},{}", at ? CsvText(at->gain) : "", CsvText(difference.mean),
                          CsvText(difference.low), CsvText(difference.high));
     }
@@ -260,7 +276,8 @@ StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
                   "SI less that one's (points)", "compromised safety in fog (m)", "collisions"}};
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {
     const RuleMember& member = mixed.members[i];
-    const auto& [place, difference] = beside.si[i];
+    const std::optional<CurvePlace>& place = beside.si[i].place;
+    const Estimate& difference = beside.si[i].difference;
     table.rows.push_back(
         {member.name, Text(EstimateOf(member.rhe_pct), 2), Text(EstimateOf(member.si_pct), 1),
          place ? ThresholdText(mixed, *place) : "–", place ? Text(difference, 2) : "–",
@@ -281,13 +298,16 @@ std::string MethodOf(const MixedRuns& mixed, const Beside& beside) {
       "mean SI over mean RHE, straight between neighbours, which are at most {:.1f} points of RHE "
       "apart; a rule is compared with the place of the curve that has its RHE, the best one where "
       "several thresholds have it (those above all conflict in clear air have an RHE of 0). "
-      "Left out one at a time, thresholds are at most {:.1f} points of SI beside the curve of "
-      "their neighbours, twice as far apart. Intervals: {} resamples of the situations, the curve "
+      "After the sign ± is what the curve may be wrong by at that place: how far the thresholds on "
+      "either side are from the curve of the others, less the nearer the place is to one of them. "
+      "A difference whose interval is no farther from 0 than that is not decided. Where the curve "
+      "jumps, at an RHE of almost 0, a rule is compared with the best fixed threshold of at most "
+      "its RHE too, and called dominated if that has more SI by its interval. Intervals: {} "
+      "resamples of the situations, the curve "
       "made anew of each, so that the noise of equal situations, the RHE of both sides and the "
       "choice of the best are in them. SI is a mean of ratios of small numbers: compromised safety "
       "in metres is beside it.",
-      mixed.situations, MixText(), beside.fixed, widest, LargestInterpolationError(beside.curve),
-      kReplicates);
+      mixed.situations, MixText(), beside.fixed, widest, kReplicates);
 }
 
 }  // namespace

@@ -39,10 +39,28 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
   EXPECT_FALSE(BestAt(kCurve, std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST(LargestInterpolationErrorTest, IsThatOfTheThresholdLeastLikeItsNeighbours) {
-  // 40 % between 100 % and 20 %: three quarters of the way from -50 to 20 are 2.5, not 10. 20 %
-  // between 40 % and 0 %: half of the way from 10 to 22 are 16, not 20.
-  EXPECT_NEAR(LargestInterpolationError(kCurve), 7.5, 1e-12);
+TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
+  // 40 % between 100 % and 20 %: three quarters of the way from -50 to 20 are 2.5, not 10: 7.5 off.
+  // 20 % between 40 % and 0 %: half of the way from 10 to 22 are 16, not 20: 4 off.
+  EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 30)), 7.5, 1e-12);
+  EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 10)), 4, 1e-12);
+  EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 5)), 3, 1e-12);
+  EXPECT_EQ(InterpolationErrorAt(kCurve, *BestAt(kCurve, 20)), 0) << "a threshold that was run";
+}
+
+TEST(InterpolationErrorTest, LeavesADifferenceUndecidedThatIsNoLarger) {
+  AtEqualEngagement one{.difference = {.n = 9, .mean = 2, .deviation = 1, .low = 1, .high = 3}};
+  one.interpolation_error = 0.9;
+  EXPECT_EQ(one.verdict(), Verdict::kMore);
+  one.interpolation_error = 1.1;
+  EXPECT_EQ(one.verdict(), Verdict::kUndecided);
+}
+
+TEST(BestOfAtMostTest, FindsTheThresholdThatGivesMoreForLess) {
+  // Just above 0 the curve gives 22, but a threshold that engages never gives 30.
+  EXPECT_EQ(BestOfAtMost(kCurve, 0.003), 4U);
+  EXPECT_EQ(BestOfAtMost(kCurve, 99), 4U);
+  EXPECT_FALSE(BestOfAtMost(kCurve, -0.5));
 }
 
 /// Situations with a difficulty of their own, which all rules share: the gain of a rule is that,
@@ -77,6 +95,9 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
   EXPECT_EQ(VerdictOf(all[0].difference), Verdict::kMore);
   EXPECT_EQ(all[0].place->below, 1U);
   EXPECT_EQ(VerdictOf(all[1].difference), Verdict::kLess);
+  EXPECT_EQ(all[0].cheaper, 2U);
+  EXPECT_NEAR(all[0].against_cheaper.mean, -14.5, 1e-9);
+  EXPECT_EQ(VerdictOf(all[0].against_cheaper), Verdict::kLess);
   EXPECT_FALSE(all[2].place) << "it engages less than any threshold";
   EXPECT_FALSE(all[2].difference.has_interval());
 }
