@@ -47,16 +47,10 @@ TakeOver::TakeOver(const Scenario& scenario)
 }
 
 const TakeOverOutcome& TakeOver::Step(const header_t& header, const TakeOverInputs& inputs) {
-  // What went out in the last step is known now.
-  if (out_.authority == Authority::kHuman && !request_->effective &&
-      IsEffective(inputs.applied_mps2, before_transfer_mps2_)) {
-    request_->effective = last_step_;
-  }
   const TakeOverRow* row =
       TakeOverRowOf(out_.state, EventsOf(header.step, inputs), manoeuvre_.begun());
   if (row != nullptr) Enter(*row, header.step, inputs);
   out_.acceleration_mps2 = Acceleration(inputs);
-  last_step_ = header.step;
   return out_;
 }
 
@@ -93,7 +87,6 @@ void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverIn
   out_.authority = row.authority;
   if (row.next == TakeOverState::kDemand) Ask(step);
   request_->Enter(row.next, step);
-  if (row.next == TakeOverState::kRecovering) before_transfer_mps2_ = inputs.applied_mps2;
   const bool stage =
       row.next == TakeOverState::kMrmComfort || row.next == TakeOverState::kMrmEmergency;
   if (stage) BeginStage(row.authority, step, inputs);

@@ -66,7 +66,7 @@ class TakeOver {
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been one.
+  /// The last request, if there has been one, without `effective`.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// A manoeuvre runs, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
@@ -94,8 +94,6 @@ class TakeOver {
   std::int64_t answer_step_ = 0;   // of this request's acknowledgement
   bool in_time_ = false;           // he answers within lead_s
   std::int64_t overdue_step_ = 0;  // of this stage of the manoeuvre
-  double before_transfer_mps2_ = 0;
-  std::int64_t last_step_ = 0;
   TakeOverOutcome out_;
 };
 

@@ -7,6 +7,9 @@
 namespace fogline {
 namespace {
 
+constexpr std::string_view kToDriver = "transfer to the driver";
+constexpr std::string_view kToAutomation = "return to automation";
+
 const TakeOverStateInfo* StateOf(std::int8_t mode) {
   const auto* info = std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode);
   return info == kTakeOverStates.end() ? nullptr : info;
@@ -24,8 +27,8 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
     if (row != kTakeOverTable.end()) return row->logged;
   }
   if (to == arbitration_t::MINIMAL_RISK) return "manoeuvre begins: inputs have failed";
-  if (HumanDrives(to)) return "transfer to the driver";
-  if (to == arbitration_t::AUTOMATION) return "return to automation";
+  if (HumanDrives(to)) return kToDriver;
+  if (to == arbitration_t::AUTOMATION) return kToAutomation;
   return "change of state";
 }
 
@@ -37,7 +40,7 @@ std::string_view NameOfMode(std::int8_t mode) {
   return info == nullptr ? "UNKNOWN" : info->name;
 }
 
-void TakeOverLog::Add(const arbitration_t& command) {
+void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
   if (!last_) {
     entries_.push_back({.step = command.header.step,
                         .utime = command.header.utime,
@@ -45,21 +48,43 @@ void TakeOverLog::Add(const arbitration_t& command) {
                         .to = arbitration_t::AUTOMATION,
                         .logged = "activation of the automation"});
   }
-  if (command.mode != (last_ ? last_->mode : arbitration_t::AUTOMATION)) Change(command);
-  if (HumanDrives(command.mode)) Drive(command);
+  const std::int8_t from = last_ ? last_->mode : arbitration_t::AUTOMATION;
+  const bool human = HumanDrives(command.lambda_human);
+  const bool transfer = last_ && human != HumanDrives(last_->lambda_human);
+  const bool with_state =
+      HumanDrives(command.mode) != HumanDrives(from) && HumanDrives(command.mode) == human;
+  if (command.mode != from) Change(command, from, transfer && with_state);
+  if (transfer) Transfer(command);
+  if (transfer && !with_state) {
+    entries_.push_back({.step = command.header.step,
+                        .utime = command.header.utime,
+                        .from = command.mode,
+                        .to = command.mode,
+                        .transfer = true,
+                        .logged = human ? kToDriver : kToAutomation});
+  }
+  if (human_mps2 && HumanDrives(command.mode)) Drive(command, *human_mps2);
   last_ = command;
 }
 
-void TakeOverLog::Change(const arbitration_t& command) {
-  const std::int8_t from = last_ ? last_->mode : arbitration_t::AUTOMATION;
+void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool transfer) {
+  const bool has_share = HumanDrives(command.mode);
+  const bool share_changes = has_share != HumanDrives(from);
+  std::string_view logged = LoggedOf(from, command.mode);
+  if (share_changes && !transfer) {
+    if (has_share) logged = "driver takes part";
+    if (command.mode == arbitration_t::AUTOMATION) logged = "driver is released";
+  }
   entries_.push_back({.step = command.header.step,
                       .utime = command.header.utime,
                       .from = from,
                       .to = command.mode,
-                      .logged = LoggedOf(from, command.mode)});
-  if (HumanDrives(command.mode) != HumanDrives(from)) {
-    before_transfer_mps2_.reset();
-    if (HumanDrives(command.mode) && last_) before_transfer_mps2_ = last_->acceleration_mps2;
+                      .transfer = transfer,
+                      .logged = logged});
+  if (share_changes) {
+    before_share_mps2_.reset();
+    if (has_share && last_) before_share_mps2_ = last_->acceleration_mps2;
+    asked_ = command.mode == arbitration_t::RECOVERING;
   }
   const TakeOverStateInfo* state = StateOf(command.mode);
   if (state == nullptr) return;
@@ -67,20 +92,28 @@ void TakeOverLog::Change(const arbitration_t& command) {
     requests_.push_back({.requested = command.header.step});
   }
   // Where nobody was asked there is no request that could come to anything.
-  if (!requests_.empty()) requests_.back().Enter(state->state, command.header.step);
+  if (requests_.empty()) return;
+  requests_.back().Enter(state->state, command.header.step);
+  // Until Transfer() finds one: his share may be small.
+  if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
 }
 
-void TakeOverLog::Drive(const arbitration_t& command) {
-  if (!before_transfer_mps2_) return;
-  if (!IsEffective(command.acceleration_mps2, *before_transfer_mps2_)) return;
-  before_transfer_mps2_.reset();
+void TakeOverLog::Transfer(const arbitration_t& command) {
+  const bool answers = asked_ && HumanDrives(command.mode) && HumanDrives(command.lambda_human);
+  if (!answers || requests_.empty() || requests_.back().transferred) return;
+  requests_.back().transferred = command.header.step;
+}
+
+void TakeOverLog::Drive(const arbitration_t& command, double human_mps2) {
+  if (!before_share_mps2_) return;
+  if (!IsEffective(command.lambda_human, human_mps2, *before_share_mps2_)) return;
+  before_share_mps2_.reset();
   entries_.push_back({.step = command.header.step,
                       .utime = command.header.utime,
                       .from = command.mode,
                       .to = command.mode,
                       .logged = "first effective input of the driver"});
-  if (requests_.empty() || !requests_.back().transferred || requests_.back().effective) return;
-  requests_.back().effective = command.header.step;
+  if (asked_ && !requests_.empty()) requests_.back().effective = command.header.step;
 }
 
 }  // namespace fogline

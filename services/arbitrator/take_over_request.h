@@ -9,17 +9,20 @@
 
 namespace fogline {
 
-/// Least change of the command since the transfer by which an input counts as effective, in m/s2.
+/// Least change of the command by the driver alone by which an input counts as effective, in m/s2.
 /// Chosen: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or engine
 /// is set more finely.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
 
-/// Whether a driver's command makes itself felt, by the one before the transfer.
-inline bool IsEffective(double command_mps2, double before_transfer_mps2) {
-  return std::abs(command_mps2 - before_transfer_mps2) >= kEffectiveInput_mps2;
+/// Whether what a driver offers makes itself felt: by his share of it, against the command before
+/// he had one.
+inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
+  return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }
 
-/// The times of one request, as steps. What is empty has not been.
+/// The times of one request, as steps. What is empty has not been. To the state machine the driver
+/// is there when he gets his share of the wheel (`transferred`), and it does not ask what he does
+/// with it; a log tells from the authorities (take_over_log.h).
 struct TakeOverRequest {
   std::int64_t requested = 0;
   std::optional<std::int64_t> escalated;

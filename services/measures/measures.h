@@ -48,7 +48,8 @@ struct RunMeasures {
   /// Time during which the human is engaged, s. The last step's command is never carried out.
   double human_time_s = 0;
   /// Hand-overs in either direction: the human drives in one of two successive steps only, as
-  /// HumanDrives() in services/minimal_risk/modes.h, and as `fogline events` has it.
+  /// HumanDrives(lambda_H) in services/minimal_risk/modes.h says. `fogline events` has the same
+  /// ones, in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;

@@ -21,9 +21,13 @@ constexpr bool IsLocked(std::int8_t mode) {
 /// Authority from which on somebody is the one who drives: the human where both have half.
 inline constexpr double kMainAuthority = 0.5;
 
-/// Who drives is what a mode says, and a transfer changes. Engaged is who has any authority.
+/// The human drives with half of the authority or more; a transfer changes that. Engaged is who has
+/// any authority.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
+/// He has been given the wheel. Under a policy that shares it, or on a ramp, with how much of the
+/// authority is not the mode's to say, where he must be asked; where he need not, with half or
+/// more.
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

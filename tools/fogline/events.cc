@@ -29,9 +29,13 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
   RunLogReader reader(file);
   RunEvents events;
   arbitration_t command{};
+  driver_command_t driver{};
   while (const StepMessages* messages = reader.Next()) {
     const Bytes bytes = (*messages)[IndexOf<arbitration_t>()];
-    if (!bytes.empty() && Decode(bytes, command)) events.log.Add(command);
+    if (bytes.empty() || !Decode(bytes, command)) continue;
+    const Bytes offer = (*messages)[IndexOf<driver_command_t>()];
+    const bool offered = !offer.empty() && Decode(offer, driver);
+    events.log.Add(command, offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
   }
   events.run = reader.run();
   return events;
@@ -55,6 +59,7 @@ nlohmann::ordered_json EventsJson(const RunEvents& events) {
     rows.push_back({{"step", entry.step},
                     {"time_s", static_cast<double>(entry.utime) / 1e6},
                     {"event", entry.logged},
+                    {"transfer", entry.transfer},
                     {"from", NameOfMode(entry.from)},
                     {"to", NameOfMode(entry.to)}});
   }

@@ -30,7 +30,7 @@ Driven Drive(const Scenario& scenario) {
     driven.commands.push_back(step.host);
     driven.automation_mps2.push_back(step.acc.acceleration_mps2);
     driven.human_mps2.push_back(step.driver.acceleration_mps2);
-    driven.log.Add(step.host);
+    driven.log.Add(step.host, step.driver.acceleration_mps2);
   });
   return driven;
 }

@@ -1,11 +1,14 @@
 #include "services/arbitrator/take_over_log.h"
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "services/minimal_risk/modes.h"
 
 namespace fogline {
 namespace {
@@ -20,7 +23,29 @@ arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_m
   command.header.utime = step * 100'000;
   command.mode = mode;
   command.acceleration_mps2 = acceleration_mps2;
+  command.lambda_human = HumanDrives(mode) ? 1 : 0;
   return command;
+}
+
+/// The same with another authority of the human.
+arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
+                     double acceleration_mps2 = 0) {
+  arbitration_t command = Command(step, mode, acceleration_mps2);
+  command.lambda_human = lambda_human;
+  return command;
+}
+
+/// A command of one who drives alone: what he offers is what goes out.
+void Add(TakeOverLog& log, const arbitration_t& command) {
+  log.Add(command, command.acceleration_mps2);
+}
+
+std::vector<std::int64_t> Transfers(const TakeOverLog& log) {
+  std::vector<std::int64_t> steps;
+  for (const TakeOverEntry& entry : log.entries()) {
+    if (entry.transfer) steps.push_back(entry.step);
+  }
+  return steps;
 }
 
 std::vector<std::string_view> Texts(const TakeOverLog& log) {
@@ -31,14 +56,14 @@ std::vector<std::string_view> Texts(const TakeOverLog& log) {
 
 TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   TakeOverLog log;
-  log.Add(Command(0, arbitration_t::AUTOMATION, 0.3));
-  log.Add(Command(1, arbitration_t::REQUEST));
-  log.Add(Command(2, arbitration_t::REQUEST_URGENT));
-  log.Add(Command(3, arbitration_t::HANDOVER, 0.3));
-  log.Add(Command(4, arbitration_t::RECOVERING, 0.305));
-  log.Add(Command(5, arbitration_t::RECOVERING, 0.315));
-  log.Add(Command(6, arbitration_t::HUMAN));
-  log.Add(Command(7, arbitration_t::AUTOMATION));
+  Add(log, Command(0, arbitration_t::AUTOMATION, 0.3));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  Add(log, Command(2, arbitration_t::REQUEST_URGENT));
+  Add(log, Command(3, arbitration_t::HANDOVER, 0.3));
+  Add(log, Command(4, arbitration_t::RECOVERING, 0.305));
+  Add(log, Command(5, arbitration_t::RECOVERING, 0.315));
+  Add(log, Command(6, arbitration_t::HUMAN));
+  Add(log, Command(7, arbitration_t::AUTOMATION));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
                                       "escalation", "acknowledgement", "transfer to the driver",
                                       "first effective input of the driver", "driver recovered",
@@ -52,10 +77,10 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
 
 TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
   TakeOverLog log;
-  log.Add(Command(0, arbitration_t::REQUEST));
-  log.Add(Command(1, arbitration_t::MRM_COMFORT));
-  log.Add(Command(2, arbitration_t::MRM_EMERGENCY));
-  log.Add(Command(3, arbitration_t::MRM_DONE));
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::MRM_COMFORT));
+  Add(log, Command(2, arbitration_t::MRM_EMERGENCY));
+  Add(log, Command(3, arbitration_t::MRM_DONE));
   EXPECT_THAT(Texts(log),
               ElementsAre("activation of the automation", "request to take over",
                           "comfortable manoeuvre", "emergency manoeuvre", "standstill, locked"));
@@ -65,11 +90,11 @@ TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
 
 TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
   TakeOverLog log;
-  log.Add(Command(0, arbitration_t::AUTOMATION, 1));
-  log.Add(Command(1, arbitration_t::HUMAN, 1));
-  log.Add(Command(2, arbitration_t::HUMAN, 1.5));
-  log.Add(Command(3, arbitration_t::AUTOMATION, 1));
-  log.Add(Command(4, arbitration_t::MINIMAL_RISK, -1));
+  Add(log, Command(0, arbitration_t::AUTOMATION, 1));
+  Add(log, Command(1, arbitration_t::HUMAN, 1));
+  Add(log, Command(2, arbitration_t::HUMAN, 1.5));
+  Add(log, Command(3, arbitration_t::AUTOMATION, 1));
+  Add(log, Command(4, arbitration_t::MINIMAL_RISK, -1));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the driver",
                                       "first effective input of the driver", "return to automation",
                                       "manoeuvre begins: inputs have failed"));
@@ -78,11 +103,47 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
 
 TEST(TakeOverLogTest, DoesNotCountAnInputOfADriverWhomNobodyAskedForTheLastRequest) {
   TakeOverLog log;
-  log.Add(Command(0, arbitration_t::REQUEST));
-  log.Add(Command(1, arbitration_t::HUMAN));  // the automation has failed
-  log.Add(Command(2, arbitration_t::HUMAN, 2));
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed
+  Add(log, Command(2, arbitration_t::HUMAN, 2));
   EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0}));
   EXPECT_THAT(log.entries(), SizeIs(4));
+}
+
+TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST, 0.3));
+  Add(log, Command(1, arbitration_t::HANDOVER, 0.3));
+  log.Add(Shared(2, arbitration_t::RECOVERING, 0.4, 0.3), 0.3);
+  log.Add(Shared(3, arbitration_t::RECOVERING, 0.8, 0.3), 0.3);
+  log.Add(Shared(4, arbitration_t::HUMAN, 1, 0.5), 0.5);
+  log.Add(Shared(5, arbitration_t::AUTOMATION, 0.6), 0);
+  log.Add(Shared(6, arbitration_t::AUTOMATION, 0.2), 0);
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "request to take over", "acknowledgement",
+                          "driver takes part", "transfer to the driver", "driver recovered",
+                          "first effective input of the driver", "driver is released",
+                          "return to automation"));
+  EXPECT_THAT(Transfers(log), ElementsAre(3, 6));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(TakeOverRequest{
+                  .requested = 0, .acknowledged = 1, .transferred = 3, .effective = 4}));
+}
+
+TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithoutAShare) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::HANDOVER));
+  log.Add(Shared(2, arbitration_t::RECOVERING, 0, -2), 1);
+  log.Add(Shared(3, arbitration_t::RECOVERING, 0.1, -3), 0.09);
+  log.Add(Shared(4, arbitration_t::HUMAN, 0.1, -3), std::nullopt);
+  EXPECT_THAT(Transfers(log), IsEmpty());
+  EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1}));
+  // A tenth of the wheel counts for a tenth.
+  log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
+  EXPECT_THAT(log.requests(),
+              ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1, .effective = 5}));
+  EXPECT_THAT(Transfers(log), IsEmpty());
 }
 
 TEST(TakeOverLogTest, GivesAModeThatIsNoneANameOfItsOwn) {
