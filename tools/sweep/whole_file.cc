@@ -36,10 +36,13 @@ InputError CannotWrite(const std::filesystem::path& file, std::string_view optio
                                 option.empty() ? "" : ": ", why));
 }
 
-/// Makes an empty file and removes it again. @throws InputError that speaks of `result`
-void TryFile(const std::filesystem::path& file, const std::filesystem::path& result,
+/// Makes an empty file in a folder and removes it again. Its name is nobody else's: what is there,
+/// such as the half of a result that another process writes, stays.
+/// @throws InputError that speaks of `result`
+void TryFile(const std::filesystem::path& folder, const std::filesystem::path& result,
              std::string_view option) {
-  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  const std::filesystem::path file = folder / fmt::format(".fogline-{}", getpid());
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) throw CannotWrite(result, option, std::strerror(errno));
   close(descriptor);
   std::error_code ignored;
@@ -92,14 +95,14 @@ void RequireWritable(const std::filesystem::path& file, std::string_view option)
   std::error_code error;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
   if (error) throw CannotWrite(file, option, error.message());
-  TryFile(PartOf(file), file, option);
+  TryFile(file.parent_path(), file, option);
 }
 
 void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw CannotWrite(folder, option, error.message());
-  TryFile(folder / fmt::format(".fogline-{}", getpid()), folder, option);
+  TryFile(folder, folder, option);
 }
 
 }  // namespace fogline

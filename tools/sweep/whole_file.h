@@ -39,7 +39,7 @@ class WholeFile {
 void MakeFolderOf(const std::filesystem::path& file);
 
 /// Finds out before long work whether its result could be kept: makes the folder of `file`, and for
-/// a moment a "FILE.part" in it. What has the name of `file` itself stays as it is.
+/// a moment a file of its own in it. What is there, "FILE.part", too, stays as it is.
 /// @param option that names it, such as "--out"
 /// @throws InputError "FILE: error: --out: cannot write: ..."
 void RequireWritable(const std::filesystem::path& file, std::string_view option);

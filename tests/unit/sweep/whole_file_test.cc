@@ -71,6 +71,13 @@ TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
 
+TEST_F(WholeFileTest, IsTriedBeforehandWithoutTouchingTheHalfThatSomebodyElseWrites) {
+  const std::string part = file_ + ".part";
+  std::ofstream(part) << "half of another's";
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+  EXPECT_EQ(Content(part), "half of another's");
+}
+
 TEST_F(WholeFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
   std::ofstream(file_) << "no folder";
   const std::string folder = folder_.path().string();
