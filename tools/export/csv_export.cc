@@ -1,5 +1,6 @@
 #include "tools/export/csv_export.h"
 
+#include <deque>
 #include <iterator>
 #include <string_view>
 
@@ -46,8 +47,7 @@ void AppendRow(const ChannelTable& table, std::size_t row, std::string& text) {
   text += '\n';
 }
 
-void WriteChannel(const ChannelTable& table, const std::filesystem::path& path) {
-  WholeFile file(path);
+void WriteChannel(const ChannelTable& table, WholeFile& file) {
   std::string text = HeaderLine(table);
   for (std::size_t row = 0; row < table.messages; ++row) {
     AppendRow(table, row, text);
@@ -56,7 +56,6 @@ void WriteChannel(const ChannelTable& table, const std::filesystem::path& path) 
     text.clear();
   }
   file.Write(text);
-  file.Finish();
 }
 
 }  // namespace
@@ -71,12 +70,14 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 }
 
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
+  // Named only when all of them are there, so that no folder has files of two logs.
+  std::deque<WholeFile> files;
   for (const ChannelTable& table : tables.channels) {
-    WriteChannel(table, FileOf(table.name, folder));
+    WriteChannel(table, files.emplace_back(FileOf(table.name, folder)));
   }
-  WholeFile scenario(folder / kScenarioFile);
-  scenario.Write(tables.scenario + '\n');
-  scenario.Finish();
+  files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
+  for (WholeFile& file : files) file.Close();
+  for (WholeFile& file : files) file.Finish();
 }
 
 }  // namespace fogline

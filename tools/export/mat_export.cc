@@ -60,7 +60,7 @@ struct MatType<std::int64_t> {
 };
 
 /// A field as a matrix with a row for each message; MAT-files have it column by column.
-matvar_t* MatrixOf(const FieldTable& field, std::size_t messages) {
+Variable MatrixOf(const FieldTable& field, std::size_t messages) {
   return std::visit(
       [&]<class T>(const std::vector<T>& values) {
         std::vector<T> columns(values.size());
@@ -68,8 +68,8 @@ matvar_t* MatrixOf(const FieldTable& field, std::size_t messages) {
           columns[i % field.width * messages + i / field.width] = values[i];
         }
         std::array<std::size_t, 2> size{messages, field.width};
-        return Mat_VarCreate(nullptr, MatType<T>::kClass, MatType<T>::kType, size.size(),
-                             size.data(), columns.data(), 0);
+        return Variable(Mat_VarCreate(nullptr, MatType<T>::kClass, MatType<T>::kType, size.size(),
+                                      size.data(), columns.data(), 0));
       },
       field.values);
 }
@@ -97,8 +97,10 @@ Variable StructOf(const ChannelTable& table) {
   for (const FieldTable& field : table.fields) {
     const bool in_header = field.name.starts_with(prefix);
     const std::string name = field.name.substr(in_header ? prefix.size() : 0);
+    Variable matrix = MatrixOf(field, table.messages);
+    if (matrix == nullptr) throw std::bad_alloc();
     Mat_VarSetStructFieldByName((in_header ? header : all).get(), name.c_str(), 0,
-                                MatrixOf(field, table.messages));
+                                matrix.release());
   }
   Mat_VarSetStructFieldByName(all.get(), kHeaderStruct.data(), 0, header.release());
   return all;

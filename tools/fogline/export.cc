@@ -26,7 +26,7 @@ struct ExportArguments {
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
 /// What will be written; nothing of it may be there without --force. @throws InputError
-std::vector<std::filesystem::path> PrepareFiles(const ExportArguments& arguments) {
+std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =
       is_mat ? std::vector{arguments.out} : CsvFiles(arguments.out);
@@ -35,14 +35,16 @@ std::vector<std::filesystem::path> PrepareFiles(const ExportArguments& arguments
     throw InputError(
         fmt::format("{}: error: --out: the file exists; --force replaces it", file.string()));
   }
-  is_mat ? RequireWritable(arguments.out, "--out") : RequireWritableFolder(arguments.out, "--out");
   return files;
 }
 
 int RunExport(const ExportArguments& arguments) {
-  const std::vector<std::filesystem::path> files = PrepareFiles(arguments);
+  const std::vector<std::filesystem::path> files = FilesOf(arguments);
+  // Before anything is made: of a log that is none there shall be no folder.
   const RunTables tables = ReadRunTables(arguments.log);
-  IsMat(arguments.out) ? WriteMat(tables, arguments.out) : WriteCsv(tables, arguments.out);
+  const bool is_mat = IsMat(arguments.out);
+  is_mat ? RequireWritable(arguments.out, "--out") : RequireWritableFolder(arguments.out, "--out");
+  is_mat ? WriteMat(tables, arguments.out) : WriteCsv(tables, arguments.out);
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
                                 {"steps", tables.steps},

@@ -68,9 +68,14 @@ void WholeFile::Write(std::string_view text) {
   if (!out_.write(text.data(), static_cast<std::streamsize>(text.size()))) Fail();
 }
 
+void WholeFile::Close() {
+  if (out_.is_open()) out_.close();
+  if (!out_) Fail();
+}
+
 void WholeFile::Finish() {
-  out_.close();
-  if (!out_ || std::rename(part_.c_str(), file_.c_str()) != 0) Fail();
+  Close();
+  if (std::rename(part_.c_str(), file_.c_str()) != 0) Fail();
 }
 
 void WholeFile::Fail() const {

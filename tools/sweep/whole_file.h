@@ -24,6 +24,9 @@ class WholeFile {
   /// Where it is until then, for somebody else to write it instead of Write().
   const std::filesystem::path& part() const { return part_; }
 
+  /// Writes what is not yet on the disk. @throws std::runtime_error when it is full
+  void Close();
+
   /// Replaces what has this name. @throws std::runtime_error
   void Finish();
 
