@@ -1,4 +1,6 @@
 // `fogline export`: other programs get every number of a log to the last bit.
+#include <matio.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -6,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -56,6 +59,83 @@ void ForEachMessage(const StepMessages& messages, const Visit& visit) {
     ASSERT_TRUE(Decode(messages[channel], message));
     visit(message);
   });
+}
+
+/// A field of a channel in a log, by which a MAT-file is judged.
+struct Field {
+  std::string type;
+  std::vector<std::string> rows;  // bytes, of a message each
+  std::size_t size = 0;           // of a number
+  std::size_t columns() const { return rows.front().size() / size; }
+  /// As MAT-files have them: column by column.
+  std::string ByColumns() const {
+    std::string bytes;
+    for (std::size_t i = 0; i < columns(); ++i) {
+      for (const std::string& row : rows) bytes += row.substr(i * size, size);
+    }
+    return bytes;
+  }
+};
+
+/// Those of every channel, by names such as "TRUTH.header.step".
+std::map<std::string, Field> FieldsOf(const std::string& log) {
+  std::map<std::string, Field> fields;
+  RunLogReader reader(log);
+  while (const StepMessages* messages = reader.Next()) {
+    ForEachMessage(*messages, [&]<class M>(const M& message) {
+      ForEachField(message, [&]<class T>(const std::string& name, std::span<const T> values, bool) {
+        Field& field = fields[fmt::format("{}.{}", ChannelOf<M>().name, name)];
+        field.size = sizeof(T);
+        field.type = std::is_same_v<T, double> ? "double" : fmt::format("int{}", 8 * sizeof(T));
+        field.rows.emplace_back(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+      });
+    });
+  }
+  return fields;
+}
+
+/// A MAT-file as matio reads it.
+class MatFile {
+ public:
+  explicit MatFile(const std::string& file) : file_(Mat_Open(file.c_str(), MAT_ACC_RDONLY)) {}
+
+  /// What a name such as "TRUTH.header.step" stands for; nullptr if there is none.
+  const matvar_t* Find(const std::string& name) {
+    std::istringstream parts(name);
+    std::string part;
+    std::getline(parts, part, '.');
+    Variable& variable = variables_[part];
+    if (variable == nullptr) variable.reset(Mat_VarRead(file_.get(), part.c_str()));
+    matvar_t* found = variable.get();
+    while (found != nullptr && std::getline(parts, part, '.')) {
+      found = Mat_VarGetStructFieldByName(found, part.c_str(), 0);
+    }
+    return found;
+  }
+
+ private:
+  struct Free {
+    void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+    void operator()(mat_t* file) const { Mat_Close(file); }
+  };
+  using Variable = std::unique_ptr<matvar_t, Free>;
+  std::unique_ptr<mat_t, Free> file_;
+  std::map<std::string, Variable> variables_;
+};
+
+const char* TypeOf(const matvar_t& variable) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return "double";
+    case MAT_C_INT8:
+      return "int8";
+    case MAT_C_INT32:
+      return "int32";
+    case MAT_C_INT64:
+      return "int64";
+    default:
+      return "another";
+  }
 }
 
 class ExportTest : public testing::Test {
@@ -149,6 +229,33 @@ TEST_F(ExportTest, WritesEqualMatFilesOfLevel5ForEqualLogs) {
   EXPECT_EQ(content.substr(124, 4), std::string("\0\1IM", 4));
 }
 
+TEST_F(ExportTest, WritesEveryNumberOfEveryChannelIntoTheMatFileToTheLastBit) {
+  ASSERT_EQ(Export({"--out", mat_}).code, 0);
+  MatFile mat(mat_);
+  std::size_t matrices = 0;
+  for (const auto& [name, field] : FieldsOf(log_)) {
+    SCOPED_TRACE(name);
+    const matvar_t* variable = mat.Find(name);
+    ASSERT_NE(variable, nullptr);
+    EXPECT_EQ(TypeOf(*variable), field.type);
+    ASSERT_EQ(variable->rank, 2);
+    EXPECT_EQ(variable->dims[0], field.rows.size()) << "a row for each message";
+    EXPECT_EQ(variable->dims[1], field.columns());
+    const std::string expected = field.ByColumns();
+    ASSERT_EQ(variable->nbytes, expected.size());
+    EXPECT_EQ(std::memcmp(variable->data, expected.data(), expected.size()), 0);
+    if (field.columns() > 1) ++matrices;
+  }
+  EXPECT_GT(matrices, 5U) << "there is something that could be transposed";
+  const matvar_t* scenario = mat.Find("scenario");
+  ASSERT_NE(scenario, nullptr);
+  RunLogReader reader(log_);
+  while (reader.Next() != nullptr) {
+  }
+  const std::string_view text(static_cast<const char*>(scenario->data), scenario->nbytes);
+  EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json::parse(reader.run().scenario_text));
+}
+
 TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   ASSERT_EQ(Export({"--out", mat_}).code, 0);
   ASSERT_EQ(Export({"--out", out_}).code, 0);
@@ -171,6 +278,30 @@ TEST_F(ExportTest, WritesWhatALogThatWasCutOffHasAndSaysSo) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("ends after step "));
   EXPECT_TRUE(std::filesystem::exists(out_ + "/HOST_COMMAND.csv"));
+}
+
+TEST_F(ExportTest, MakesNothingOfALogThatItCannotRead) {
+  for (const std::string& out : {out_, folder_.File("new/run.mat")}) {
+    const Outcome outcome =
+        RunCommand({Program("fogline"), "export", "scenario/paper.json", "--out", out});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("new")));
+}
+
+TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
+  ASSERT_EQ(Export({"--out", out_}).code, 0);
+  const std::string before = Content(out_ + "/TRUTH.csv");
+  const std::string last = out_ + "/scenario.json";
+  std::filesystem::remove(last);
+  std::filesystem::create_directory(last);
+  // GIVEN another log
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
+  const Outcome outcome = Export({"--out", out_, "--force"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("it is a folder"));
+  EXPECT_EQ(Content(out_ + "/TRUTH.csv"), before);
 }
 
 // The bytes of every field in Octave, column by column, in hexadecimal.
@@ -201,36 +332,14 @@ TEST_P(OctaveExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
   const Outcome octave = RunCommand({"octave-cli", "--norc", folder_.File("show.m"), mat_});
   ASSERT_EQ(octave.code, 0) << octave.err;
   // GIVEN the same fields out of the log: for each a row of numbers for each message
-  struct Field {
-    std::string type;
-    std::vector<std::string> rows;  // bytes
-    std::size_t size = 0;           // of a number
-  };
-  std::map<std::string, Field> fields;
-  RunLogReader reader(log_);
-  while (const StepMessages* messages = reader.Next()) {
-    ForEachMessage(*messages, [&]<class M>(const M& message) {
-      ForEachField(message, [&]<class T>(const std::string& name, std::span<const T> values, bool) {
-        Field& field = fields[fmt::format("{}.{}", ChannelOf<M>().name, name)];
-        field.size = sizeof(T);
-        field.type = std::is_same_v<T, double> ? "double" : fmt::format("int{}", 8 * sizeof(T));
-        field.rows.emplace_back(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-      });
-    });
-  }
   std::vector<std::string> expected;
-  for (const auto& [name, field] : fields) {
-    const std::size_t columns = field.rows.front().size() / field.size;
+  for (const auto& [name, field] : FieldsOf(log_)) {
     std::string hex;
-    for (std::size_t i = 0; i < columns; ++i) {
-      for (const std::string& row : field.rows) {
-        for (const char c : row.substr(i * field.size, field.size)) {
-          hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
-        }
-      }
+    for (const char c : field.ByColumns()) {
+      hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
     }
     expected.push_back(
-        fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), columns, hex));
+        fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), field.columns(), hex));
   }
   expected.emplace_back("title F\u00f6hn");
   // THEN they are what Octave shows
