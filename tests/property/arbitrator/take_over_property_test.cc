@@ -139,7 +139,8 @@ class Sequence {
     events_.Apply(out.acceleration_mps2);
   }
 
-  /// Other offers, until the controllers of the old state and of the new one want different things.
+  /// Other offers, until the controllers of the old state and of the new one want different things:
+  /// where they want the same, nothing can be felt.
   /// The two stages of the manoeuvre may both be bound by the jerk, whatever is offered.
   void LetTheControllersDiffer(const TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;

@@ -1,5 +1,6 @@
 // What happens to the fallback, at random, and a second reckoning of what it must do about that:
-// from the inputs alone, with no look at services/arbitrator/take_over.cc.
+// from the inputs alone, beside services/arbitrator/take_over.cc. It shares with that file the
+// drawn take-over time and the course of a manoeuvre, which have tests of their own.
 #pragma once
 
 #include <algorithm>
