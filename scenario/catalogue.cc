@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -138,7 +140,9 @@ std::optional<std::size_t> ListIndex(std::string_view segment) {
   std::size_t index = 0;
   const char* const last = segment.data() + segment.size();
   const auto [end, error] = std::from_chars(segment.data(), last, index);
-  return error == std::errc() && end == last ? std::optional(index) : std::nullopt;
+  if (end != last || error == std::errc::invalid_argument) return std::nullopt;
+  // One beyond all lists is one, too.
+  return error == std::errc() ? index : std::numeric_limits<std::size_t>::max();
 }
 
 const std::vector<FieldInfo>& Catalogue() {
