@@ -35,7 +35,8 @@ std::string LineOf(const Comparison& comparison, std::size_t c, std::size_t vari
   const std::int64_t cut_short = comparison.PairsCutShort({c, variant}, {c, 0});
   if (cut_short > 0) {
     return fmt::format(
-        "{}: collisions {} instead of {}; {} of {} pairs of runs end early, so that neither SI nor "
+        "{}: collisions {} instead of {}; the runs of {} of {} seeds end early, so that neither SI "
+        "nor "
         "compromised safety is compared.",
         label, Text(with), Text(without), cut_short, comparison.seeds());
   }

@@ -27,9 +27,9 @@ namespace fogline {
 ConflictParameters DetectorParameters(const Scenario& scenario);
 
 /// The measure of which another is the same test under DetectorParameters(), for what is to be
-/// counted once. The SPRT's ratio is held at its lower bound, and looks for the shift that the CUSUM
-/// looks for: above that bound it is the sum of the CUSUM times 2 kappa (Page 1954), as long as it
-/// is below its ceiling and once it has been at the bound. "" for all others.
+/// counted once. The SPRT's ratio is held at its lower bound, and looks for the shift that the
+/// CUSUM looks for: above that bound it is the sum of the CUSUM times 2 kappa (Page 1954), as long
+/// as it is below its ceiling and once it has been at the bound. "" for all others.
 std::string_view TwinOf(std::string_view measure);
 
 /// Runs scenarios and gives every measure of conflict the evidence of each step. For one thread.

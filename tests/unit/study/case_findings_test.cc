@@ -74,7 +74,7 @@ TEST(CaseFindingsTest, DoNotCallARunSafeThatCrashesBeforeItsSafetyIsCompromised)
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_THAT(findings[0], HasSubstr("It collides more in: ice (20 of 20 runs instead of 0)."));
   EXPECT_THAT(findings[0], Not(HasSubstr("It reduces it in")));
-  EXPECT_THAT(findings[1], HasSubstr("20 of 20 pairs of runs end early"));
+  EXPECT_THAT(findings[1], HasSubstr("the runs of 20 of 20 seeds end early"));
   EXPECT_THAT(findings[1], Not(HasSubstr("SI 0")));
 }
 
