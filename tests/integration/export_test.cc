@@ -1,5 +1,6 @@
 // `fogline export`: other programs get every number of a log to the last bit.
 #include <matio.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -22,6 +23,7 @@
 #include "services/recorder/run_log.h"
 #include "services/runtime/wire.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 
 namespace fogline::test {
 namespace {
@@ -288,6 +290,24 @@ TEST_F(ExportTest, MakesNothingOfALogThatItCannotRead) {
   }
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_FALSE(std::filesystem::exists(folder_.File("new")));
+}
+
+TEST_F(ExportTest, FailsOnAFullDiskAndKeepsTheMatFileThatWasThere) {
+  if (geteuid() != 0) return MachineLacks("root, to mount a small file system");
+  if (const Outcome own = RunCommand({"unshare", "--mount", "true"}); own.code != 0) {
+    return MachineLacks("mount namespaces: " + own.err);
+  }
+  // Of 64 KiB, which hold some channels of the log and not all. It is mounted for these commands.
+  const ScratchFolder folder;
+  const Outcome outcome = RunCommand({"unshare", "--mount", "sh", "-c",
+                                      "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
+                                      "echo precious > \"$1/run.mat\"\n"
+                                      "\"$0\" export \"$2\" --out \"$1/run.mat\" --force; code=$?\n"
+                                      "ls \"$1\"; cat \"$1/run.mat\"; exit $code",
+                                      Program("fogline"), folder.path().string(), log_});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_EQ(outcome.out, "run.mat\nprecious\n");
+  EXPECT_THAT(outcome.err, HasSubstr("run.mat: cannot write the MAT-file"));
 }
 
 TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {

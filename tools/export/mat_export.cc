@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -121,6 +123,24 @@ Variable TextVariable(const char* name, std::string text) {
       Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
 }
 
+/// Whether so many variables are there, each whole: their sizes lead from the first to the end. A
+/// write to a full disk that fails is not always reported to whoever calls matio.
+bool IsWhole(const std::filesystem::path& file, std::size_t variables) {
+  constexpr std::streamoff kHeaderBytes = 128;
+  std::ifstream in(file, std::ios::binary);
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file));
+  std::streamoff at = kHeaderBytes;
+  std::size_t whole = 0;
+  std::array<std::uint32_t, 2> tag{};  // type and bytes
+  while (at < size) {
+    in.seekg(at);
+    if (!in.read(reinterpret_cast<char*>(tag.data()), sizeof(tag))) return false;
+    at += static_cast<std::streamoff>(sizeof(tag)) + tag[1];
+    if (at <= size) ++whole;
+  }
+  return at == size && whole == variables;
+}
+
 }  // namespace
 
 void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
@@ -141,7 +161,8 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
   };
   for (const ChannelTable& table : tables.channels) write(StructOf(table));
   write(TextVariable("scenario", tables.scenario));
-  if (Mat_Close(mat.release()) != 0) Fail(path);
+  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), tables.channels.size() + 1))
+    Fail(path);
   file.Finish();
 }
 
