@@ -260,7 +260,7 @@ TEST(CrashTest, OfNobodyIsSeenByARunnerThatWasHeldUpItself) {
   WatchedRun watched({"--stall-timeout", "1"}, 3000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
-  std::this_thread::sleep_for(milliseconds(1500));
+  std::this_thread::sleep_for(milliseconds(1500));  // the pause itself: nothing tells of its end
   // WHEN it goes on, THEN the run does, too
   kill(watched.run().pid(), SIGCONT);
   const auto result = watched.ExpectSameResult();

@@ -173,7 +173,9 @@ std::string FrontText(const MixedRuns& mixed) {
   std::string text = fmt::format("The Pareto front of all rules in mean RHE and mean SI is {}{}.",
                                  front.size() == 1 ? "a single point: " : "", ListText(names));
   if (front.size() == 1) {
-    text += " In this mix who engages least is safest too, so that there is nothing to trade.";
+    text +=
+        " Of these rules one that engages least in clear air is safest too: between the two there "
+        "is nothing to trade.";
   }
   if (!like.empty()) {
     text += fmt::format(" Not to be told apart from it in both, by paired differences: {}.",
