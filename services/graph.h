@@ -219,6 +219,16 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
   return 0;
 }
 
+/// Simulated time in messages (header_t, utime) is in microseconds.
+inline constexpr double kMicrosPerSecond = 1e6;
+
+/// The place in kChannels of the channel with this name, kNumChannels if there is none.
+constexpr std::size_t ChannelNamed(std::string_view name) {
+  std::size_t place = 0;
+  while (place < kNumChannels && kChannels[place].name != name) ++place;
+  return place;
+}
+
 /// Name of a role, as on the command line and in STATUS.
 constexpr std::string_view NameOf(Role role) {
   for (const RoleInfo& info : kRoles) {

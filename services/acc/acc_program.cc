@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // The slack is the first unknown, so that the nonzero part of every row of C is short.
 constexpr Index kSlack = 0;
@@ -124,8 +124,8 @@ AccProgram::Reach AccProgram::ReachOf(const AccSituation& now) const {
 
 void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
                         Eigen::VectorXd& upper) const {
-  lower.setConstant(-kInfinity);
-  upper.setConstant(kInfinity);
+  lower.setConstant(-kNoLimit);
+  upper.setConstant(kNoLimit);
   const Reach reach = ReachOf(now);
   const double settled = SettledSpeed(now);
   const double preceding_mps = now.speed_mps + now.state(kDeltaV);

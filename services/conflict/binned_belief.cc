@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+
+#include "services/conflict/normal.h"
 
 namespace fogline {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 // of wider ones the outermost bins have what is beyond.
 constexpr std::int64_t kMostBins = 64;
 constexpr double kReach = 6;  // standard deviations; 2e-9 is beyond
-
-double NormalBelow(double u) { return std::erfc(-u / std::numbers::sqrt2) / 2; }
 
 // Probabilities of the bins first, first + 1, ..., which add up to 1.
 struct Bins {

@@ -9,14 +9,14 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 
+#include "services/conflict/normal.h"
+
 namespace fogline {
 namespace {
 
 const double kDensityFactor = std::sqrt(2 / std::numbers::pi);
 
 double MaxwellDensity(double y) { return kDensityFactor * y * y * std::exp(-y * y / 2); }
-
-double NormalBelow(double u) { return std::erfc(-u / std::numbers::sqrt2) / 2; }
 
 // Length of [-a, a] and [d - b, d + b] in common.
 double Overlap(double distance, double a, double b) {

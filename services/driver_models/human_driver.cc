@@ -4,11 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenario/whole_steps.h"
+
 namespace fogline {
 namespace {
-
-// A reaction time of 0.3 s is three steps of 0.1 s, although their quotient may not be 3.
-constexpr double kWholeSteps = 1e-9;
 
 const HumanParameters& Checked(const HumanParameters& human) {
   const bool valid = human.reaction_time_s >= 0.0 && human.gap_error >= 0.0 &&
@@ -24,7 +23,7 @@ struct Steps {
 };
 Steps StepsIn(double time_s, double step_s) {
   const double steps = time_s / step_s;
-  const double whole = std::floor(steps + kWholeSteps);
+  const double whole = WholeSteps(time_s, step_s);
   return {whole, std::max(0.0, steps - whole)};
 }
 

@@ -11,6 +11,9 @@ using TimePoint = Clock::time_point;
 using std::chrono::duration_cast;
 using std::chrono::milliseconds;
 
+/// A duration in seconds.
+inline double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
 /// Whole milliseconds of a duration.
 inline std::int64_t Milliseconds(Duration duration) {
   return duration_cast<milliseconds>(duration).count();

@@ -26,18 +26,11 @@ constexpr Duration kAway = milliseconds(500);
 // A STATUS may be so long on its way; later than that its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
 
-double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
-
 std::optional<Role> RoleNamed(std::string_view name) {
   for (const RoleInfo& info : kRoles) {
     if (info.name == name) return info.role;
   }
   return std::nullopt;
-}
-
-const ChannelInfo* ChannelNamed(std::string_view name) {
-  const auto found = std::ranges::find(kChannels, name, &ChannelInfo::name);
-  return found == kChannels.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -316,7 +309,8 @@ std::string Conductor::Culprit(TimePoint now) const {
                          Seconds(now - consumer.heard));
     }
     stuck = consumer.status->header.step + 1;
-    const ChannelInfo* channel = ChannelNamed(consumer.status->waiting_for);
+    const std::size_t place = ChannelNamed(consumer.status->waiting_for);
+    const ChannelInfo* channel = place < kNumChannels ? &kChannels[place] : nullptr;
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
     // Who has computed what is waited for may wait himself, but for something else.

@@ -9,11 +9,6 @@
 namespace fogline {
 namespace {
 
-std::size_t ChannelNamed(std::string_view name) {
-  return static_cast<std::size_t>(std::ranges::find(kChannels, name, &ChannelInfo::name) -
-                                  kChannels.begin());
-}
-
 std::size_t PlaceOf(std::string_view role) {
   return static_cast<std::size_t>(std::ranges::find(kRoles, role, &RoleInfo::name) -
                                   kRoles.begin());

@@ -9,8 +9,6 @@ Duration Periods(double periods, Duration period) {
   return duration_cast<Duration>(periods * period);
 }
 
-double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
-
 }  // namespace
 
 InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoint began)

@@ -6,12 +6,6 @@
 #include "services/runtime/culprit.h"
 
 namespace fogline {
-namespace {
-
-constexpr double kMicrosPerSecond = 1e6;
-
-}  // namespace
-
 Duration PeriodOf(const Scenario& scenario, double speed) {
   return duration_cast<Duration>(std::chrono::duration<double>(scenario.step_s / speed));
 }

@@ -4,19 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenario/whole_steps.h"
+
 namespace fogline {
-namespace {
-
-// A delay of 0.2 s is two steps of 0.1 s, although their quotient may not be 2.
-constexpr double kWholeSteps = 1e-9;
-
-}  // namespace
 
 Actuator::Actuator(double delay_s, double lag_s, double step_s) : step_s_(step_s) {
   if (!(delay_s >= 0.0) || !(lag_s >= 0.0) || !(step_s > 0.0)) {
     throw std::invalid_argument("actuator: delay and lag are at least 0, the step is above 0");
   }
-  const double steps = std::floor(delay_s / step_s + kWholeSteps);
+  const double steps = WholeSteps(delay_s, step_s);
   if (steps > static_cast<double>(kMaxDelaySteps)) {
     throw std::invalid_argument("actuator: the delay is longer than 254 steps");
   }

@@ -3,15 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/graph.h"
 #include "services/world/visibility.h"
 
 namespace fogline {
-namespace {
-
-constexpr double kMicrosPerSecond = 1e6;
-
-}  // namespace
-
 double FogLevel(FogProfile profile, double x) {
   using std::numbers::pi;
   switch (profile) {

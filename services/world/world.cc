@@ -9,11 +9,10 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/graph.h"
 
 namespace fogline {
 namespace {
-
-constexpr double kMicrosPerSecond = 1e6;
 
 double Finite(double acceleration_mps2, const char* channel) {
   if (std::isfinite(acceleration_mps2)) return acceleration_mps2;

@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace fogline {
-namespace {
-
-double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
-
-}  // namespace
 
 void Arrivals::Add(std::size_t bytes, TimePoint now) {
   if (messages_ > 0) {

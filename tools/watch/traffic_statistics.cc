@@ -39,18 +39,10 @@ std::string_view TypeNameOf(Bytes bytes) {
   return "";
 }
 
-/// Position in kGraph, kNumChannels if there is no such channel.
-std::size_t IndexOfChannel(std::string_view name) {
-  const auto at = std::ranges::find(kChannels, name, &ChannelInfo::name);
-  return static_cast<std::size_t>(at - kChannels.begin());
-}
-
 void CountUndecodable(Bytes bytes, Undecodable& undecodable) {
   const std::string_view type = TypeNameOf(bytes);
   ++undecodable[type.empty() ? "unknown" : std::string(type)];
 }
-
-double Seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
 
@@ -66,7 +58,7 @@ bool IsLcmsOwn(std::string_view channel) {
 
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
   if (LooksSealed(bytes)) bytes = WithoutSeal(bytes);  // shown, not verified
-  const std::size_t index = IndexOfChannel(channel);
+  const std::size_t index = ChannelNamed(channel);
   if (index < kNumChannels && bytes.size() >= kHeaderEnd) {
     const std::int64_t run_id = ReadInt64(bytes, kRunIdOffset);
     if (KnownTypes()[index].decodes(bytes)) {
