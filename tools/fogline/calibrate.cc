@@ -1,4 +1,5 @@
-// fogline calibrate: finds the values of a scenario's fields with which its table meets another.
+// fogline calibrate, a program of its own: finds the values of fields with which a scenario's table
+// meets another.
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -14,8 +15,9 @@
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/own_program.h"
 #include "tools/fogline/progress.h"
-#include "tools/fogline/verbs.h"
+#include "tools/fogline/verb_main.h"
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 #include "tools/sweep/whole_file.h"
@@ -180,13 +182,14 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   return kDone;
 }
 
-}  // namespace
-
 void AddCalibrate(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("calibrate", "Find values of fields that meet a table");
+  CLI::App* verb = app.add_subcommand(kCalibrate.verb, kCalibrate.purpose);
   const auto arguments = std::make_shared<CalibrateArguments>(*verb);
   verb->callback(
       [&action, arguments] { action = [arguments] { return RunCalibrate(*arguments); }; });
 }
 
+}  // namespace
 }  // namespace fogline
+
+int main(int argc, char** argv) { return fogline::RunOneVerb(argc, argv, fogline::AddCalibrate); }

@@ -19,4 +19,8 @@ void BecomeChild(pid_t parent, int output) {
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
 }
 
+std::filesystem::path ProgramBeside(std::string_view name) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
+}
+
 }  // namespace fogline

@@ -1,7 +1,10 @@
-// What a process that the runner starts does before it becomes another program.
+// What a process does before it becomes another program of Fogline.
 #pragma once
 
 #include <sys/types.h>
+
+#include <filesystem>
+#include <string_view>
 
 namespace fogline {
 
@@ -11,5 +14,8 @@ namespace fogline {
 /// the runner but stderr.
 /// @param parent process id of the runner before the fork
 void BecomeChild(pid_t parent, int output);
+
+/// The program of this name in the folder of the running one.
+std::filesystem::path ProgramBeside(std::string_view name);
 
 }  // namespace fogline

@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -49,8 +48,7 @@ std::string FirstLine(int output) {
 }  // namespace
 
 RelayProcess::RelayProcess() {
-  const std::string program =
-      (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fogline-relay").string();
+  const std::string program = ProgramBeside("fogline-relay").string();
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));

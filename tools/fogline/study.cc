@@ -1,4 +1,4 @@
-// fogline study: the paper's open questions, answered with numbers.
+// fogline study, a program of its own: the paper's open questions, answered with numbers.
 #include "tools/study/study.h"
 
 #include <memory>
@@ -11,8 +11,9 @@
 
 #include "scenario/loader.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/own_program.h"
 #include "tools/fogline/progress.h"
-#include "tools/fogline/verbs.h"
+#include "tools/fogline/verb_main.h"
 #include "tools/report/study_page.h"
 #include "tools/sweep/engine.h"
 #include "tools/sweep/whole_file.h"
@@ -179,10 +180,8 @@ int RunStudy(const StudyArguments& arguments) {
   return kDone;
 }
 
-}  // namespace
-
 void AddStudy(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("study", "Answer an open question with runs and intervals");
+  CLI::App* verb = app.add_subcommand(kStudy.verb, kStudy.purpose);
   const auto arguments = std::make_shared<StudyArguments>();
   verb->add_option("NAME", arguments->name, fmt::format("One of {}", Names()))->required();
   verb->add_option("--out", arguments->out, "Folder for the files, which are replaced")
@@ -215,4 +214,7 @@ void AddStudy(CLI::App& app, Action& action) {
   verb->callback([&action, arguments] { action = [arguments] { return RunStudy(*arguments); }; });
 }
 
+}  // namespace
 }  // namespace fogline
+
+int main(int argc, char** argv) { return fogline::RunOneVerb(argc, argv, fogline::AddStudy); }

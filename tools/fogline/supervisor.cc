@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "tools/fogline/child.h"
+
 namespace fogline {
 namespace {
 
@@ -18,8 +20,7 @@ constexpr int kStopRepeats = 5;
 constexpr Duration kStartLimit = milliseconds(5000);
 
 std::filesystem::path ProgramOf(Role role) {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
-         fmt::format("fogline-{}", NameOf(role));
+  return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
 }
 
 }  // namespace

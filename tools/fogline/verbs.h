@@ -23,8 +23,6 @@ enum ExitCode : int {
 void AddRun(CLI::App& app, Action& action);
 void AddTable(CLI::App& app, Action& action);
 void AddSweep(CLI::App& app, Action& action);
-void AddCalibrate(CLI::App& app, Action& action);
-void AddStudy(CLI::App& app, Action& action);
 void AddMetrics(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);

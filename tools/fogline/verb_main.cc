@@ -1,0 +1,91 @@
+#include "tools/fogline/verb_main.h"
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "services/runtime/version.h"
+#include "tools/fogline/help.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/refusal.h"
+
+namespace fogline {
+namespace {
+
+/// A verb's exit code; prints its error if there is one.
+int Run(const CLI::App& app, const Action& action) {
+  const std::string name = CommandName(app);
+  try {
+    const int code = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written, such as on a full disk");
+    }
+    return code;
+  } catch (const InputError& error) {
+    // A mistake in a file begins with its place, one in the arguments with "error:".
+    const std::string_view what = error.what();
+    fmt::print(stderr, "{}{}\n", what.starts_with("error:") ? name + ": " : "", what);
+    return kBadInput;
+  } catch (const Interrupted& interrupted) {
+    fmt::print(stderr, "{}: {}\n", name, interrupted.what());
+    return kInterrupted;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    return kRunFailed;
+  }
+}
+
+/// @param arguments without the program's name, the last one first
+int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
+  CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
+  app.set_version_flag("--version", VersionText());
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(
+      "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 failure at run time, "
+      "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.\n\n"
+      "Examples:\n"
+      "  fogline run scenario/paper.json\n"
+      "  fogline table --help");
+  Action action;
+  for (const AddVerb add : verbs) add(app, action);
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& asked) {  // --help, --version
+    action = [&app, asked] { return app.exit(asked); };
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "{}\n", Refusal(app, error));
+    return kBadInput;
+  }
+  return Run(app, action);
+}
+
+std::vector<std::string> Reversed(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) arguments.emplace_back(argv[i]);
+  return arguments;
+}
+
+}  // namespace
+
+int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs) {
+  return Main(Reversed(argc, argv), verbs);
+}
+
+int RunOneVerb(int argc, char** argv, AddVerb verb) {
+  CLI::App probe;
+  Action ignored;
+  verb(probe, ignored);
+  std::vector<std::string> arguments = Reversed(argc, argv);
+  arguments.push_back(probe.get_subcommands({}).front()->get_name());
+  return Main(std::move(arguments), {verb});
+}
+
+}  // namespace fogline
