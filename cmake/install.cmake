@@ -19,8 +19,9 @@ install(FILES services/graph.h DESTINATION include/services)
 install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY scenario/ DESTINATION include/scenario
   FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE)
-install(FILES scenario/paper.json scenario/dense_fog.json scenario/scenario.schema.json
-  DESTINATION share/fogline/scenario)
+install(FILES scenario/paper.json scenario/dense_fog.json scenario/recorded_lead.json
+  scenario/scenario.schema.json DESTINATION share/fogline/scenario)
+install(DIRECTORY scenario/data DESTINATION share/fogline/scenario)
 
 set(config "${CMAKE_CURRENT_BINARY_DIR}/fogline-config")
 configure_package_config_file(cmake/fogline-config.cmake.in "${config}.cmake"

@@ -1,5 +1,4 @@
-// A leader recorded on a road: the shipped scenario names a file that is not part of this
-// repository.
+// A leader recorded on a road: the shipped scenario and the recording that is shipped with it.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -12,11 +11,6 @@ namespace {
 
 class RecordedLeadTest : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto file = SourceDirectory() / "../shared/data/acc_platoon_a.csv";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded driving at " << file;
-  }
-
   /// Runs the scenario to its end and returns its measures.
   static nlohmann::json Run(const std::vector<std::string>& more) {
     std::vector<std::string> command{Program("fogline"), "run", "scenario/recorded_lead.json",
@@ -33,6 +27,27 @@ class RecordedLeadTest : public testing::Test {
       "--set", "/fog/model=beam",     "--set", "/fog/start_s=100",
       "--set", "/fog/duration_s=100", "--set", "/fog/visibility_m=60"};
 };
+
+TEST_F(RecordedLeadTest, IsThereWithoutAFileFromOutsideOfTheScenarioFolder) {
+  const ScratchFolder elsewhere;
+  std::filesystem::copy(SourceDirectory() / "scenario", elsewhere.path() / "scenario",
+                        std::filesystem::copy_options::recursive);
+  const Outcome check =
+      RunCommand({Program("fogline"), "check", elsewhere.File("scenario/recorded_lead.json")});
+  EXPECT_EQ(check.code, 0) << check.err;
+}
+
+TEST_F(RecordedLeadTest, IsInstalledWithItsRecording) {
+  const ScratchFolder prefix;
+  const Outcome install = RunCommand(
+      {"cmake", "--install", ProgramDirectory().parent_path(), "--prefix", prefix.path().string()});
+  ASSERT_EQ(install.code, 0) << install.err;
+  const Outcome run = RunCommand({prefix.File("bin/fogline"), "run",
+                                  prefix.File("share/fogline/scenario/recorded_lead.json"),
+                                  "--transport", "direct", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out)["steps"], 7000);
+}
 
 TEST_F(RecordedLeadTest, IsFollowedFor700SecondsInClearAirWithoutACollision) {
   const ScratchFolder folder;
@@ -59,9 +74,8 @@ TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsHeadway) {
   Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",
        "--set", "/acc/standstill_m=6.5", "--set", "/world/host_speed_mps=17.68", "--set",
        "/world/host_gap_m=17.23"});
-  const auto compared =
-      RunCommand({Program("fogline"), "compare", folder.File("second.lcm"),
-                  SourceDirectory() / "../shared/data/acc_platoon_a.csv", "--json"});
+  const auto compared = RunCommand({Program("fogline"), "compare", folder.File("second.lcm"),
+                                    "scenario/data/acc_platoon_a.csv", "--json"});
   ASSERT_EQ(compared.code, 0) << compared.err;
   const auto json = nlohmann::json::parse(compared.out);
   std::printf("behind the recorded leader: RMSE of speed %.3f m/s, of gap %.3f m\n",

@@ -292,7 +292,7 @@ void AddCompare(CLI::App& app, Action& action) {
       "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"
       "Examples:\n"
       "  fogline run scenario/recorded_lead.json --log lead.lcm\n"
-      "  fogline compare lead.lcm ../shared/data/acc_platoon_a.csv");
+      "  fogline compare lead.lcm scenario/data/acc_platoon_a.csv");
   verb->callback([&action, arguments] { action = [arguments] { return RunCompare(*arguments); }; });
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,21 +22,13 @@ struct Shipped {
   Scenario scenario;
 };
 
-/// Every scenario in a folder, by name, at most kMostSteps long. One whose recorded driving is not
-/// on this machine is left out.
+/// Every scenario in a folder, by name, at most kMostSteps long.
 inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder) {
   std::vector<Shipped> shipped;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& file = entry.path();
     if (file.extension() != ".json" || file.stem().extension() == ".schema") continue;
-    std::ifstream in(file);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    const Scenario plain = ParseScenario(text, file.string());
-    if (plain.lead.profile == LeadProfile::kRecorded &&
-        !std::filesystem::exists(file.parent_path() / plain.lead.recorded.file)) {
-      continue;
-    }
-    const std::int64_t steps = std::min(plain.steps, kMostSteps);
+    const std::int64_t steps = std::min(LoadScenario(file).steps, kMostSteps);
     shipped.push_back(
         {file.stem().string(), LoadScenario(file, {"/steps=" + std::to_string(steps)})});
   }
