@@ -46,7 +46,8 @@ class CatalogueBuilder {
                const ListSpec& list) {
     Add(name, fmt::format("a list of {} numbers", Range(list)), "[]", spec.doc).source =
         spec.source;
-    CatalogueBuilder(infos_, Pointer(name)).Add("*", Allowed(spec), "", spec.doc);
+    CatalogueBuilder(infos_, Pointer(name)).Add("*", Allowed(spec), "", spec.doc).source =
+        spec.source;
   }
   template <class T>
   void Section(std::string_view name, const T& section, std::string_view doc) {

@@ -18,13 +18,14 @@
 
 namespace fogline {
 
-/// A real number: closed range, unit ("" if none), meaning, where the default comes from.
+/// A real number: closed range, unit ("" if none), meaning, and the source of the default: a
+/// publication, a data sheet, or "our choice, because ...". No full stop at its end.
 struct NumberSpec {
   double min;
   double max;
   std::string_view unit;
   std::string_view doc;
-  std::string_view source = "";
+  std::string_view source;
 };
 
 /// An integer; in the file 3 and 3.0 are the same.
@@ -33,7 +34,7 @@ struct IntegerSpec {
   std::int64_t max;
   std::string_view unit;
   std::string_view doc;
-  std::string_view source = "";
+  std::string_view source;
 };
 
 /// A list: how many items it may have.

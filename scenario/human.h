@@ -42,12 +42,13 @@ struct FogSightParameters {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
-    visit.Number("contrast", self.contrast,
-                 {.min = 0.2,
-                  .max = 1,
-                  .unit = "",
-                  .doc = "C_0, contrast of the car ahead against the fog from nearby; 1 is black.",
-                  .source = "estimate for a grey car"});
+    visit.Number(
+        "contrast", self.contrast,
+        {.min = 0.2,
+         .max = 1,
+         .unit = "",
+         .doc = "C_0, contrast of the car ahead against the fog from nearby; 1 is black.",
+         .source = "our choice, because a grey car has about half the contrast of a black one"});
     visit.Number("contrast_threshold", self.contrast_threshold,
                  {.min = 0.001,
                   .max = 0.19,
@@ -59,7 +60,7 @@ struct FogSightParameters {
                   .max = 1,
                   .unit = "",
                   .doc = "Share of the outline's range up to which distances are judged rightly.",
-                  .source = "estimate: a clear outline wants a contrast of 0.1 to 0.2"});
+                  .source = "our choice, because a clear outline wants a contrast of 0.1 to 0.2"});
     visit.Number("lamp_distance_factor", self.lamp_distance_factor,
                  {.min = 1,
                   .max = 3,
@@ -72,12 +73,13 @@ struct FogSightParameters {
                   .unit = "cd",
                   .doc = "Intensity of the lamps ahead.",
                   .source = "tail lamp 5, rear fog lamp 150 to 300 (UN R7, R38)"});
-    visit.Number("illuminance_threshold_lx", self.illuminance_threshold_lx,
-                 {.min = 1e-8,
-                  .max = 1,
-                  .unit = "lx",
-                  .doc = "E_t, least illuminance at the eye that is seen.",
-                  .source = "1e-6 by night, 1e-4 to 1e-3 at dusk and by day"});
+    visit.Number(
+        "illuminance_threshold_lx", self.illuminance_threshold_lx,
+        {.min = 1e-8,
+         .max = 1,
+         .unit = "lx",
+         .doc = "E_t, least illuminance at the eye that is seen.",
+         .source = "our choice, because 1e-4 to 1e-3 are seen at dusk and by day, 1e-6 by night"});
     visit.Number("angular_rate_threshold_radps", self.angular_rate_threshold_radps,
                  {.min = 0,
                   .max = 0.1,
@@ -89,13 +91,13 @@ struct FogSightParameters {
                   .max = 5,
                   .unit = "m",
                   .doc = "Width of the car ahead.",
-                  .source = "estimate: a usual car"});
+                  .source = "our choice, because usual cars are about so wide"});
     visit.Number("lamp_separation_m", self.lamp_separation_m,
                  {.min = 0.3,
                   .max = 5,
                   .unit = "m",
                   .doc = "Distance between its lamps.",
-                  .source = "estimate: a usual car, 1.2 to 1.4"});
+                  .source = "our choice, because the lamps of usual cars are 1.2 to 1.4 m apart"});
   }
 };
 
@@ -152,13 +154,14 @@ struct AwarenessParameters {
                   .max = 1,
                   .unit = "",
                   .doc = "A_mon, where awareness ends up while he only monitors.",
-                  .source = "0.3 to 0.7 by what else he does; SUMO's ToC device: 0.5"});
-    visit.Number("fading_s", self.fading_s,
-                 {.min = 0.1,
-                  .max = 1e4,
-                  .unit = "s",
-                  .doc = "Time constant of the way there.",
-                  .source = "estimate: 30 to 120"});
+                  .source = "SUMO's ToC device: 0.5; 0.3 to 0.7 by what else the driver does"});
+    visit.Number(
+        "fading_s", self.fading_s,
+        {.min = 0.1,
+         .max = 1e4,
+         .unit = "s",
+         .doc = "Time constant of the way there.",
+         .source = "our choice, because 30 to 120 s are plausible; nothing measured is at hand"});
     visit.Number("recovery_ps", self.recovery_ps,
                  {.min = 0.001,
                   .max = 100,
@@ -170,13 +173,14 @@ struct AwarenessParameters {
                   .max = 3,
                   .unit = "s",
                   .doc = "Reaction time of an aware driver.",
-                  .source = "as the Human Driver Model's"});
+                  .source = "Treiber, Kesting & Helbing 2006 look at 0.5 to 1.1; the middle"});
     visit.Number("slow_reaction_time_s", self.slow_reaction_time_s,
                  {.min = 0,
                   .max = 3,
                   .unit = "s",
                   .doc = "What a driver without awareness needs more.",
-                  .source = "estimate"});
+                  .source = "our choice, because it nearly doubles the reaction time; nothing "
+                            "measured is at hand"});
   }
 };
 

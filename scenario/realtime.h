@@ -21,8 +21,8 @@ struct HealthSection {
                   .max = 100,
                   .unit = "periods",
                   .doc = "Without a new step for so long, an input is STALE: its last value holds.",
-                  .source = "one step and half a period of jitter; the first step that is missing "
-                            "shows"});
+                  .source = "our choice, because one step and half a period of jitter may pass; "
+                            "the first step that is missing shows"});
     visit.Number(
         "lost_periods", self.lost_periods,
         {.min = 1.1,
@@ -30,21 +30,24 @@ struct HealthSection {
          .unit = "periods",
          .doc = "Without a new step for so long, an input is LOST and the fallback begins; "
                 "never sooner than STALE.",
-         .source = "two steps and half a period of jitter, so one lost datagram is no "
-                   "failure; with half a period for scheduling within 3 periods"});
-    visit.Integer("recover_steps", self.recover_steps,
-                  {.min = 1,
-                   .max = 1000,
-                   .unit = "steps",
-                   .doc = "So many steps in time, one after the other, and the input is OK again.",
-                   .source = "slower to trust than to doubt: twice lost_periods"});
+         .source =
+             "our choice, because two steps and half a period of jitter may pass, so one lost "
+             "datagram is no failure; with half a period for scheduling within 3 periods"});
+    visit.Integer(
+        "recover_steps", self.recover_steps,
+        {.min = 1,
+         .max = 1000,
+         .unit = "steps",
+         .doc = "So many steps in time, one after the other, and the input is OK again.",
+         .source = "our choice, because trust should be slower than doubt: twice lost_periods"});
     visit.Number("deadline_share", self.deadline_share,
                  {.min = 0.05,
                   .max = 0.95,
                   .unit = "periods",
                   .doc = "The arbitrator waits so long after HOST_EGO for the step's other inputs, "
                          "then decides with what there is.",
-                  .source = "half for them, half for its command on its way to the vehicle"});
+                  .source = "our choice, because half is for them, half for its command on its way "
+                            "to the vehicle"});
   }
 };
 
@@ -67,8 +70,8 @@ struct MinimalRiskSection {
                   .max = 100,
                   .unit = "m/s3",
                   .doc = "Fastest change of the acceleration, at the end as at the beginning.",
-                  .source = "between Autoware's comfortable stop (0.3) and its emergency stop "
-                            "(1.5)"});
+                  .source = "our choice, because it is between Autoware's comfortable stop (0.3) "
+                            "and its emergency stop (1.5)"});
   }
 };
 

@@ -22,12 +22,13 @@ struct WorldSection {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
-    visit.Integer("substeps", self.substeps,
-                  {.min = 1,
-                   .max = 1000,
-                   .unit = "",
-                   .doc = "Integration steps within one simulation step.",
-                   .source = "1: the integration of a constant acceleration is exact"});
+    visit.Integer(
+        "substeps", self.substeps,
+        {.min = 1,
+         .max = 1000,
+         .unit = "",
+         .doc = "Integration steps within one simulation step.",
+         .source = "our choice, because one is exact: accelerations are constant within a step"});
     visit.Flag("end_on_collision", self.end_on_collision,
                "End the run at the step in which cars collide; otherwise it is only recorded.");
     visit.Number("vehicle_length_m", self.vehicle_length_m,
@@ -36,20 +37,34 @@ struct WorldSection {
                   .unit = "m",
                   .doc = "Length of every car.",
                   .source = "CommonRoad vehicle 2 (BMW 320i): 4.508 m"});
-    visit.Number("host_speed_mps", self.host_speed_mps,
-                 {.min = 0, .max = 70, .unit = "m/s", .doc = "Host's speed at step 0."});
-    visit.Number("host_gap_m", self.host_gap_m,
-                 {.min = 0.1,
-                  .max = 1000,
-                  .unit = "m",
-                  .doc = "Gap from the host to the preceding car at step 0, bumper to bumper."});
+    visit.Number(
+        "host_speed_mps", self.host_speed_mps,
+        {.min = 0,
+         .max = 70,
+         .unit = "m/s",
+         .doc = "Host's speed at step 0.",
+         .source = "our choice, because at the speed of the preceding car the gap is steady"});
+    visit.Number(
+        "host_gap_m", self.host_gap_m,
+        {.min = 0.1,
+         .max = 1000,
+         .unit = "m",
+         .doc = "Gap from the host to the preceding car at step 0, bumper to bumper.",
+         .source =
+             "our choice, because it is the ACC's own gap at 20 m/s: 1.5 s times 20 m/s and 3 m"});
     visit.Number("follower_speed_mps", self.follower_speed_mps,
-                 {.min = 0, .max = 70, .unit = "m/s", .doc = "Following car's speed at step 0."});
+                 {.min = 0,
+                  .max = 70,
+                  .unit = "m/s",
+                  .doc = "Following car's speed at step 0.",
+                  .source = "our choice, because at the speed of the host the gap is steady"});
     visit.Number("follower_gap_m", self.follower_gap_m,
                  {.min = 0.1,
                   .max = 1000,
                   .unit = "m",
-                  .doc = "Gap from the following car to the host at step 0, bumper to bumper."});
+                  .doc = "Gap from the following car to the host at step 0, bumper to bumper.",
+                  .source = "our choice, because it is the following ACC's own gap at 20 m/s: 1.5 "
+                            "s times 20 m/s and 3 m"});
   }
 };
 
@@ -71,10 +86,21 @@ struct SpeedBreakpoint {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
-    visit.Number("duration_s", self.duration_s,
-                 {.min = 1e-3, .max = 1e5, .unit = "s", .doc = "Time to reach speed_mps."});
+    visit.Number(
+        "duration_s", self.duration_s,
+        {.min = 1e-3,
+         .max = 1e5,
+         .unit = "s",
+         .doc = "Time to reach speed_mps.",
+         .source =
+             "our choice, because each breakpoint is the experiment's own; 1 s is a round number"});
     visit.Number("speed_mps", self.speed_mps,
-                 {.min = 0, .max = 70, .unit = "m/s", .doc = "Speed at the end of duration_s."});
+                 {.min = 0,
+                  .max = 70,
+                  .unit = "m/s",
+                  .doc = "Speed at the end of duration_s.",
+                  .source = "our choice, because with lead.speed_mps a breakpoint that names no "
+                            "speed changes none"});
   }
 };
 
@@ -86,11 +112,26 @@ struct SinusoidSection {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Number("amplitude_mps", self.amplitude_mps,
-                 {.min = 0, .max = 30, .unit = "m/s", .doc = "Amplitude; the speed stays >= 0."});
+                 {.min = 0,
+                  .max = 30,
+                  .unit = "m/s",
+                  .doc = "Amplitude; the speed stays >= 0.",
+                  .source = "our choice, because with period_s it asks for at most 0.63 m/s2, "
+                            "within the ACC's limits"});
     visit.Number("period_s", self.period_s,
-                 {.min = 0.5, .max = 1e4, .unit = "s", .doc = "Period of the sine."});
-    visit.Number("start_s", self.start_s,
-                 {.min = 0, .max = 1e5, .unit = "s", .doc = "Time at which the sine sets in."});
+                 {.min = 0.5,
+                  .max = 1e4,
+                  .unit = "s",
+                  .doc = "Period of the sine.",
+                  .source = "our choice, because with amplitude_mps it asks for at most 0.63 m/s2, "
+                            "within the ACC's limits"});
+    visit.Number(
+        "start_s", self.start_s,
+        {.min = 0,
+         .max = 1e5,
+         .unit = "s",
+         .doc = "Time at which the sine sets in.",
+         .source = "our choice, because a sine begins without a jump and needs no lead-in"});
   }
 };
 
@@ -102,7 +143,11 @@ struct EmergencyBrakeSection {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Number("start_s", self.start_s,
-                 {.min = 0, .max = 1e5, .unit = "s", .doc = "Time at which the braking sets in."});
+                 {.min = 0,
+                  .max = 1e5,
+                  .unit = "s",
+                  .doc = "Time at which the braking sets in.",
+                  .source = "our choice, because 10 s leave the gaps time to settle"});
     visit.Number("deceleration_mps2", self.deceleration_mps2,
                  {.min = 0.1,
                   .max = 12,
@@ -110,7 +155,11 @@ struct EmergencyBrakeSection {
                   .doc = "Deceleration of the leader.",
                   .source = "ASAM OSC-ALKS scenario 4.3_2: 6.0 m/s2"});
     visit.Number("final_speed_mps", self.final_speed_mps,
-                 {.min = 0, .max = 70, .unit = "m/s", .doc = "Speed at which the braking ends."});
+                 {.min = 0,
+                  .max = 70,
+                  .unit = "m/s",
+                  .doc = "Speed at which the braking ends.",
+                  .source = "our choice, because an emergency stop ends at rest"});
   }
 };
 
@@ -134,14 +183,19 @@ struct RecordedSection {
                "speeds_mps is given.");
     visit.Text("time_column", self.time_column, "Name of the column with the time in s.");
     visit.Text("speed_column", self.speed_column, "Name of the column with the speed in m/s.");
-    visit.Number(
-        "start_s", self.start_s,
-        {.min = -1e9, .max = 1e9, .unit = "s", .doc = "Time in the file at which step 0 lies."});
+    visit.Number("start_s", self.start_s,
+                 {.min = -1e9,
+                  .max = 1e9,
+                  .unit = "s",
+                  .doc = "Time in the file at which step 0 lies.",
+                  .source = "our choice, because most recordings count from 0; that of "
+                            "recorded_lead.json begins at 200 s"});
     visit.Numbers("speeds_mps", self.speeds_mps,
                   {.min = 0,
                    .max = 70,
                    .unit = "m/s",
-                   .doc = "Speed at steps 0, 1, 2 ..., instead of a file; the last one holds on."},
+                   .doc = "Speed at steps 0, 1, 2 ..., instead of a file; the last one holds on.",
+                   .source = "the recording that file names, or the scenario's own list"},
                   {.min_items = 0, .max_items = kMaxRecordedSpeeds, .doc = ""});
   }
 };
@@ -162,7 +216,9 @@ struct LeadSection {
                  {.min = 0,
                   .max = 70,
                   .unit = "m/s",
-                  .doc = "Speed at step 0 (of every profile but the recorded one)."});
+                  .doc = "Speed at step 0 (of every profile but the recorded one).",
+                  .source = "our choice, because the paper prints none; from 20 m/s on the limits "
+                            "of ISO 15622 are the tightest"});
     visit.List("breakpoints", self.breakpoints,
                {.min_items = 0, .max_items = 10'000, .doc = "For profile breakpoints."});
     visit.Section("sinusoid", self.sinusoid, "For profile sinusoid.");
@@ -222,18 +278,22 @@ struct FogSection {
                   .unit = "s",
                   .doc = "Length of the fog window; its end does not belong to it.",
                   .source = "Sourav & Cheng 2024: steps 190 to 300"});
-    visit.Number(
-        "bias_m", self.bias_m,
-        {.min = 0,
-         .max = 100,
-         .unit = "m",
-         .doc = "Model bias: how much too short the LiDAR's range is at level 1.",
-         .source = "chosen; the paper prints none, paper.json has one that is calibrated"});
-    visit.Number("visibility_m", self.visibility_m,
-                 {.min = 5,
-                  .max = 1e5,
+    visit.Number("bias_m", self.bias_m,
+                 {.min = 0,
+                  .max = 100,
                   .unit = "m",
-                  .doc = "Model beam: meteorological optical range (5 % contrast) at level 1."});
+                  .doc = "Model bias: how much too short the LiDAR's range is at level 1.",
+                  .source = "our choice, because the paper prints none, and 0.2 to 0.4 m meet its "
+                            "table; paper.json has one that is calibrated"});
+    visit.Number(
+        "visibility_m", self.visibility_m,
+        {.min = 5,
+         .max = 1e5,
+         .unit = "m",
+         .doc = "Model beam: meteorological optical range (5 % contrast) at level 1.",
+         .source =
+             "our choice, because at 60 m the fog's echo wins over a car 33 m ahead: the crossover "
+             "is at 23 m for a visibility of 50 m, at 31 m for 75 m (services/lidar)"});
     visit.Number("clear_visibility_m", self.clear_visibility_m,
                  {.min = 5,
                   .max = 1e5,
@@ -244,7 +304,8 @@ struct FogSection {
                  {.min = 0,
                   .max = 200,
                   .unit = "mm/h",
-                  .doc = "Rain rate throughout; attenuates the radar (ITU-R P.838-3)."});
+                  .doc = "Rain rate throughout; attenuates the radar (ITU-R P.838-3).",
+                  .source = "our choice, because the paper's weather is fog alone"});
   }
 };
 

@@ -27,11 +27,23 @@ struct PublishedRow {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Number("threshold", self.threshold,
-                 {.min = 0, .max = 1, .unit = "", .doc = "DoC threshold of the row."});
+                 {.min = 0,
+                  .max = 1,
+                  .unit = "",
+                  .doc = "DoC threshold of the row.",
+                  .source = "Sourav & Cheng 2024: 0.2, 0.5, 0.8"});
     visit.Number("si_pct", self.si_pct,
-                 {.min = -1000, .max = 100, .unit = "%", .doc = "Safety improvement."});
+                 {.min = -1000,
+                  .max = 100,
+                  .unit = "%",
+                  .doc = "Safety improvement.",
+                  .source = "Sourav & Cheng 2024: 100, 80.79, 10.23"});
     visit.Number("rhe_pct", self.rhe_pct,
-                 {.min = 0, .max = 100, .unit = "%", .doc = "Redundant human engagement."});
+                 {.min = 0,
+                  .max = 100,
+                  .unit = "%",
+                  .doc = "Redundant human engagement.",
+                  .source = "Sourav & Cheng 2024: 100, 0, 0"});
   }
 };
 
@@ -60,7 +72,7 @@ struct MeasuresSection {
                   .unit = "m",
                   .doc = "SI looks at fog steps whose compromised safety without traded control is "
                          "above this.",
-                  .source = "keeps the ratio away from 0/0"});
+                  .source = "our choice, because it keeps the ratio away from 0/0"});
     visit.Number("critical_ttc_s", self.critical_ttc_s,
                  {.min = 0.1,
                   .max = 60,
@@ -85,11 +97,14 @@ struct MeasuresSection {
                    {.min = least, .max = most, .unit = unit, .doc = doc, .source = source});
     };
     rss("rss_response_s", self.rss_response_s, 0, 5, "s", "RSS: response time of the car behind.",
-        "chosen: ad-rss-lib's set (1 s; 3.5, 4 and 8 m/s2) demands 66 m at 20 m/s, this one 22 m");
+        "our choice, because ad-rss-lib's set (1 s; 3.5, 4 and 8 m/s2) demands 66 m at 20 m/s, "
+        "this one 22 m");
     rss("rss_acceleration_mps2", self.rss_acceleration_mps2, 0, 10, "m/s2",
-        "RSS: acceleration of the car behind until it responds.", "chosen, as rss_response_s");
+        "RSS: acceleration of the car behind until it responds.",
+        "our choice, because of what rss_response_s says");
     rss("rss_least_braking_mps2", self.rss_least_braking_mps2, 0.5, 12, "m/s2",
-        "RSS: braking that the car behind answers with at least.", "chosen, as rss_response_s");
+        "RSS: braking that the car behind answers with at least.",
+        "our choice, because of what rss_response_s says");
     rss("rss_most_braking_mps2", self.rss_most_braking_mps2, 0.5, 12, "m/s2",
         "RSS: strongest braking of the car ahead.", "ad-rss-lib: 8");
     const auto madr = [&](std::string_view name, auto& value, double least, double most,
@@ -112,13 +127,16 @@ struct MeasuresSection {
                   .unit = "s",
                   .doc = "How long after a change of the authorities jerk counts as that of the "
                          "hand-over.",
-                  .source = "chosen: the longest ramp or gate by default, 2 s, and a car's lag"});
-    visit.Number("lidar_tolerance_m", self.lidar_tolerance_m,
-                 {.min = 1e-3,
-                  .max = 100,
-                  .unit = "m",
-                  .doc = "Error of a distance from which on it counts as wrong.",
-                  .source = "chosen: three times the accuracy of a Velodyne VLP-16, 3 cm"});
+                  .source = "our choice, because the longest ramp or gate by default is 2 s, and a "
+                            "car has a lag"});
+    visit.Number(
+        "lidar_tolerance_m", self.lidar_tolerance_m,
+        {.min = 1e-3,
+         .max = 100,
+         .unit = "m",
+         .doc = "Error of a distance from which on it counts as wrong.",
+         .source =
+             "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm"});
   }
 };
 
@@ -152,14 +170,19 @@ struct Scenario {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
     visit.Integer("version", self.version,
-                  {.min = 1, .max = 1, .unit = "", .doc = "Version of this file format."});
+                  {.min = 1,
+                   .max = 1,
+                   .unit = "",
+                   .doc = "Version of this file format.",
+                   .source = "our choice, because formats count from 1"});
     visit.Text("title", self.title, "One line that names the experiment.");
     visit.Text("description", self.description, "What it is for, and where its numbers come from.");
     visit.Integer("seed", self.seed,
                   {.min = 0,
                    .max = 9'007'199'254'740'991,
                    .unit = "",
-                   .doc = "Seed of every random number of the run."});
+                   .doc = "Seed of every random number of the run.",
+                   .source = "our choice, because seeds count from 1; the paper names none"});
     visit.Integer("steps", self.steps,
                   {.min = 1,
                    .max = 10'000'000,

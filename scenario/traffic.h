@@ -75,27 +75,33 @@ struct FollowersSection {
                    .max = kMaxFollowers,
                    .unit = "",
                    .doc = "How many cars follow the host.",
-                   .source = "1: the paper's; at most what a datagram of TRUTH holds"});
+                   .source = "Sourav & Cheng 2024: 1; at most what a datagram of TRUTH holds"});
     visit.Choice("driver", self.driver, "Who drives them.");
     visit.Number("acc_share", self.acc_share,
                  {.min = 0,
                   .max = 1,
                   .unit = "",
                   .doc = "For driver drawn: probability that a car has the ACC.",
-                  .source = "chosen: half and half"});
+                  .source = "our choice, because half and half favours neither"});
     visit.Choice("style", self.style, "For a person: of which temper.");
     visit.Number("aggressive_share", self.aggressive_share,
                  {.min = 0.001,
                   .max = 1000,
                   .unit = "",
                   .doc = "For style drawn: how common it is, beside the other two shares.",
-                  .source = "chosen: all three alike"});
-    visit.Number(
-        "normal_share", self.normal_share,
-        {.min = 0.001, .max = 1000, .unit = "", .doc = "For style drawn, as aggressive_share."});
-    visit.Number(
-        "cautious_share", self.cautious_share,
-        {.min = 0.001, .max = 1000, .unit = "", .doc = "For style drawn, as aggressive_share."});
+                  .source = "our choice, because all three are to be alike"});
+    visit.Number("normal_share", self.normal_share,
+                 {.min = 0.001,
+                  .max = 1000,
+                  .unit = "",
+                  .doc = "For style drawn, as aggressive_share.",
+                  .source = "our choice, because all three are to be alike"});
+    visit.Number("cautious_share", self.cautious_share,
+                 {.min = 0.001,
+                  .max = 1000,
+                  .unit = "",
+                  .doc = "For style drawn, as aggressive_share.",
+                  .source = "our choice, because all three are to be alike"});
     visit.Choice("sight", self.sight,
                  "For people: what they see; with fog, by section human.fog_sight.");
     visit.Choice("safety_model", self.safety_model,

@@ -45,12 +45,15 @@ struct GradePoint {
                  {.min = -1e6,
                   .max = 1e9,
                   .unit = "m",
-                  .doc = "Place along the lane; the host starts at 0. Places must increase."});
-    visit.Number("grade", self.grade,
-                 {.min = -0.3,
-                  .max = 0.3,
-                  .unit = "",
-                  .doc = "Rise per horizontal length, positive uphill: 0.05 is 5 %."});
+                  .doc = "Place along the lane; the host starts at 0. Places must increase.",
+                  .source = "our choice, because the host starts at 0"});
+    visit.Number(
+        "grade", self.grade,
+        {.min = -0.3,
+         .max = 0.3,
+         .unit = "",
+         .doc = "Rise per horizontal length, positive uphill: 0.05 is 5 %.",
+         .source = "our choice, because a road is level unless the experiment says otherwise"});
   }
 };
 

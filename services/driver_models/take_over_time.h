@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scenario/engagement.h"
+#include "scenario/take_over.h"
 #include "services/runtime/random.h"
 
 namespace fogline {

@@ -157,6 +157,12 @@ TEST(CheckTest, ExplainsAField) {
   EXPECT_EQ(RunCheck({"--explain", "/fog/no"}).code, 2);
 }
 
+TEST(CheckTest, ExplainsWhereANumberComesFrom) {
+  const Outcome outcome = RunCheck({"--explain", "/lidar/bias_m"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, testing::HasSubstr("\n  Source:  our choice, because "));
+}
+
 TEST(CheckTest, RefusesACommandLineWithoutSense) {
   EXPECT_EQ(RunCheck({}).code, 2);
   EXPECT_EQ(RunCheck({"--schema", "--print", "scenario/paper.json"}).code, 2);
