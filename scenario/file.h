@@ -12,7 +12,12 @@ struct FileText {
   std::string error;
 };
 
-/// The bytes of a file of at most `max_bytes`.
+/// `; did you mean "scenario/paper.json"?` for a name of which there is no file: the one in the
+/// same folder that is spelt alike. Nothing if there is none.
+std::string DidYouMeanFile(const std::filesystem::path& file);
+
+/// The bytes of a file of at most `max_bytes`. The error of a file that is not there has the name
+/// that may be meant.
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes);
 
 }  // namespace fogline

@@ -16,6 +16,7 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
 
 namespace fogline {
@@ -112,7 +113,8 @@ EventLogReader::EventLogReader(const std::filesystem::path& file) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat info {};
   if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
-    const std::string why = fd >= 0 ? "not a regular file" : std::strerror(errno);
+    std::string why = fd >= 0 ? "not a regular file" : std::strerror(errno);
+    if (fd < 0 && errno == ENOENT) why += DidYouMeanFile(file);
     if (fd >= 0) close(fd);
     throw InputError(fmt::format("{}: error: cannot read the log: {}", file.string(), why));
   }
