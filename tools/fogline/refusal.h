@@ -10,6 +10,9 @@ namespace fogline {
 /// "fogline", or "fogline VERB" once the verb is known: what every message begins with.
 std::string CommandName(const CLI::App& app);
 
+/// `no verb "tabel"; did you mean "table"?`
+std::string NoSuchVerb(const CLI::App& app, const std::string& word);
+
 /// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error);
 
