@@ -96,8 +96,11 @@ int Main(int argc, char** argv) {
   arguments.AddTo(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kStopped : kBadUsage;
+    fmt::print(stderr, "fogline-relay: error: {} (see fogline-relay --help)\n", error.what());
+    return kBadUsage;
   }
   try {
     return RunRelay(arguments);
