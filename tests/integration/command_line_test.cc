@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 namespace fogline::test {
 namespace {
 
+using ::testing::Ge;
 using ::testing::HasSubstr;
 using ::testing::Le;
 using ::testing::SizeIs;
@@ -53,27 +55,50 @@ std::string ErrorOf(std::vector<std::string> arguments) {
   return outcome.err;
 }
 
-TEST(CommandLineTest, ShowsHelpWithExamplesAndNoLongLineForEveryVerb) {
-  const std::vector<std::string> verbs = Verbs();
-  ASSERT_THAT(verbs, SizeIs(18));
-  std::vector<std::vector<std::string>> commands{{Program("fogline")}};
-  for (const std::string& verb : verbs) commands.push_back({Program("fogline"), verb});
-  for (const std::vector<std::string>& command : commands) {
-    SCOPED_TRACE(command.back());
-    const std::string help = HelpOf(command);
-    EXPECT_THAT(help, HasSubstr("\nExample"));
-    for (const std::string& line : Lines(help)) EXPECT_THAT(line, SizeIs(Le(100U)));
-  }
+/// What every help text has: exit codes, at least one example, no line too long for a terminal.
+void ExpectWholeHelp(const std::vector<std::string>& command) {
+  SCOPED_TRACE(command.front() + " " + command.back());
+  const std::string help = HelpOf(command);
+  EXPECT_THAT(help, HasSubstr("\nExit codes: 0 "));
+  EXPECT_THAT(help, HasSubstr(", 2 bad "));
+  EXPECT_THAT(help, HasSubstr("\nExample"));
+  for (const std::string& line : Lines(help)) EXPECT_THAT(line, SizeIs(Le(100U)));
 }
 
-TEST(CommandLineTest, ShowsHelpWithAnExampleAndNoLongLineForEveryServiceProgram) {
-  for (const RoleInfo& role : kRoles) {
-    SCOPED_TRACE(role.name);
-    const std::string program = "fogline-" + std::string(role.name);
-    const std::string help = HelpOf({Program(program)});
-    EXPECT_THAT(help, HasSubstr("\nExample"));
-    for (const std::string& line : Lines(help)) EXPECT_THAT(line, SizeIs(Le(100U)));
+TEST(CommandLineTest, ShowsHelpWithExitCodesAndExamplesAndNoLongLineForEveryVerb) {
+  const std::vector<std::string> verbs = Verbs();
+  ASSERT_THAT(verbs, SizeIs(Ge(19U)));
+  ExpectWholeHelp({Program("fogline")});
+  for (const std::string& verb : verbs) ExpectWholeHelp({Program("fogline"), verb});
+}
+
+TEST(CommandLineTest, ShowsHelpWithExitCodesAndAnExampleAndNoLongLineForEveryOtherProgram) {
+  for (const RoleInfo& role : kRoles)
+    ExpectWholeHelp({Program(fmt::format("fogline-{}", role.name))});
+  ExpectWholeHelp({Program("fogline-relay")});
+}
+
+TEST(CommandLineTest, ShowsTheHelpWithoutAVerbAndSucceedsAsCargoDoes) {
+  const Outcome bare = RunCommand({Program("fogline")});
+  EXPECT_EQ(bare.code, 0);
+  EXPECT_EQ(bare.out, HelpOf({Program("fogline")}));
+  EXPECT_EQ(bare.err, "");
+}
+
+TEST(CommandLineTest, ShowsTheSameHelpByTheVerbHelpAsByTheOption) {
+  const auto help = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {Program("fogline"), "help"});
+    const Outcome outcome = RunCommand(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_EQ(help({}), HelpOf({Program("fogline")}));
+  for (const std::string& verb : Verbs()) {
+    EXPECT_EQ(help({verb}), HelpOf({Program("fogline"), verb}));
   }
+  EXPECT_EQ(
+      ErrorOf({"help", "tabel"}),
+      "fogline help: error: no verb \"tabel\"; did you mean \"table\"? (see fogline --help)\n");
 }
 
 TEST(CommandLineTest, GivesTheRecorderItsLogInItsExample) {
@@ -84,7 +109,6 @@ TEST(CommandLineTest, NamesAVerbThatIsNoneAndTheOneThatMayBeMeant) {
   EXPECT_EQ(ErrorOf({"tabel", "scenario/paper.json", "--seeds", "1:3"}),
             "fogline: error: no verb \"tabel\"; did you mean \"table\"? (see fogline --help)\n");
   EXPECT_EQ(ErrorOf({"levitate"}), "fogline: error: no verb \"levitate\" (see fogline --help)\n");
-  EXPECT_EQ(ErrorOf({}), "fogline: error: no verb is given (see fogline --help)\n");
 }
 
 TEST(CommandLineTest, NamesAnOptionThatIsNoneAndTheOneThatMayBeMeant) {
@@ -95,6 +119,79 @@ TEST(CommandLineTest, NamesAnOptionThatIsNoneAndTheOneThatMayBeMeant) {
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "scenario/other.json"}),
             "fogline run: error: \"scenario/other.json\" is one argument too many "
             "(see fogline run --help)\n");
+}
+
+TEST(CommandLineTest, SaysHowAFieldIsSetThatIsTakenForAnOption) {
+  const std::string set = "; a field of the scenario is set with --set ";
+  EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--threshold", "0.8"}),
+            "fogline run: error: no option \"--threshold\"" + set +
+                "/arbitrator/threshold=0.8 (see fogline run --help)\n");
+  EXPECT_EQ(ErrorOf({"sweep", "scenario/paper.json", "--policy=none"}),
+            "fogline sweep: error: no option \"--policy\"" + set +
+                "/arbitrator/policy=none (see fogline sweep --help)\n");
+  // Several sections have the name; a value that is none of the field's is not repeated.
+  EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--end-on-collision", "scenario/x.json"}),
+            "fogline run: error: no option \"--end-on-collision\"" + set +
+                "/world/end_on_collision=VALUE (see fogline run --help)\n");
+  EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--bias", "0.3"}),
+            "fogline run: error: no option \"--bias\"" + set +
+                "/fog/bias_m=0.3 or /radar/bias_m or /lidar/bias_m (see fogline run --help)\n");
+  // A verb that sets no fields has no such hint.
+  EXPECT_EQ(ErrorOf({"metrics", "x.lcm", "--threshold", "0.8"}),
+            "fogline metrics: error: no option \"--threshold\" (see fogline metrics --help)\n");
+  for (const char* dashes : {"-", "---", "-x"}) {
+    EXPECT_THAT(ErrorOf({"run", "scenario/paper.json", dashes}), HasSubstr("fogline run: error: "));
+  }
+}
+
+TEST(CommandLineTest, NamesTheVerbThatHasAnOption) {
+  EXPECT_EQ(ErrorOf({"check", "scenario/paper.json", "--pace", "1"}),
+            "fogline check: error: no option \"--pace\"; it is an option of fogline run "
+            "(see fogline check --help)\n");
+  EXPECT_EQ(ErrorOf({"--json", "run", "scenario/paper.json"}),
+            "fogline: error: no option \"--json\"; an option stands after its verb "
+            "(see fogline --help)\n");
+}
+
+TEST(CommandLineTest, NamesTheFileThatMayBeMeant) {
+  const std::string missing = ": error: cannot be read: No such file or directory; did you mean ";
+  for (const char* verb : {"run", "table", "sweep", "check"}) {
+    EXPECT_EQ(ErrorOf({verb, "scenario/papr.json"}),
+              "scenario/papr.json" + missing + "\"scenario/paper.json\"?\n");
+  }
+  EXPECT_EQ(ErrorOf({"calibrate", "scenario/paper", "--free", "/fog/bias_m=0:1"}),
+            "scenario/paper" + missing + "\"scenario/paper.json\"?\n");
+  EXPECT_EQ(ErrorOf({"report", "--curves", "scenario/densefog.json"}),
+            "scenario/densefog.json" + missing + "\"scenario/dense_fog.json\"?\n");
+}
+
+TEST(CommandLineTest, NamesTheLogThatMayBeMeant) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("paper.lcm");
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=2",
+                        "--transport", "direct", "--log", log})
+                .code,
+            0);
+  const std::string wrong = folder.File("papre.lcm");
+  const std::string error = wrong +
+                            ": error: cannot read the log: No such file or directory; did " +
+                            "you mean \"" + log + "\"?\n";
+  for (const char* verb : {"metrics", "digest", "events", "report"}) {
+    EXPECT_EQ(ErrorOf({verb, wrong}), error);
+  }
+  EXPECT_EQ(ErrorOf({"diff", log, wrong}), error);
+  EXPECT_EQ(ErrorOf({"replay", wrong, "--all"}), error);
+  EXPECT_EQ(ErrorOf({"export", wrong, "--out", folder.File("out")}), error);
+  EXPECT_EQ(ErrorOf({"compare", wrong, "scenario/data/acc_platoon_a.csv"}), error);
+}
+
+TEST(CommandLineTest, BeginsARefusalOfTheRelayWithItsName) {
+  const Outcome outcome = RunCommand({Program("fogline-relay"), "--bogus"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err,
+            "fogline-relay: error: The following argument was not expected: --bogus "
+            "(see fogline-relay --help)\n");
 }
 
 TEST(CommandLineTest, BeginsEveryRefusalWithTheVerb) {

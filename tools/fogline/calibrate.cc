@@ -55,6 +55,7 @@ struct CalibrateArguments {
     verb.add_option("--out", out, "Write the scenario with the values that were found");
     verb.add_flag("--force", force, "Replace the file of --out if it exists");
     verb.add_flag("--json", json, "Print as JSON");
+    ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
         "Makes small: the squared differences of mean SI and mean RHE from the target, in points,\n"
         "and SI's variance over the seeds, weighted. Equal arguments give equal results. Ctrl-C\n"

@@ -10,6 +10,7 @@
 
 #include "scenario/loader.h"
 #include "tools/fogline/experiment.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -89,10 +90,10 @@ void AddCheck(CLI::App& app, Action& action) {
   verb->add_option("--explain", options->explain, "Print a field's meaning, range, default")
       ->type_name("/POINTER");
   verb->add_flag("--json", options->json, "Print mistakes as a JSON list");
+  ShowExitCodes(*verb, {.done = "every file is good"});
   verb->footer(
       "Prints `FILE: ok` for a good file; otherwise every mistake as\n"
-      "`FILE:LINE:COLUMN: error: /pointer: ...` on stderr.\n"
-      "Exit codes: 0 all good, 2 a file has mistakes.\n\n"
+      "`FILE:LINE:COLUMN: error: /pointer: ...` on stderr.\n\n"
       "Examples:\n"
       "  fogline check scenario/paper.json scenario/dense_fog.json\n"
       "  fogline check --print --set /arbitrator/threshold=0.8 scenario/paper.json\n"

@@ -18,6 +18,7 @@
 #include "scenario/json.h"
 #include "scenario/wording.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/whole_file.h"
 
@@ -287,6 +288,7 @@ void AddCompare(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "Write both step by step into this CSV file");
   verb->add_flag("--json", arguments->json, "Print as JSON");
+  ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
   verb->footer(
       "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
       "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"

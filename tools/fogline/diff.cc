@@ -7,6 +7,7 @@
 
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/difference.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -76,9 +77,8 @@ void AddDiff(CLI::App& app, Action& action) {
   verb->add_option("A", arguments->a, "Event log")->required();
   verb->add_option("B", arguments->b, "Event log")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  verb->footer(
-      "Exit code 0 when the runs are equal, 1 when they differ or are not complete.\n\n"
-      "Example:\n  fogline diff logs/paper-1.lcm logs/paper-2.lcm");
+  ShowExitCodes(*verb, {.done = "equal runs", .check_failed = "they differ or are not complete"});
+  verb->footer("Example:\n  fogline diff logs/paper-1.lcm logs/paper-2.lcm");
   verb->callback([&action, arguments] { action = [arguments] { return RunDiff(*arguments); }; });
 }
 

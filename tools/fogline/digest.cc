@@ -7,6 +7,7 @@
 #include "services/recorder/run_log.h"
 #include "services/runtime/digest.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -50,7 +51,8 @@ void AddDigest(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<DigestArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  verb->footer("Exit code 1 when a log is not complete.\n\nExample:\n  fogline digest logs/*.lcm");
+  ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
+  verb->footer("Example:\n  fogline digest logs/*.lcm");
   verb->callback([&action, arguments] { action = [arguments] { return RunDigest(*arguments); }; });
 }
 

@@ -10,6 +10,7 @@
 #include "scenario/loader.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/doctor/findings.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -20,7 +21,7 @@ using Level = Finding::Level;
 constexpr const char* kExplanation =
     R"(Each finding is a line: ok, warning (it works, but slower or without some convenience) or problem
 (runs will fail), what was found, and after -> what to do. Nothing is changed on the machine, and no
-process is ended. Takes about two seconds. Exit codes: 0 no problem, 1 a problem, 2 bad input.
+process is ended. Takes about two seconds.
 
 Examples:
   fogline doctor
@@ -33,6 +34,7 @@ struct DoctorArguments {
         ->envname("LCM_DEFAULT_URL")
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the findings as JSON");
+    ShowExitCodes(verb, {.done = "no problem", .check_failed = "a problem"});
     verb.footer(kExplanation);
   }
 

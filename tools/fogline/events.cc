@@ -10,6 +10,7 @@
 #include "services/arbitrator/take_over_log.h"
 #include "services/recorder/run_log.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -128,14 +129,14 @@ void AddEvents(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<EventsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
+  ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "What a data recorder would keep: changes of state, requests to take over and their\n"
       "escalation, acknowledgements, transfers, first effective inputs, manoeuvres. Then the "
       "times\n"
       "of each request, from the start of the run. Where the driver need not be asked (take_over\n"
-      "with mode instant) there are transfers and nothing else. Exit code 1 when a log is not\n"
-      "complete.\n"
-      "\nExamples:\n"
+      "with mode instant) there are transfers and nothing else.\n\n"
+      "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"
       "  fogline events logs/asked.lcm\n"

@@ -10,6 +10,7 @@
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/whole_file.h"
 
@@ -72,13 +73,14 @@ void AddExport(CLI::App& app, Action& action) {
       ->required();
   verb->add_flag("--force", arguments->force, "Replace files that exist");
   verb->add_flag("--json", arguments->json, "Print the names of the files as JSON");
+  ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
   verb->footer(
       "Everything that the log has, to the last bit, in the units of the messages (lcmtypes); the\n"
       "columns of a list are state.0, state.1 and so on, a matrix row by row. Time is "
       "header.utime,\n"
       "in microseconds. In a MAT-file each channel is a struct: TRUTH.host_gap_m has a row for "
       "each\n"
-      "message. Exit code 1 when the log is not complete; what there is is written.\n\n"
+      "message. Of a log that is not complete, all that it has is written.\n\n"
       "Examples:\n"
       "  fogline export logs/paper-1.lcm --out paper-1\n"
       "  fogline export logs/paper-1.lcm --out paper-1.mat\n"

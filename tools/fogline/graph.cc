@@ -6,6 +6,7 @@
 
 #include "services/graph.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -76,6 +77,7 @@ void AddGraph(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("graph", "Print the roles and channels");
   const auto json = std::make_shared<bool>(false);
   verb->add_flag("--json", *json, "Print as JSON instead of Markdown tables");
+  ShowExitCodes(*verb);
   verb->footer("Example:\n  fogline graph");
   verb->callback([&action, json] {
     action = [json] {

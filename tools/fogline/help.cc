@@ -43,4 +43,18 @@ std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
   return text;
 }
 
+void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
+  std::string text = fmt::format("Exit codes: 0 {}", meanings.done);
+  if (!meanings.check_failed.empty()) text += fmt::format(", 1 {}", meanings.check_failed);
+  text += ", 2 bad input, 3 failure at run time";
+  if (meanings.interruptible) text += ", 130 interrupted";
+  command.footer([text] { return text + ".\n"; });
+}
+
+std::string HelpText(const CLI::App& app, const CLI::App& of) {
+  // Not of.help(), which is that of the verb on the command line.
+  const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
+  return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
+}
+
 }  // namespace fogline

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -20,5 +21,19 @@ class HelpFormatter : public CLI::Formatter {
   HelpFormatter();
   std::string make_option_desc(const CLI::Option* option) const override;
 };
+
+/// What the exit codes of a verb mean. Every verb may end with 2, bad input, and 3, failure at run
+/// time.
+struct ExitMeanings {
+  std::string_view done = "done";
+  std::string_view check_failed = "";  // "": the verb checks nothing
+  bool interruptible = false;
+};
+
+/// Begins the footer of a help text with the exit codes; footer() says the rest.
+void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
+
+/// The help of `app`, or of one of its verbs.
+std::string HelpText(const CLI::App& app, const CLI::App& of);
 
 }  // namespace fogline

@@ -1,17 +1,37 @@
 // fogline keygen: a key for signed traffic.
 #include <memory>
+#include <string>
 
-#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "services/runtime/seal.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
+namespace {
+
+struct KeygenArguments {
+  std::string file;
+  bool json = false;
+};
+
+int Keygen(const KeygenArguments& arguments) {
+  SealKey::Create(arguments.file);
+  if (arguments.json) PrintJson(nlohmann::ordered_json{{"file", arguments.file}}.dump(2));
+  return kDone;
+}
+
+}  // namespace
 
 void AddKeygen(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("keygen", "Make a key for signed traffic (run --key)");
-  const auto file = std::make_shared<std::string>();
-  verb->add_option("FILE", *file, "Where to write it; an existing file is refused")->required();
+  const auto arguments = std::make_shared<KeygenArguments>();
+  verb->add_option("FILE", arguments->file, "Where to write it; an existing file is refused")
+      ->required();
+  verb->add_flag("--json", arguments->json, "Print the name of the file as JSON");
+  ShowExitCodes(*verb);
   verb->footer(
       "The file has mode 0600; one that others can read or change is refused. Every process\n"
       "of a run needs the same key, on every machine.\n\n"
@@ -19,12 +39,7 @@ void AddKeygen(CLI::App& app, Action& action) {
       "  fogline keygen lab.key\n"
       "  fogline run scenario/paper.json --key lab.key\n"
       "  FOGLINE_KEY=lab.key fogline-driver");
-  verb->callback([&action, file] {
-    action = [file] {
-      SealKey::Create(*file);
-      return kDone;
-    };
-  });
+  verb->callback([&action, arguments] { action = [arguments] { return Keygen(*arguments); }; });
 }
 
 }  // namespace fogline

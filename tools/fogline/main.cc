@@ -6,8 +6,8 @@
 int main(int argc, char** argv) {
   using namespace fogline;
   BecomeOwnProgram(argc, argv);
-  return RunVerbs(
-      argc, argv,
-      {AddRun, AddTable, AddSweep, AddOwnPrograms, AddMetrics, AddCompare, AddReport, AddDigest,
-       AddDiff, AddEvents, AddReplay, AddExport, AddGraph, AddCheck, AddTop, AddDoctor, AddKeygen});
+  return RunVerbs(argc, argv,
+                  {AddRun, AddTable, AddSweep, AddOwnPrograms, AddMetrics, AddCompare, AddReport,
+                   AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph, AddCheck, AddTop,
+                   AddDoctor, AddKeygen, AddHelp});
 }

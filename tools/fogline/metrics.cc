@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/verbs.h"
 
@@ -54,6 +55,7 @@ void AddMetrics(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<MetricsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
+  ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "The safety improvement SI appears for runs whose pair without traded control (policy\n"
       "none) is among the logs.\n\nExamples:\n  fogline metrics logs/paper-1.lcm\n"

@@ -22,15 +22,16 @@ void AddOwnPrograms(CLI::App& app, Action&) {
 }
 
 void BecomeOwnProgram(int argc, char** argv) {
-  if (argc < 2 || std::ranges::find(kOwnPrograms, std::string_view(argv[1]), [](const auto& own) {
-                    return std::string_view(own.verb);
-                  }) == kOwnPrograms.end()) {
-    return;
-  }
-  const std::string verb = argv[1];
+  if (argc < 2) return;
+  const bool help = argc == 3 && std::string_view(argv[1]) == "help";
+  const std::string verb = argv[help ? 2 : 1];
+  const auto is_verb = [&](const OwnProgram& own) { return own.verb == verb; };
+  if (std::ranges::none_of(kOwnPrograms, is_verb)) return;
   std::string name = "fogline-" + verb;
+  std::string option = "--help";
   const std::string program = ProgramBeside(name).string();
   argv[1] = name.data();
+  if (help) argv[2] = option.data();
   execv(program.c_str(), argv + 1);
   fmt::print(stderr, "fogline {}: error: {}: {}{}\n", verb, program, std::strerror(errno),
              errno == ENOENT ? "; it is built by: ninja -C build " + name : "");

@@ -20,8 +20,9 @@ inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
 /// Adds them to the list of verbs, for help and spelling; they have no action here.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
-/// Becomes the program of the verb argv[1] if it is one of these. Returns if not. A program that
-/// cannot be started is named on stderr and ends the process with kRunFailed.
+/// Becomes the program of the verb argv[1], or argv[2] after "help", if it is one of these. Returns
+/// if not. A program that cannot be started is named on stderr and ends the process with
+/// kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
 }  // namespace fogline

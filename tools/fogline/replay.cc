@@ -11,6 +11,7 @@
 
 #include "scenario/wording.h"
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/role_replay.h"
 #include "tools/fogline/verbs.h"
 
@@ -143,13 +144,12 @@ void AddReplay(CLI::App& app, Action& action) {
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
   verb->add_flag("--json", arguments->json, "Print as JSON");
+  ShowExitCodes(*verb, {.check_failed = "outputs differ or the log is incomplete"});
   verb->footer(
       "Each step's inputs are the log's, so what one role computes otherwise does not carry over\n"
       "to another. Scenario and seed are the log's, too. Outputs are compared bit by bit: a log "
       "of\n"
       "before a change tells which steps of which role the change has altered.\n\n"
-      "Exit code 0 when all outputs are the log's, 1 when one differs or the log is not complete,\n"
-      "2 when the log is none or is of a run in real time.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --log before.lcm\n"
       "  fogline replay before.lcm --role fusion      # after a change of the fusion\n"

@@ -15,8 +15,10 @@
 #include <vector>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/threshold_rows.h"
@@ -37,6 +39,7 @@ struct ReportArguments {
   std::string seeds = "1:200";
   std::filesystem::path output = "report.html";
   std::filesystem::path png;
+  bool json = false;
 };
 
 /// Only a page may be replaced: "-o *.lcm" must not cost a log. @throws InputError
@@ -179,6 +182,18 @@ ReportCurves ComputeCurves(const ReportArguments& arguments) {
   return curves;
 }
 
+nlohmann::ordered_json ToJson(const ReportArguments& arguments, std::span<const LoggedRun> runs) {
+  nlohmann::ordered_json json{{"report", arguments.output.string()},
+                              {"figures", nullptr},
+                              {"runs", nlohmann::ordered_json::array()}};
+  if (!arguments.png.empty()) json["figures"] = arguments.png.string();
+  for (const LoggedRun& run : runs) {
+    json["runs"].push_back(
+        {{"log", run.result.log.string()}, {"seed", run.result.seed}, {"complete", run.complete}});
+  }
+  return json;
+}
+
 int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
@@ -204,7 +219,11 @@ int RunReport(const ReportArguments& arguments) {
     WritePngFigures(arguments.png, pages);
     if (curves) WritePngCurves(arguments.png, *curves);
   }
-  fmt::print("{}\n", arguments.output.string());
+  if (arguments.json) {
+    PrintJson(ToJson(arguments, runs).dump(2));
+  } else {
+    fmt::print("{}\n", arguments.output.string());
+  }
   return kDone;
 }
 
@@ -232,6 +251,8 @@ void AddReport(CLI::App& app, Action& action) {
                    "HTML file to write; replaces a page, and no other file")
       ->capture_default_str();
   verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");
+  verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
+  ShowExitCodes(*verb, {.interruptible = true});
   verb->footer(
       "Prints the name of the page, which needs no network. Its table appears for runs whose pair\n"
       "without traded control is among the logs. Curves are computed on all cores: means of the\n"

@@ -63,6 +63,7 @@ struct RunArguments {
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
+    ShowExitCodes(verb, {.interruptible = true});
     verb.footer(kExamples);
   }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/own_program.h"
 #include "tools/fogline/progress.h"
@@ -199,6 +200,7 @@ void AddStudy(CLI::App& app, Action& action) {
   for (const Study& study : Studies()) {
     table += fmt::format("  {:<11}{} ({} seeds)\n", study.name, study.title, study.seeds.count());
   }
+  ShowExitCodes(*verb, {.interruptible = true});
   verb->footer(fmt::format(
       "Studies:\n{}\n"
       "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with findings, figures and tables (of "

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
@@ -34,6 +35,7 @@ struct SweepArguments {
     }
     verb.add_flag("--force", force, "Replace the file even if it is of another sweep");
     verb.add_flag("--json", json, "Print runs, time and rate as JSON");
+    ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
         "Rows stand in a defined order whatever --jobs is. A sweep that was stopped or killed "
         "goes\n"

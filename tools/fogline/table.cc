@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/progress.h"
@@ -29,6 +30,7 @@ struct TableArguments {
         ->excludes("--seed");
     verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
+    ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
         "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
         "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"

@@ -51,6 +51,7 @@ struct TopArguments {
         ->capture_default_str();
     verb.add_flag("--once", once, "Print what was seen in one interval, and quit");
     verb.add_flag("--json", json, "Print a JSON document for every interval instead of a table");
+    ShowExitCodes(verb, {.interruptible = true});
     verb.footer(kExplanation);
   }
 

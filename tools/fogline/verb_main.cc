@@ -46,11 +46,11 @@ int Run(const CLI::App& app, const Action& action) {
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
   app.set_version_flag("--version", VersionText());
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.formatter(std::make_shared<HelpFormatter>());
+  ShowExitCodes(app, {.check_failed = "a check failed", .interruptible = true});
   app.footer(
-      "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 failure at run time, "
-      "130 interrupted.\n`fogline VERB --help` explains a verb, with examples.\n\n"
+      "`fogline VERB --help` or `fogline help VERB` explains a verb, with examples.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json\n"
       "  fogline table --help");
@@ -63,6 +63,12 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "{}\n", Refusal(app, error));
     return kBadInput;
+  }
+  if (!action) {  // no verb: the help, and exit code 0, as cargo does
+    action = [&app] {
+      fmt::print("{}", HelpText(app, app));
+      return kDone;
+    };
   }
   return Run(app, action);
 }

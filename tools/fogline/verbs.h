@@ -36,5 +36,6 @@ void AddCheck(CLI::App& app, Action& action);
 void AddTop(CLI::App& app, Action& action);
 void AddDoctor(CLI::App& app, Action& action);
 void AddKeygen(CLI::App& app, Action& action);
+void AddHelp(CLI::App& app, Action& action);
 
 }  // namespace fogline

@@ -1,0 +1,114 @@
+// --json of every verb that reports: one JSON document on stdout and nothing else.
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The verbs, as `fogline --help` lists them.
+std::vector<std::string> Verbs() {
+  std::vector<std::string> verbs;
+  const std::string help = RunCommand({Program("fogline"), "--help"}).out;
+  std::size_t at = help.find("\nSubcommands:\n") + std::string("\nSubcommands:\n").size();
+  for (; help.compare(at, 2, "  ") == 0; at = help.find('\n', at) + 1) {
+    const std::string verb = help.substr(at + 2, help.find(' ', at + 2) - at - 2);
+    if (!verb.empty()) verbs.push_back(verb);
+  }
+  return verbs;
+}
+
+/// A log for the verbs that read one, behind a recorded leader for `compare`.
+class JsonOutputTest : public testing::Test {
+ protected:
+  JsonOutputTest() : log_(folder_.File("run.lcm")) {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/recorded_lead.json",
+                                    "--set", "/steps=20", "--transport", "direct", "--log", log_});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+
+  /// What to call each verb with.
+  std::map<std::string, std::vector<std::string>> Calls() const {
+    const std::string paper = "scenario/paper.json";
+    const std::string url = FreshMulticastUrl();
+    return {
+        {"run", {paper, "--set", "/steps=20", "--transport", "memq", "--log", File("memq.lcm")}},
+        {"table", {paper, "--seeds", "1:2"}},
+        {"sweep", {paper, "--seeds", "1:2", "--out", File("sweep.csv")}},
+        {"calibrate",
+         {paper, "--free", "/fog/bias_m=0.2:0.3", "--seeds", "1:2", "--evaluations", "2"}},
+        {"study", {"transfer", "--seeds", "1:2", "--out", File("study")}},
+        {"metrics", {log_}},
+        {"compare", {log_, "scenario/data/acc_platoon_a.csv"}},
+        {"report", {log_, "--output", File("report.html")}},
+        {"digest", {log_}},
+        {"diff", {log_, log_}},
+        {"events", {log_}},
+        {"replay", {log_, "--all"}},
+        {"export", {log_, "--out", File("export")}},
+        {"graph", {}},
+        {"check", {paper}},
+        {"top", {"--once", "--interval", "0.1", "--lcm-url", url}},
+        {"doctor", {"--lcm-url", url}},
+        {"keygen", {File("test.key")}},
+    };
+  }
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+  ScratchFolder folder_;
+  std::string log_;
+};
+
+TEST_F(JsonOutputTest, IsOneDocumentForEveryVerbThatReports) {
+  for (auto [verb, arguments] : Calls()) {
+    SCOPED_TRACE(verb);
+    arguments.insert(arguments.begin(), {Program("fogline"), verb});
+    arguments.emplace_back("--json");
+    const Outcome outcome = RunCommand(arguments);
+    // Of doctor, 1 is an answer too.
+    EXPECT_TRUE(outcome.code == 0 || (verb == "doctor" && outcome.code == 1)) << outcome.err;
+    EXPECT_TRUE(nlohmann::json::accept(outcome.out)) << outcome.out;
+  }
+}
+
+TEST_F(JsonOutputTest, IsOfferedByEveryVerbButThoseThatExplainOrShow) {
+  const auto calls = Calls();
+  for (const std::string& verb : Verbs()) {
+    SCOPED_TRACE(verb);
+    const std::string help = RunCommand({Program("fogline"), verb, "--help"}).out;
+    EXPECT_THAT(help, calls.contains(verb) ? testing::Matcher<std::string>(HasSubstr("\n  --json "))
+                                           : Not(HasSubstr("--json")));
+  }
+}
+
+TEST_F(JsonOutputTest, NamesThePageAndTheRunsOfAReport) {
+  const std::string page = File("report.html");
+  const Outcome outcome =
+      RunCommand({Program("fogline"), "report", log_, "--output", page, "--json"});
+  const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
+  EXPECT_EQ(json["report"], page);
+  EXPECT_EQ(json["figures"], nullptr);
+  ASSERT_EQ(json["runs"].size(), 1U);
+  EXPECT_EQ(json["runs"][0]["log"], log_);
+  EXPECT_EQ(json["runs"][0]["seed"], 1);
+  EXPECT_EQ(json["runs"][0]["complete"], true);
+}
+
+TEST_F(JsonOutputTest, NamesTheFileOfAKey) {
+  const Outcome outcome = RunCommand({Program("fogline"), "keygen", File("lab.key"), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(outcome.out, nullptr, false)["file"], File("lab.key"));
+}
+
+}  // namespace
+}  // namespace fogline::test

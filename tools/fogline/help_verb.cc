@@ -1,0 +1,39 @@
+// fogline help: the help of the program, or of a verb.
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "tools/fogline/help.h"
+#include "tools/fogline/refusal.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+/// @throws InputError if there is no such verb
+const CLI::App& FindVerb(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    if (verb->get_name() == name) return *verb;
+  }
+  throw InputError(fmt::format("error: {} (see fogline --help)", NoSuchVerb(app, name)));
+}
+
+}  // namespace
+
+void AddHelp(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("help", "Show this text, or the help of a verb");
+  const auto name = std::make_shared<std::string>();
+  verb->add_option("VERB", *name, "Verb to explain (default: the list of all)");
+  ShowExitCodes(*verb);
+  verb->footer("Examples:\n  fogline help\n  fogline help table");
+  verb->callback([&app, &action, name] {
+    action = [&app, name] {
+      fmt::print("{}", HelpText(app, name->empty() ? app : FindVerb(app, *name)));
+      return kDone;
+    };
+  });
+}
+
+}  // namespace fogline
