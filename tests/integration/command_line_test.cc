@@ -1,6 +1,4 @@
 // The command line as a person meets it: what it says when asked, and when it cannot follow.
-#include <algorithm>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,6 +8,7 @@
 
 #include "services/graph.h"
 #include "tests/support/command.h"
+#include "tests/support/verbs.h"
 
 namespace fogline::test {
 namespace {
@@ -19,30 +18,12 @@ using ::testing::HasSubstr;
 using ::testing::Le;
 using ::testing::SizeIs;
 
-std::vector<std::string> Lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 std::string HelpOf(std::vector<std::string> command) {
   command.emplace_back("--help");
   const Outcome help = RunCommand(command);
   EXPECT_EQ(help.code, 0);
   EXPECT_EQ(help.err, "");
   return help.out;
-}
-
-/// The verbs, as `fogline --help` lists them.
-std::vector<std::string> Verbs() {
-  std::vector<std::string> verbs;
-  const std::vector<std::string> lines = Lines(HelpOf({Program("fogline")}));
-  auto line = std::ranges::find(lines, "Subcommands:");
-  for (; line != lines.end() && !line->empty(); ++line) {
-    if (line->starts_with("  ")) verbs.push_back(line->substr(2, line->find(' ', 2) - 2));
-  }
-  return verbs;
 }
 
 /// What the command line cannot follow: exit code 2, nothing on stdout, one line on stderr.

@@ -1,5 +1,4 @@
 // --json of every verb that reports: one JSON document on stdout and nothing else.
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,24 +9,13 @@
 
 #include "services/runtime/bus.h"
 #include "tests/support/command.h"
+#include "tests/support/verbs.h"
 
 namespace fogline::test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// The verbs, as `fogline --help` lists them.
-std::vector<std::string> Verbs() {
-  std::vector<std::string> verbs;
-  const std::string help = RunCommand({Program("fogline"), "--help"}).out;
-  std::size_t at = help.find("\nSubcommands:\n") + std::string("\nSubcommands:\n").size();
-  for (; help.compare(at, 2, "  ") == 0; at = help.find('\n', at) + 1) {
-    const std::string verb = help.substr(at + 2, help.find(' ', at + 2) - at - 2);
-    if (!verb.empty()) verbs.push_back(verb);
-  }
-  return verbs;
-}
 
 /// A log for the verbs that read one, behind a recorded leader for `compare`.
 class JsonOutputTest : public testing::Test {

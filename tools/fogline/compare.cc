@@ -293,8 +293,8 @@ void AddCompare(CLI::App& app, Action& action) {
       "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
       "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"
       "Examples:\n"
-      "  fogline run scenario/recorded_lead.json --log lead.lcm\n"
-      "  fogline compare lead.lcm scenario/data/acc_platoon_a.csv");
+      "  fogline run scenario/recorded_lead.json\n"
+      "  fogline compare logs/recorded_lead-1.lcm scenario/data/acc_platoon_a.csv");
   verb->callback([&action, arguments] { action = [arguments] { return RunCompare(*arguments); }; });
 }
 

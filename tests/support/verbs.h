@@ -1,0 +1,30 @@
+// The verbs of `fogline`, as its help lists them.
+#pragma once
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+
+inline std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+inline std::vector<std::string> Verbs() {
+  std::vector<std::string> verbs;
+  const std::vector<std::string> lines = Lines(RunCommand({Program("fogline"), "--help"}).out);
+  auto line = std::ranges::find(lines, "Subcommands:");
+  for (; line != lines.end() && !line->empty(); ++line) {
+    if (line->starts_with("  ")) verbs.push_back(line->substr(2, line->find(' ', 2) - 2));
+  }
+  return verbs;
+}
+
+}  // namespace fogline::test
