@@ -2,8 +2,11 @@
 // logger of LCM traffic (that is lcm-logger) and computes nothing.
 #include "services/recorder/recorder.h"
 
+#include <optional>
+
 #include <CLI/CLI.hpp>
 
+#include "services/runtime/file_lock.h"
 #include "services/runtime/service.h"
 
 namespace {
@@ -17,12 +20,16 @@ constexpr const char* kHelpFooter =
 }  // namespace
 
 int main(int argc, char** argv) {
+  using fogline::FileLock;
   using fogline::Recorder;
   std::string file;
   bool resume = false;
+  bool shared = false;
+  std::optional<FileLock> lock;  // for as long as it writes
   return fogline::RunProcess(
       argc, argv, fogline::Role::kRecorder,
       [&](fogline::Bus& bus, std::optional<std::int64_t> run_id) {
+        lock.emplace(file, shared ? FileLock::Kind::kShared : FileLock::Kind::kOwn, "--log", "run");
         return std::make_unique<Recorder>(
             bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
       },
@@ -31,6 +38,8 @@ int main(int argc, char** argv) {
             ->required();
         app.add_flag("--resume", resume,
                      "Go on with the log of a recorder that was killed in the same run");
+        app.add_flag("--shared-log", shared,
+                     "The log is locked by the runner, which has started this recorder");
         app.footer(kHelpFooter);  // not the other roles', which join a run from outside
       });
 }

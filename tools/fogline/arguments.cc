@@ -52,6 +52,8 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
   if (!std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", log.string()));
   }
+  // Where another run is writing it, --force is of no use.
+  const FileLock unused(log, FileLock::Kind::kOwn, "--log", "run");
   if (!force) {
     throw InputError(
         fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
@@ -63,7 +65,11 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
   }
 }
 
-LogWithoutRun::~LogWithoutRun() {
+LogOfRun::LogOfRun(const std::filesystem::path& log) : log_(log) {
+  if (!log_.empty()) lock_.emplace(log_, FileLock::Kind::kOwn, "--log", "run");
+}
+
+LogOfRun::~LogOfRun() {
   std::error_code ignored;
   if (std::filesystem::is_empty(log_, ignored) && !ignored) std::filesystem::remove(log_, ignored);
 }

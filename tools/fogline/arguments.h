@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/file_lock.h"
 #include "tools/fogline/experiment.h"
 
 namespace fogline {
@@ -47,21 +49,25 @@ class ScenarioArguments {
   std::string seed_;  // checked where all fields are
 };
 
-/// A log file to write: refuses one that exists unless `force`, and with it whatever is no event
-/// log; makes its folder.
+/// A log file to write: refuses one that another run is writing, one that exists unless `force`,
+/// and with it whatever is no event log; makes its folder.
 /// @throws InputError
 void PrepareLog(const std::filesystem::path& log, bool force);
 
-/// Removes a log at the end that a run has left empty, because it never began.
-class LogWithoutRun {
+/// The log of a run, which no other run can have until the end of this object. Removed then if the
+/// run has left it empty, because it never began.
+class LogOfRun {
  public:
-  explicit LogWithoutRun(std::filesystem::path log) : log_(std::move(log)) {}
-  ~LogWithoutRun();
-  LogWithoutRun(const LogWithoutRun&) = delete;
-  LogWithoutRun& operator=(const LogWithoutRun&) = delete;
+  /// @param log that PrepareLog() or FreshLog() has made; "" for a run without one
+  /// @throws InputError if another run is writing it
+  explicit LogOfRun(const std::filesystem::path& log);
+  ~LogOfRun();
+  LogOfRun(const LogOfRun&) = delete;
+  LogOfRun& operator=(const LogOfRun&) = delete;
 
  private:
   std::filesystem::path log_;
+  std::optional<FileLock> lock_;
 };
 
 /// "logs/STEM-1.lcm", or the first number that is free.

@@ -199,7 +199,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                                   : fmt::format("at step {}", conductor.step());
     throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
   }
-  return {.wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
+  return {.run_id = conducting.run_id,
+          .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
           .repairs = conductor.Total(&status_t::repairs_asked),
           .refused = conductor.Refused(),
           .strangers = conductor.strangers().known(),

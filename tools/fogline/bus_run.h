@@ -11,6 +11,7 @@
 namespace fogline {
 
 struct BusRun {
+  std::int64_t run_id = 0;
   double wall_s = 0;
   std::int64_t repairs = 0;
   Refusals refused{};

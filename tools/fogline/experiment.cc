@@ -117,6 +117,11 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
   BusRun run = RunOnBus(scenario, options, log);
   LoggedRun logged = ReadLoggedRun(log);
+  if (logged.run_id != run.run_id) {
+    throw std::runtime_error(
+        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
+                    log.string(), logged.run_id, run.run_id));
+  }
   if (!logged.complete) {
     throw std::runtime_error(
         fmt::format("{}: the log is not complete: {}", log.string(), logged.note));
@@ -183,6 +188,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
     followers.Add(decoder.truth(), decoder.follower());
   }
   const RunLog& run = reader.run();
+  logged.run_id = run.run_id;
   logged.result.seed = run.scenario.seed;
   logged.result.steps = run.steps;
   logged.result.digest = digest.Hex();

@@ -74,6 +74,7 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 
 /// A run as its log tells it. @throws InputError
 struct LoggedRun {
+  std::int64_t run_id = 0;
   ExperimentResult result;
   Scenario scenario;
   std::string scenario_text;

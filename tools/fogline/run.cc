@@ -148,7 +148,7 @@ int Run(RunArguments& arguments) {
   } else if (!direct) {
     options.log = FreshLog(arguments.scenario.file());
   }
-  const LogWithoutRun without_run(options.log);
+  const LogOfRun log(options.log);
   WatchInterrupts();
   const ExperimentResult result = RunExperiment(scenario, options);
   if (arguments.json) {

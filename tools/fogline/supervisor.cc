@@ -40,7 +40,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
                                      std::to_string(options_.run_id)};
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
-    arguments.insert(arguments.end(), {"--log", options_.log.string()});
+    arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
     // Only if it is the log of this run: before that it may be an old one that is to be replaced.
     if (conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }

@@ -71,6 +71,7 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
                                                arguments.scenario.file().stem().string(),
                                                scenario.seed, name);
   }
+  const LogOfRun log(options.log);
   return RunExperiment(scenario, options);
 }
 
@@ -192,7 +193,11 @@ int RunTable(const TableArguments& arguments) {
                                                   : ParseSeeds(arguments.seeds);
   const std::int64_t seeds = range.count();
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
-  if (!arguments.logs.empty()) RequireWritableFolder(arguments.logs, "--logs");
+  std::optional<FileLock> folder;
+  if (!arguments.logs.empty()) {
+    RequireWritableFolder(arguments.logs, "--logs");
+    folder.emplace(arguments.logs, FileLock::Kind::kOwn, "--logs", "table");
+  }
   WatchInterrupts();
   const std::vector<ThresholdRow> rows =
       options.transport == "direct" && arguments.logs.empty()

@@ -1,0 +1,92 @@
+#include "services/runtime/file_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+
+namespace fogline {
+namespace {
+
+// A file that is removed or replaced between opening and locking it is opened again.
+constexpr int kTries = 10;
+
+/// @throws InputError
+int Open(const std::filesystem::path& path, std::string_view option) {
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  const int fd = open(path.c_str(), (is_folder ? O_RDONLY : O_RDWR | O_CREAT) | O_CLOEXEC, 0666);
+  if (fd >= 0) return fd;
+  throw InputError(
+      fmt::format("{}: error: {}: cannot write: {}", path.string(), option, std::strerror(errno)));
+}
+
+/// Whether a file still has the name by which it was opened.
+bool IsFileOf(const std::filesystem::path& path, int fd) {
+  struct stat named {};
+  struct stat opened {};
+  return stat(path.c_str(), &named) == 0 && fstat(fd, &opened) == 0 &&
+         named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
+}
+
+/// @return whether no other lock is in the way
+bool Lock(int fd, FileLock::Kind kind) {
+  const auto take = [fd](int how) { return flock(fd, how | LOCK_NB) == 0 || errno != EWOULDBLOCK; };
+  // An owner makes sure that it is alone, and leaves room for those that work for it.
+  return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
+}
+
+/// The process that has locked an open file. Of an owner and those that work for it, which it has
+/// started, the one with the lowest id. /proc/locks has lines "1: FLOCK ADVISORY READ 4711
+/// 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
+std::optional<pid_t> HolderOf(int fd) {
+  struct stat file {};
+  if (fstat(fd, &file) != 0) return std::nullopt;
+  const std::string place =
+      fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev), file.st_ino);
+  std::optional<pid_t> holder;
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, type, advisory, access, where;
+    pid_t pid = 0;
+    words >> number >> type >> advisory >> access >> pid >> where;
+    if (type != "FLOCK" || where != place || pid <= 0) continue;
+    holder = holder ? std::min(*holder, pid) : pid;
+  }
+  return holder;
+}
+
+}  // namespace
+
+FileLock::FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
+                   std::string_view owner) {
+  for (int tries = 1;; ++tries) {
+    fd_ = Open(path, option);
+    if (!Lock(fd_, kind)) {
+      const std::optional<pid_t> holder = HolderOf(fd_);
+      close(fd_);
+      throw InputError(fmt::format("{}: error: {}: is being written by another {}{}", path.string(),
+                                   option, owner, holder ? fmt::format(" (pid {})", *holder) : ""));
+    }
+    if (IsFileOf(path, fd_) || tries == kTries) return;
+    close(fd_);
+  }
+}
+
+FileLock::~FileLock() { close(fd_); }
+
+}  // namespace fogline
