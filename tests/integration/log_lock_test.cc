@@ -182,5 +182,15 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
   EXPECT_EQ(RunCommand(With(table, {"--transport", "direct"})).code, 0) << "free in the end";
 }
 
+TEST_F(LogLockTest, AnInterruptedRunSpeaksOfNoLogWhereThereIsNone) {
+  // GIVEN a run whose recorder never learns what to record
+  Background run(With(run_, {"--faults", "loss=0.999999"}));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130);
+  EXPECT_THAT(run.Err(), HasSubstr("; no log was written\n"));
+  EXPECT_FALSE(std::filesystem::exists(log_));
+}
+
 }  // namespace
 }  // namespace fogline::test

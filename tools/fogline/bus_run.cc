@@ -20,6 +20,7 @@
 #include "services/fusion/fusion.h"
 #include "services/lidar/lidar.h"
 #include "services/radar/radar.h"
+#include "services/recorder/event_log.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/conductor.h"
 #include "services/runtime/fallback_log.h"
@@ -149,6 +150,26 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
   return supervisor.restarts();
 }
 
+/// Whether a file is the log of a run, which begins with its scenario. A run that is to replace an
+/// older log may end before it has begun to.
+bool IsLogOf(std::int64_t run_id, const std::filesystem::path& file) {
+  try {
+    EventLogReader reader(file);
+    const std::optional<Event> first = reader.Next();
+    return first && first->data.size() >= kHeaderEnd &&
+           ReadInt64(first->data, kRunIdOffset) == run_id;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// What a run that ends early has left; "" if it was to leave no log.
+std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
+  if (log.empty()) return "";
+  return IsLogOf(run_id, log) ? fmt::format("the log so far: {}", log.string())
+                              : "no log was written";
+}
+
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
   if (transport == "udpm") return FreshMulticastUrl();
@@ -185,8 +206,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   } else {
     restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
   }
-  const std::string kept =
-      options.log.empty() ? "" : fmt::format("the log so far: {}", options.log.string());
+  const std::string kept = KeptLog(conducting.run_id, options.log);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
   const std::string strangers = conductor.strangers().Text();
   if (options.announce && !strangers.empty()) fmt::print(stderr, "{}\n", strangers);
