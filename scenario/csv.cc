@@ -78,6 +78,12 @@ std::vector<std::string_view> CsvHeader(std::string_view text) {
   return names;
 }
 
+std::string_view ForeignSeparator(std::span<const std::string_view> header) {
+  if (header.size() != 1) return "";
+  if (header.front().find(';') != std::string_view::npos) return "';'";
+  return header.front().find('\t') != std::string_view::npos ? "tabs" : "";
+}
+
 std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
                                                    const std::vector<std::size_t>& columns,
                                                    const CsvRefuse& refuse) {

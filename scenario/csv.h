@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,10 @@ struct CsvNumber {
 
 /// The header line's names, without the spaces around them.
 std::vector<std::string_view> CsvHeader(std::string_view text);
+
+/// What seems to separate the names of a header line in place of ',', for a message: "';'", "tabs",
+/// or "" if nothing does.
+std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
 /// Called for each cell that is not a finite number, and for each row that lacks a cell.
 using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>;

@@ -80,6 +80,12 @@ class RecordingReader {
       return std::nullopt;
     }
     const std::vector<std::string_view> header = CsvHeader(csv.text);
+    if (const std::string_view separator = ForeignSeparator(header); !separator.empty()) {
+      AddInScenario(kFile, "csv-separator",
+                    fmt::format("{} seems to be separated by {}, but ',' is expected",
+                                Shown(csv_name_), separator));
+      return std::nullopt;
+    }
     const std::size_t time = FindColumn(header, recorded_.time_column, kTimeColumn);
     const std::size_t speed = FindColumn(header, recorded_.speed_column, kSpeedColumn);
     if (!mistakes_.empty()) return std::nullopt;
@@ -153,8 +159,8 @@ class RecordingReader {
     AddInScenario(
         kStart, "csv-span",
         fmt::format("{} steps of {} s from here need {} s to {} s, but {} has {} s to {} s",
-                    scenario_.steps, NumberText(scenario_.step_s), NumberText(begin_s),
-                    NumberText(end_s), Shown(csv_name_), NumberText(first_s), NumberText(last_s)));
+                    scenario_.steps, NumberText(scenario_.step_s), TimeText(begin_s),
+                    TimeText(end_s), Shown(csv_name_), TimeText(first_s), TimeText(last_s)));
   }
 
   const Scenario& scenario_;

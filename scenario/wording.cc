@@ -45,6 +45,11 @@ std::string NumberText(double value) {
   return fmt::format("{}", value);
 }
 
+std::string TimeText(double time_s) {
+  constexpr double kMicrosecondsPerSecond = 1e6;
+  return NumberText(std::round(time_s * kMicrosecondsPerSecond) / kMicrosecondsPerSecond);
+}
+
 std::string EscapeControls(std::string_view text) {
   std::string out;
   out.reserve(text.size());

@@ -14,6 +14,9 @@ namespace fogline {
 /// The shortest text that reads back as the same number, sign of zero included.
 std::string NumberText(double value);
 
+/// A time in s, of which a run has whole microseconds: "899.9" for a sum that is 899.9000000000001.
+std::string TimeText(double time_s);
+
 /// Control characters (C0, DEL, C1) escaped: as any terminal may be shown the text.
 std::string EscapeControls(std::string_view text);
 

@@ -178,6 +178,8 @@ TEST_F(CompareTest, SaysWhatARecordingWithoutAHeaderLacks) {
             file + ": error: the first line is empty; it must name the columns\n");
   EXPECT_EQ(error_of("1,2,3\n4,5,6\n"),
             file + ": error: the first line is \"1\", \"2\", \"3\"; it must name the columns\n");
+  EXPECT_EQ(error_of("Time;Speed2;IVS1\n1;20;30\n"),
+            file + ": error: seems to be separated by ';', but ',' is expected\n");
 }
 
 TEST_F(CompareTest, RefusesARunBehindNoRecordedLeader) {

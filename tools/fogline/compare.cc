@@ -99,6 +99,9 @@ Recording ReadRecording(const CompareArguments& arguments, const RecordedSection
     Refuse(file,
            fmt::format("the first line is {}; it must name the columns", Shown(Names(header))));
   }
+  if (const std::string_view separator = ForeignSeparator(header); !separator.empty()) {
+    Refuse(file, fmt::format("seems to be separated by {}, but ',' is expected", separator));
+  }
   const auto column = [&](const std::string& name) { return FindColumn(header, name, file); };
   std::vector<std::size_t> columns{column(leader.time_column), column(arguments.speed_column),
                                    column(arguments.gap_column)};
@@ -122,14 +125,16 @@ void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double en
   const auto descent = std::ranges::adjacent_find(
       times_s, [](const CsvNumber& a, const CsvNumber& b) { return b.value <= a.value; });
   if (descent != times_s.end()) {
-    Refuse(file, fmt::format("time {} s is followed by {} s", descent->value, descent[1].value));
+    Refuse(file, fmt::format("time {} s is followed by {} s", NumberText(descent->value),
+                             NumberText(descent[1].value)));
   }
   if (begin_s >= times_s.front().value - CsvSeries::kSameTime_s &&
       end_s <= times_s.back().value + CsvSeries::kSameTime_s) {
     return;
   }
   Refuse(file, fmt::format("has {} s to {} s, but the run is from {} s to {} s",
-                           times_s.front().value, times_s.back().value, begin_s, end_s));
+                           TimeText(times_s.front().value), TimeText(times_s.back().value),
+                           TimeText(begin_s), TimeText(end_s)));
 }
 
 /// @throws InputError if the file has another leader than the run

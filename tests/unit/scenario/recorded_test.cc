@@ -156,6 +156,25 @@ TEST_F(RecordedLeadTest, NeedsARecordingThatSpansTheRun) {
   EXPECT_THAT(ErrorOf("t,v\n"), HasSubstr("data/lead.csv has no rows\n"));
 }
 
+TEST_F(RecordedLeadTest, SpeaksOfTimesAsPeopleWriteThem) {
+  // 10 s + 8 * 0.1 s is 10.799999999999999 s in binary, 10 s + 3 * 0.1 s 10.300000000000001 s.
+  for (const auto& [steps, end] : {std::pair{"9", "10.8"}, {"4", "10.3"}}) {
+    EXPECT_THAT(
+        ErrorOf("t,v\n10,1\n10.1,1\n", {"/step_s=0.1", std::string("/steps=") + steps}),
+        HasSubstr(std::string(" need 10 s to ") + end + " s, but data/lead.csv has 10 s to "));
+  }
+}
+
+TEST_F(RecordedLeadTest, NamesTheSeparatorThatStandsWhereACommaMust) {
+  EXPECT_EQ(
+      ErrorOf("t;v\n10;1,5\n12;1,5\n"),
+      "lead.json:3:24: error: /lead/recorded/file: data/lead.csv seems to be separated by ';', "
+      "but ',' is expected\n"
+      "1 error; what is allowed: fogline check --explain /lead/recorded/file");
+  EXPECT_THAT(ErrorOf("t\tv\n10\t1\n"),
+              HasSubstr("seems to be separated by tabs, but ',' is expected"));
+}
+
 TEST_F(RecordedLeadTest, RefusesMoreStepsThanAScenarioCanCarry) {
   EXPECT_THAT(ErrorOf("t,v\n10,1\n12,1\n", {"/steps=1000001"}),
               HasSubstr("/steps: 1000001 steps; a recorded leader has at most 1000000\n"));
