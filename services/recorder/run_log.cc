@@ -118,7 +118,7 @@ class RunLogReader::Assembler {
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
     };
-    if (!last_) note(fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps));
+    if (!last_) note(Shortage());
     if (run_.realtime && run_.realtime->missed_messages > 0) {
       note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
     }
@@ -127,6 +127,11 @@ class RunLogReader::Assembler {
     }
     if (!conflict_.empty()) note(conflict_);
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+  std::string Shortage() const {
+    if (run_.steps == 0) return fmt::format("no step of {} is complete", run_.scenario.steps);
+    return fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps);
   }
 
   std::size_t Find(std::string_view name) {

@@ -237,9 +237,9 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   if (!IsExternal(role) || HeldAgainst(member.heard, now) <= kSilent) return false;
   if (++member.replaced > options_.restarts) {
     Fail(
-        fmt::format("{} was started again as pid {} on {} at step {}, after {} restarts "
+        fmt::format("{} was started again as pid {} on {} {}, after {} restarts "
                     "(--restarts)",
-                    status.role, status.pid, status.host, step(), options_.restarts));
+                    status.role, status.pid, status.host, Where(), options_.restarts));
     return false;
   }
   member.dead.push_back(std::move(*member.status));
@@ -294,6 +294,10 @@ void Conductor::Announce(std::int8_t phase, std::size_t part, std::int64_t answe
   run.minimal_risk = minimal_risk_;
   Encode(run, buffer_);
   bus_.Publish(ChannelOf<run_t>().name, buffer_);
+}
+
+std::string Conductor::Where() const {
+  return step() < 0 ? "before step 0" : fmt::format("at step {}", step());
 }
 
 std::string Conductor::Culprit(TimePoint now) const {

@@ -56,6 +56,8 @@ class Conductor {
   const std::string& error() const { return error_; }
   /// Last step that the world has begun, -1 before the first.
   std::int64_t step() const { return progress_; }
+  /// The same for a message: "at step 217", or "before step 0".
+  std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
   /// Sum over the roles of a counter of status_t.

@@ -131,8 +131,8 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       const TimePoint now = Clock::now();
       const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
       if (const Duration away = conductor.TakeAway(); away > Duration::zero() && options.announce) {
-        progress.Say(fmt::format("warning: the runner was held up for {:.1f} s at step {}",
-                                 std::chrono::duration<double>(away).count(), conductor.step()));
+        progress.Say(fmt::format("warning: the runner was held up for {:.1f} s {}",
+                                 std::chrono::duration<double>(away).count(), conductor.Where()));
       }
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
@@ -216,7 +216,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   if (conductor.phase() != Conductor::Phase::kDone) {
     const std::string where = conductor.phase() == Conductor::Phase::kJoining
                                   ? fmt::format("while waiting for {}", conductor.NotReady())
-                                  : fmt::format("at step {}", conductor.step());
+                                  : conductor.Where();
     throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
   }
   return {.run_id = conducting.run_id,

@@ -76,7 +76,7 @@ void Supervisor::Look(TimePoint now) {
 void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
   const std::string how = child->hung.empty() ? exit.how : child->hung;
-  child->death = fmt::format("{} at step {}", how, conductor_.step());
+  child->death = fmt::format("{} {}", how, conductor_.Where());
   const auto wait = exit.killed ? child->policy.OnDeath(conductor_.step()) : std::nullopt;
   if (wait) {
     conductor_.Bury(exit.role, exit.pid, now);
