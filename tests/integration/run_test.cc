@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "services/runtime/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -147,6 +148,52 @@ TEST(RunTest, LeavesNoEmptyLogOfARunThatNeverBegan) {
                 .code,
             0);
   EXPECT_FALSE(std::filesystem::exists(log));
+}
+
+TEST(RunTest, MakesNoFolderForALogButTheDefaultOne) {
+  const ScratchFolder folder;
+  const auto run = [&](const std::string& log) {
+    return RunCommand({"sh", "-c",
+                       "cd " + folder.path().string() + " && " + Program("fogline") + " run " +
+                           (SourceDirectory() / "scenario/paper.json").string() +
+                           " --transport direct --set /steps=10 --log " + log});
+  };
+  const Outcome slip = run("nonexist/dir/x.lcm");
+  EXPECT_EQ(slip.code, 2);
+  EXPECT_EQ(slip.err, "nonexist/dir/x.lcm: error: --log: there is no folder nonexist/dir\n");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_EQ(run("logs/x.lcm").code, 0);
+  EXPECT_EQ(run("./logs/y.lcm").code, 0);
+  EXPECT_EQ(run("z.lcm").code, 0);
+}
+
+TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
+  // GIVEN a run that waits for its driver
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--log", log, "--external",
+                  "driver", "--lcm-url", FreshMulticastUrl()});
+  ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
+  ASSERT_TRUE(GrowsTo(1, log));
+  // WHEN a role dies, and then the user loses patience
+  kill(PidOf(run.Err(), "radar"), SIGKILL);
+  EXPECT_TRUE(run.WaitForErr("was killed by signal 9 (Killed) before step 0; started again"))
+      << run.Err();
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130);
+  // THEN neither the run nor its log has a step -1
+  const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
+  EXPECT_EQ(metrics.code, 1);
+  EXPECT_EQ(metrics.err, log + ": no step of 500 is complete\n");
+  EXPECT_EQ((run.Err() + metrics.out).find("step -1"), std::string::npos);
+}
+
+TEST(RunTest, MeasuresTheTimeFromDeceptionToAlarmUnderItsOwnName) {
+  const Outcome run = RunCommand(
+      {Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--json"});
+  const auto metrics = nlohmann::json::parse(run.out)["metrics"];
+  EXPECT_EQ(metrics["deception_to_alarm_s"], 0) << "the alarm is there when the LiDAR is deceived";
+  EXPECT_FALSE(metrics.contains("detection_delay_s")) << "which a study counts from the fog on";
 }
 
 TEST(RunTest, FailsWhereItsResultCannotBeWritten) {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/recorder/event_log.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 
@@ -39,14 +40,7 @@ void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_v
 }
 
 void PrepareLog(const std::filesystem::path& log, bool force) {
-  if (log.has_parent_path()) {
-    std::error_code error;
-    std::filesystem::create_directories(log.parent_path(), error);
-    if (error) {
-      throw InputError(fmt::format("{}: error: --log: cannot make the folder: {}", log.string(),
-                                   error.message()));
-    }
-  }
+  RequireFolderOf(log, "--log");
   if (Reserve(log)) return;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(log, ignored)) {
@@ -75,7 +69,7 @@ LogOfRun::~LogOfRun() {
 }
 
 std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
-  const std::filesystem::path folder = "logs";
+  const std::filesystem::path folder = kDefaultFolder;
   std::error_code ignored;  // Reserve() says what is wrong
   std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {

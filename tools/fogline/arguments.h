@@ -50,7 +50,7 @@ class ScenarioArguments {
 };
 
 /// A log file to write: refuses one that another run is writing, one that exists unless `force`,
-/// and with it whatever is no event log; makes its folder.
+/// and with it whatever is no event log; requires its folder as RequireFolderOf() does.
 /// @throws InputError
 void PrepareLog(const std::filesystem::path& log, bool force);
 

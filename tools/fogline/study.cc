@@ -98,7 +98,6 @@ Made Make(const Study& study, const StudyArguments& arguments) {
 }
 
 void Write(const std::filesystem::path& path, const std::string& content) {
-  MakeFolderOf(path);
   WholeFile file(path);
   file.Write(content);
   file.Finish();

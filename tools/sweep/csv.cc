@@ -74,7 +74,7 @@ InputError CannotOpen(const std::filesystem::path& file, const char* why) {
 SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
                      bool force)
     : path_(file), plan_(plan), next_unit_(plan.ShardBegin(shard)) {
-  MakeFolderOf(path_);
+  RequireFolderOf(path_, "--out");
   Open();
   const bool empty = lseek(file_.fd, 0, SEEK_END) == 0;
   if (!empty && !force && !IsOf(path_, Describe(plan, shard))) {

@@ -97,7 +97,7 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   whole.shard = {.index = 1, .count = 1};
   whole.rows = whole.all_rows;
 
-  MakeFolderOf(merged);
+  RequireFolderOf(merged, "--out");
   WholeFile out(merged);
   std::string header;
   for (const auto& [index, shard] : ordered) Copy(shard, header, out);

@@ -83,27 +83,27 @@ void WholeFile::Fail() const {
       fmt::format("{}: cannot write: {}", file_.string(), std::strerror(errno)));
 }
 
-void MakeFolderOf(const std::filesystem::path& file) {
-  if (!file.has_parent_path()) return;
+void RequireFolderOf(const std::filesystem::path& file, std::string_view option) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  if (error) {
-    throw InputError(
-        fmt::format("{}: error: cannot make the folder: {}", file.string(), error.message()));
-  }
+  if (folder == fs::absolute(kDefaultFolder)) fs::create_directory(folder, error);
+  if (fs::status(folder, error).type() != fs::file_type::not_found) return;
+  throw InputError(fmt::format("{}: error: {}: there is no folder {}", file.string(), option,
+                               file.parent_path().string()));
 }
 
 void RequireWritable(const std::filesystem::path& file, std::string_view option) {
   if (const std::string_view why = Obstacle(file); !why.empty()) {
     throw CannotWrite(file, option, why);
   }
-  std::error_code error;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
-  if (error) throw CannotWrite(file, option, error.message());
+  RequireFolderOf(file, option);
   TryFile(file.parent_path(), file, option);
 }
 
 void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option) {
+  // "figures/" is the folder "figures".
+  RequireFolderOf(folder.has_filename() ? folder : folder.parent_path(), option);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw CannotWrite(folder, option, error.message());

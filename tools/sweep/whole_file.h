@@ -38,17 +38,23 @@ class WholeFile {
   std::ofstream out_;
 };
 
-/// Makes the folder of a file that is to be written. @throws InputError
-void MakeFolderOf(const std::filesystem::path& file);
+/// Folder of what is given no other place, such as the log of a run.
+inline constexpr const char* kDefaultFolder = "logs";
 
-/// Finds out before long work whether its result could be kept: makes the folder of `file`, and for
-/// a moment a file of its own in it. What is there, "FILE.part", too, stays as it is.
-/// @param option that names it, such as "--out"
-/// @throws InputError "FILE: error: --out: cannot write: ..."
+/// Requires the folder in which a file or folder is to be made: a missing one is likely to be a
+/// typing mistake. kDefaultFolder is made.
+/// @param option that names what is to be made, such as "--out"
+/// @throws InputError "FILE: error: --out: there is no folder FOLDER"
+void RequireFolderOf(const std::filesystem::path& file, std::string_view option);
+
+/// Finds out before long work whether its result could be kept: makes for a moment a file of its
+/// own in the folder of `file`. What is there, "FILE.part", too, stays as it is.
+/// @throws InputError as RequireFolderOf(), or "FILE: error: --out: cannot write: ..."
 void RequireWritable(const std::filesystem::path& file, std::string_view option);
 
-/// The same for a folder that is to hold files, whatever their names: makes it.
-/// @throws InputError "FOLDER: error: --png: cannot write: ..."
+/// The same for a folder that is to hold files, whatever their names. It is made if it is missing,
+/// the folder in which it is to be is not.
+/// @throws InputError as RequireFolderOf(), or "FOLDER: error: --png: cannot write: ..."
 void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option);
 
 }  // namespace fogline

@@ -64,10 +64,22 @@ TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
   std::ofstream(file_) << "of before";
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
   EXPECT_EQ(Content(file_), "of before");
-  // A folder that is missing is made.
-  EXPECT_EQ(ErrorOf([&] { RequireWritable(folder_.File("new/result.csv"), "--out"); }), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "new"));
+  // A folder for files is made if it is missing.
   EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures"), "--png"); }), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
+}
+
+TEST_F(WholeFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
+  const std::string slip = folder_.File("nonexist/dir");
+  const std::string none = ": error: --out: there is no folder " + slip;
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(slip + "/result.csv", "--out"); }),
+            slip + "/result.csv" + none);
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures", "--out"); }),
+            slip + "/figures" + none);
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures/", "--out"); }),
+            slip + "/figures" + none);
+  EXPECT_TRUE(IsEmpty());
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures/"), "--out"); }), "");
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
 
