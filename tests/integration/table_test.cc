@@ -66,6 +66,27 @@ TEST(TableOverSeedsTest, HoldsOverAThousandSeeds) {
   EXPECT_LE(rows[2]["rhe_pct"], 0.3);
 }
 
+TEST(TableOverSeedsTest, SaysWhichSeedsAndThatOneNumberIsOneSeed) {
+  const auto table = [](const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline"), "table", "scenario/paper.json"};
+    command.insert(command.end(), more.begin(), more.end());
+    return RunCommand(command);
+  };
+  EXPECT_THAT(table({}).out, HasSubstr("\nseed 1\n"));
+  EXPECT_EQ(table({}).err, "");
+  const Outcome several = table({"--seeds", "3:5"});
+  EXPECT_THAT(several.out, HasSubstr("\nseeds 3 to 5: mean +- standard deviation\n"));
+  EXPECT_EQ(several.err, "");
+  const Outcome one = table({"--seeds", "1000"});
+  EXPECT_THAT(one.out, HasSubstr("\nseed 1000\n"));
+  EXPECT_EQ(one.err, "--seeds 1000 is the one seed 1000; seeds 1 to 1000 are --seeds 1:1000\n");
+  EXPECT_EQ(table({"--seeds", "1000:1000"}).err, "");
+  const auto json = nlohmann::json::parse(table({"--seeds", "3:5", "--json"}).out);
+  EXPECT_EQ(json["seeds"], 3);
+  EXPECT_EQ(json["first_seed"], 3);
+  EXPECT_EQ(json["last_seed"], 5);
+}
+
 /// What `fogline table` says when it refuses its arguments.
 std::string ErrorOf(const std::vector<std::string>& more) {
   std::vector<std::string> command{Program("fogline"), "table", "scenario/paper.json"};
@@ -83,6 +104,10 @@ TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
       "with traded, adaptive, availability\n");
   EXPECT_THAT(ErrorOf({"--set", "/arbitrator/policy=isolate"}),
               HasSubstr("/arbitrator/policy is isolate: no threshold matters"));
+  const ScratchFolder folder;
+  EXPECT_EQ(ErrorOf({"--logs", folder.File("slip/logs")}),
+            folder.File("slip/logs") + ": error: --logs: there is no folder " +
+                folder.File("slip") + "\n");
   EXPECT_EQ(ErrorOf({"--logs", "/proc"}),
             "/proc: error: --logs: cannot write: No such file or directory\n");
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),

@@ -79,6 +79,15 @@ std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
   }
 }
 
+SeedRange ReadSeeds(const std::string& text) {
+  const SeedRange seeds = ParseSeeds(text);
+  if (seeds.count() == 1 && seeds.first > 1 && text.find(':') == std::string::npos) {
+    fmt::print(stderr, "--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}\n",
+               seeds.first);
+  }
+  return seeds;
+}
+
 void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
 
 void CheckNetworkUrl(const std::string& url) {

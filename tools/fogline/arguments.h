@@ -16,6 +16,7 @@
 #include "scenario/loader.h"
 #include "services/runtime/file_lock.h"
 #include "tools/fogline/experiment.h"
+#include "tools/sweep/plan.h"
 
 namespace fogline {
 
@@ -88,6 +89,11 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
   }
   return readable;
 }
+
+/// The seeds of --seeds. One number alone, which may be meant for so many seeds, is explained on
+/// stderr.
+/// @throws InputError
+SeedRange ReadSeeds(const std::string& text);
 
 /// --json output: `text` and a newline on stdout.
 void PrintJson(const std::string& text);

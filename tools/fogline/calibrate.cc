@@ -89,7 +89,7 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
                              .scenario = LoadScenario(arguments.scenario, arguments.overrides),
                              .fields = ParseFreeFields(arguments.free),
                              .target = {},
-                             .seeds = ParseSeeds(arguments.seeds),
+                             .seeds = ReadSeeds(arguments.seeds),
                              .rhe_weight = arguments.rhe_weight,
                              .spread_weight = arguments.spread_weight,
                              .jobs = arguments.jobs};

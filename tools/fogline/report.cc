@@ -170,7 +170,7 @@ ReportCurves ComputeCurves(const ReportArguments& arguments) {
   std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
-  const SeedRange seeds = ParseSeeds(arguments.seeds);
+  const SeedRange seeds = ReadSeeds(arguments.seeds);
   ReportCurves curves{.scenario_title = scenario.title,
                       .first_seed = seeds.first,
                       .last_seed = seeds.last,

@@ -69,7 +69,7 @@ SweepPlan MakePlan(const SweepArguments& arguments) {
   std::vector<Axis> axes;
   for (const std::string& axis : arguments.grid) axes.push_back(ParseAxis(axis));
   const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
-                                                  : ParseSeeds(arguments.seeds);
+                                                  : ReadSeeds(arguments.seeds);
   return SweepPlan(std::move(scenario), std::move(axes), seeds, arguments.scenario.string());
 }
 

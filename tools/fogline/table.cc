@@ -123,12 +123,12 @@ const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
 }
 
 std::string ToJson(const std::filesystem::path& file, const std::string& transport,
-                   const Scenario& scenario, std::int64_t seeds,
+                   const Scenario& scenario, const SeedRange& seeds,
                    const std::vector<ThresholdRow>& rows) {
-  nlohmann::ordered_json json{{"scenario", file.string()},
-                              {"transport", transport},
-                              {"seeds", seeds},
-                              {"rows", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{
+      {"scenario", file.string()}, {"transport", transport},
+      {"seeds", seeds.count()},    {"first_seed", seeds.first},
+      {"last_seed", seeds.last},   {"rows", nlohmann::ordered_json::array()}};
   for (const ThresholdRow& row : rows) {
     const Summary si = row.si_pct.Result();
     const Summary rhe = row.rhe_pct.Result();
@@ -148,7 +148,7 @@ std::string ToJson(const std::filesystem::path& file, const std::string& transpo
   return json.dump(2);
 }
 
-void PrintText(const Scenario& scenario, std::int64_t seeds,
+void PrintText(const Scenario& scenario, const SeedRange& seeds,
                const std::vector<ThresholdRow>& rows) {
   const auto cell = [](std::optional<double> value) {
     return value ? fmt::format("{:.2f}", *value) : std::string("-");
@@ -158,8 +158,11 @@ void PrintText(const Scenario& scenario, std::int64_t seeds,
                         : cell(of.mean);
   };
   fmt::print("{}\n", scenario.title);
-  fmt::print("{} seed{}; mean +- standard deviation where there are several\n\n", seeds,
-             seeds == 1 ? "" : "s");
+  if (seeds.count() == 1) {
+    fmt::print("seed {}\n\n", seeds.first);
+  } else {
+    fmt::print("seeds {} to {}: mean +- standard deviation\n\n", seeds.first, seeds.last);
+  }
   fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", "DoC_th", "SI (%)", "RHE (%)",
              "published SI", "published RHE", "collisions");
   for (const ThresholdRow& row : rows) {
@@ -168,7 +171,7 @@ void PrintText(const Scenario& scenario, std::int64_t seeds,
     fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
                spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
                published ? cell(published->rhe_pct) : "-", row.collisions);
-    if (si.count < seeds) {
+    if (si.count < seeds.count()) {
       fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
                  si.count);
     }
@@ -189,9 +192,8 @@ Scenario ScenarioOf(const TableArguments& arguments) {
 int RunTable(const TableArguments& arguments) {
   const Scenario scenario = ScenarioOf(arguments);
   const ExperimentOptions options = OptionsOf(arguments);
-  const SeedRange range = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
-                                                  : ParseSeeds(arguments.seeds);
-  const std::int64_t seeds = range.count();
+  const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
+                                                  : ReadSeeds(arguments.seeds);
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
   std::optional<FileLock> folder;
   if (!arguments.logs.empty()) {
@@ -201,8 +203,8 @@ int RunTable(const TableArguments& arguments) {
   WatchInterrupts();
   const std::vector<ThresholdRow> rows =
       options.transport == "direct" && arguments.logs.empty()
-          ? RowsOnAllCores(scenario, thresholds, range)
-          : RowsByRuns(arguments, options, scenario, thresholds, range);
+          ? RowsOnAllCores(scenario, thresholds, seeds)
+          : RowsByRuns(arguments, options, scenario, thresholds, seeds);
   if (arguments.json) {
     PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
   } else {
