@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "tests/support/command.h"
@@ -42,6 +43,44 @@ TEST(ReadmeTest, IsShortAndNamesOnlyFilesThatAreThere) {
     ++links;
   }
   EXPECT_GE(links, 5U);
+}
+
+TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
+  // GIVEN a clone, as far as these commands need one
+  const ScratchFolder clone;
+  for (const char* part : {".gitignore", "scenario", "docs"}) {
+    std::filesystem::copy(SourceDirectory() / part, clone.path() / part,
+                          std::filesystem::copy_options::recursive);
+  }
+  const auto in_clone = [&](const std::string& command) {
+    const Outcome outcome =
+        RunCommand({"bash", "-c",
+                    "cd " + clone.path().string() + " && PATH=" + ProgramDirectory().string() +
+                        ":$PATH && " + command});
+    EXPECT_EQ(outcome.code, 0) << command << "\n" << outcome.err;
+    return outcome.out;
+  };
+  in_clone("git init -q && git add -A");
+  in_clone("fogline table scenario/paper.json --logs logs/demo");  // as tools/demo does
+  // WHEN the README's commands are followed
+  const std::string readme = ReadSource("README.md");
+  static const std::regex kCommand(
+      "`(fogline (run|table|sweep|calibrate|study|report) [^`]*(scenario/|--out |logs/)[^`]*)`");
+  std::size_t commands = 0;
+  for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
+    // Some seeds have the same files as the many of these two.
+    const bool takes_long = (*at)[2] == "study" || (*at)[2] == "calibrate";
+    in_clone((*at)[1].str() + (takes_long ? " --seeds 1:2" : ""));
+    ++commands;
+  }
+  EXPECT_GE(commands, 6U);
+  std::smatch words;
+  ASSERT_TRUE(std::regex_search(readme, words, std::regex("`export LOG (--out [^`]*)`")));
+  in_clone("fogline export logs/paper-1.lcm " + words[1].str());
+  ASSERT_TRUE(std::regex_search(readme, words, std::regex("`lcm-logger [^`]* ([^` ]*)`")));
+  in_clone("cp logs/paper-1.lcm " + words[1].str());
+  // THEN git has nothing to say
+  EXPECT_EQ(in_clone("git ls-files --others --exclude-standard"), "");
 }
 
 }  // namespace
