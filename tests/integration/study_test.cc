@@ -69,6 +69,10 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
     EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
   }
   EXPECT_EQ(Files(one), Files(two));
+  EXPECT_EQ(said["text"], one + "/conflict.md");
+  // All of them are named, the page and its text last.
+  EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
+  for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
   // AND every measure of the table in two fog models, five visibilities and three noises
   const std::size_t measures = ConflictMeasures().size();
   EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + measures * 2 * 5 * 3);
@@ -156,7 +160,9 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
   EXPECT_THAT(many.err, StartsWith("fogline study: error: --seeds 0:8734253822779143: more than "));
   const Outcome folder = Study({"policy", "--seeds", "1", "--scenarios", "/nowhere"});
   EXPECT_EQ(folder.code, 2);
-  EXPECT_THAT(folder.err, StartsWith("/nowhere/paper.json: error: "));
+  EXPECT_EQ(folder.err,
+            "/nowhere/paper.json: error: --scenarios: there is no such file; the option names the "
+            "folder with paper.json and dense_fog.json, in Fogline's sources scenario/\n");
 }
 
 /// Waits until a program has begun to compute on several threads.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/own_program.h"
@@ -45,12 +46,21 @@ struct Made {
 constexpr std::int64_t kMostSeeds = 100'000;
 
 /// @throws InputError
-SeedRange SeedsOf(const std::string& text) {
-  const SeedRange seeds = ParseSeeds(text);
-  if (seeds.count() > kMostSeeds) {
-    throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
+void RequireFew(const SeedRange& seeds, const std::string& text) {
+  if (seeds.count() <= kMostSeeds) return;
+  throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
+}
+
+/// Looks for the scenarios that the studies vary before long work. @throws InputError
+void RequireScenarios(const std::filesystem::path& folder) {
+  for (const char* name : {"paper.json", "dense_fog.json"}) {
+    const std::filesystem::path file = folder / name;
+    if (std::filesystem::exists(file)) continue;
+    throw InputError(
+        fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
+                    "with paper.json and dense_fog.json, in Fogline's sources scenario/",
+                    file.string()));
   }
-  return seeds;
 }
 
 std::string Names() {
@@ -72,7 +82,7 @@ std::vector<const Study*> Chosen(const std::string& name) {
 }
 
 Made Make(const Study& study, const StudyArguments& arguments) {
-  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : SeedsOf(arguments.seeds);
+  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : ParseSeeds(arguments.seeds);
   std::optional<Progress> progress;
   const StudyContext context{.scenarios = arguments.scenarios,
                              .seeds = seeds,
@@ -112,9 +122,10 @@ std::string CommandOf(const StudyArguments& arguments) {
 }
 
 std::string ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
-                   const std::filesystem::path& page) {
+                   const std::filesystem::path& page, const std::filesystem::path& text) {
   nlohmann::ordered_json json{{"command", CommandOf(arguments)},
                               {"report", page.string()},
+                              {"text", text.string()},
                               {"studies", nlohmann::ordered_json::array()}};
   for (const Made& made : all) {
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
@@ -161,7 +172,8 @@ class OutFolder {
 
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
-  if (!arguments.seeds.empty()) SeedsOf(arguments.seeds);
+  if (!arguments.seeds.empty()) RequireFew(ReadSeeds(arguments.seeds), arguments.seeds);
+  RequireScenarios(arguments.scenarios);
   const OutFolder folder(arguments.out);
   WatchInterrupts();
   std::vector<Made> all;
@@ -175,8 +187,13 @@ int RunStudy(const StudyArguments& arguments) {
   const std::string stem = arguments.name == kAll ? "studies" : arguments.name;
   const std::filesystem::path page = arguments.out / (stem + ".html");
   Write(page, MakeStudyPage(CommandOf(arguments), sections));
-  Write(arguments.out / (stem + ".md"), MakeStudyText(CommandOf(arguments), sections));
-  fmt::print("{}\n", arguments.json ? ToJson(arguments, all, page) : page.string());
+  const std::filesystem::path text = arguments.out / (stem + ".md");
+  Write(text, MakeStudyText(CommandOf(arguments), sections));
+  if (arguments.json) {
+    PrintJson(ToJson(arguments, all, page, text));
+  } else {
+    fmt::print("{}\n{}\n", page.string(), text.string());
+  }
   return kDone;
 }
 
