@@ -37,8 +37,8 @@ void DetectionAccumulator::Add(const Sample& sample) {
   wrong_human_ = deceived ? 0 : sample.lambda_human;
   wrong_automation_ = deceived && misled ? sample.lambda_automation : 0;
   if (deceived && !onset_s_) onset_s_ = sample.time_s;
-  if (alarm && onset_s_ && !measures_.detection_delay_s) {
-    measures_.detection_delay_s = sample.time_s - *onset_s_;
+  if (alarm && onset_s_ && !measures_.deception_to_alarm_s) {
+    measures_.deception_to_alarm_s = sample.time_s - *onset_s_;
   }
   if (alarm && !alarm_ && quiet_) ++false_alarms_;
   alarm_ = alarm;

@@ -20,8 +20,10 @@ struct DetectionMeasures {
   /// than the tolerance too. A policy that does without the deceived LiDAR is not blamed for it.
   double wrong_automation_s = 0;
   /// From the first step in which the LiDAR is deceived to the first one of an alarm from there on,
-  /// s; nullopt if it never is, or if nobody ever notices.
-  std::optional<double> detection_delay_s;
+  /// s: 0 if the alarm lasts already, as where fog shows in the Degree of Conflict before the LiDAR
+  /// is off by the tolerance. nullopt if it never is deceived, or if no alarm follows. Delays that
+  /// count from the begin of the fog are those of `fogline study conflict`.
+  std::optional<double> deception_to_alarm_s;
   /// Alarms that begin in clear air with a LiDAR that is right, per hour of that; nullopt without
   /// such time.
   std::optional<double> false_alarms_ph;

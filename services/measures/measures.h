@@ -62,7 +62,7 @@ struct RunMeasures {
   /// nullopt without one. A ramp of the authorities counts from its first step to `handover_s`
   /// after its last.
   std::optional<double> max_handover_jerk_mps3;
-  /// Time under the wrong controller, detection delay, false alarms.
+  /// Time under the wrong controller, time from deception to alarm, false alarms.
   DetectionMeasures detection;
 
   /// Largest |acceleration| of the host, applied, m/s2. Step 0 has none.
@@ -215,8 +215,9 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "time, weighed by authority, of the human while the LiDAR is right");
   number("wrong_automation_s", m.detection.wrong_automation_s, "s",
          "the same of the automation while LiDAR and fusion are deceived");
-  number("detection_delay_s", m.detection.detection_delay_s, "s",
-         "from the LiDAR's first deception to DoC >= threshold");
+  number("deception_to_alarm_s", m.detection.deception_to_alarm_s, "s",
+         "from the first step with the LiDAR off by more than measures.lidar_tolerance_m to DoC >= "
+         "threshold; 0 if DoC was there before");
   number("false_alarms_ph", m.detection.false_alarms_ph, "1/h",
          "alarms that begin in clear air, per hour of it");
   number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",

@@ -79,6 +79,21 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["findings"][0]));
 }
 
+TEST(StudyVerbTest, DelaysAreFromFogToAlarmAndNoMeasureOfARun) {
+  const ScratchFolder folder;
+  ASSERT_EQ(Study({"conflict", "--seeds", "1", "--out", folder.path()}).code, 0);
+  // Findings need more seeds.
+  const std::string shipped = Read(SourceDirectory() / "docs/studies/studies.md");
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(says(shipped, " is first with a mean delay from fog to alarm of "));
+  for (const std::string& text : {shipped, Read(folder.File("conflict.md"))}) {
+    EXPECT_TRUE(says(text, "| fog to alarm (s) |"));
+    EXPECT_TRUE(says(text, "It is not deception_to_alarm_s of a run"));
+  }
+}
+
 TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   const ScratchFolder folder;
   const Outcome all = Study({"all", "--seeds", "7", "--out", folder.path(), "--json"});

@@ -146,8 +146,8 @@ std::string FindingOf(const ConflictSet& set, std::span<const std::size_t> ranke
                       "alarms for a mean time of {:g} s between them.",
                       set.seeds, kClearRun_s, kArlZero_s);
   }
-  text += fmt::format(" {} is first with a mean delay of {} s", NameWithTwin(ranked.front()),
-                      Text(set.means[ranked.front()].delay_s, 2));
+  text += fmt::format(" {} is first with a mean delay from fog to alarm of {} s",
+                      NameWithTwin(ranked.front()), Text(set.means[ranked.front()].delay_s, 2));
   const auto doc = std::ranges::find(ranked, std::size_t{0});
   if (doc == ranked.end()) {
     text += "; the Degree of Conflict has no threshold.";
@@ -199,7 +199,7 @@ std::string PercentText(const Estimate& share) {
 StudyTable TableOf(const ConflictSet& set, std::span<const std::size_t> ranked) {
   StudyTable table{
       .caption = fmt::format("Fog model {}: mean over visibilities, soonest first", NameOfSet(set)),
-      .columns = {"measure", "delay (s)", "less or more than DoC (s)", "AUC",
+      .columns = {"measure", "fog to alarm (s)", "less or more than DoC (s)", "AUC",
                   "ARL0 in other clear runs (s)"}};
   for (const double visibility_m : kVisibilities_m) {
     table.columns.push_back(fmt::format("detected at {:g} m (%)", visibility_m));
@@ -356,9 +356,12 @@ std::string MethodOf(const StudyContext& context) {
       "Thresholds: the least with a mean time to the first alarm of {2:g} s ({3:g} false alarms an "
       "hour) in {0} runs of {4:g} s in clear air with other seeds; a measure whose least threshold "
       "has none or more than {5:g} times that is not ranked. ARL0 is counted again in as many "
-      "runs, of other seeds. Delay: from the begin of the fog to the first alarm within it; a fog "
-      "that is never noticed counts with its whole length of {6:g} s, so that no measure gains by "
-      "missing what is hard to see. Intervals of delay and detection: {7} resamples of the runs in "
+      "runs, of other seeds. Delay from fog to alarm: from the begin of the fog to the first alarm "
+      "within it; a fog that is never noticed counts with its whole length of {6:g} s, so that no "
+      "measure gains by missing what is hard to see. It is not deception_to_alarm_s of a run, "
+      "which counts from the first step with a LiDAR that is off by more than its tolerance, has "
+      "the scenario's own threshold, and is 0 where the alarm is there by then. Intervals of this "
+      "delay and of detection: {7} resamples of the runs in "
       "clear air, with a threshold found anew in each, and of the seeds of the fog, the same for "
       "all measures and visibilities; so the uncertainty of the threshold is in them, and "
       "differences are paired. Detection is given by visibility, with the interval of Clopper and "
@@ -387,8 +390,8 @@ StudyResult RunConflictStudy(const StudyContext& context) {
     if (set.noise != kUsualNoise) continue;
     section.figures.push_back(
         OverVisibility(set, ranked, fmt::format("conflict-delay-{}", set.fog),
-                       fmt::format("Delay of detection: fog model {}", NameOfSet(set)), "Delay (s)",
-                       &DetectorOutcome::delay_s));
+                       fmt::format("Delay from fog to alarm: fog model {}", NameOfSet(set)),
+                       "Fog to alarm (s)", &DetectorOutcome::delay_s));
     section.figures.push_back(
         OverVisibility(set, ranked, fmt::format("conflict-auc-{}", set.fog),
                        fmt::format("Area under the ROC: fog model {}", NameOfSet(set)), "AUC",

@@ -84,17 +84,17 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
   }
   const DetectionMeasures m = Collect(run, scenario);
   EXPECT_EQ(m.wrong_human_s, 3 * kStep_s);
-  EXPECT_EQ(m.detection_delay_s, std::nullopt);
+  EXPECT_EQ(m.deception_to_alarm_s, std::nullopt);
 }
 
 TEST(DetectionTest, DelayIsFromTheFirstDeceptionToTheAlarm) {
   auto run = QuietRun(8);
   for (const std::size_t k : {2, 3, 4, 5}) Deceive(run[k]);
-  EXPECT_EQ(Collect(run).detection_delay_s, std::nullopt);
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, std::nullopt);
   run[5].doc = 0.5;  // at the threshold is an alarm
-  EXPECT_EQ(Collect(run).detection_delay_s, 3 * kStep_s);
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, 3 * kStep_s);
   run[1].doc = run[2].doc = 0.7;  // on already
-  EXPECT_EQ(Collect(run).detection_delay_s, 0);
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, 0);
 }
 
 TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
