@@ -35,6 +35,21 @@ std::optional<std::string> GroupOf(std::string_view url) {
   return std::nullopt;
 }
 
+bool IsMulticast(const std::string& address) {
+  const auto numeric = ToAddress(address);
+  return numeric && IN_MULTICAST(ntohl(numeric->s_addr));
+}
+
+std::string InPlaceOfUnicast(std::string_view url) {
+  std::string_view place = url.substr(url.find("://") + 3);
+  place = place.substr(0, place.find('?'));
+  const std::size_t colon = place.find(':');
+  return fmt::format(
+      "write udpm://{}{}, the same on every machine; or tcpq://{} with `fogline-relay --listen {}` "
+      "on that machine",
+      kDefaultGroup, colon == std::string_view::npos ? "" : place.substr(colon), place, place);
+}
+
 std::string RouteError(const std::string& address) {
   const auto numeric = ToAddress(address);
   if (!numeric) return "not an IPv4 address";
@@ -85,7 +100,12 @@ std::string RouteInterface(std::string_view table, const std::string& address) {
 
 std::string WhyNoMulticast(std::string_view url) {
   const auto group = GroupOf(url);
-  if (!group || !ToAddress(*group) || RouteError(*group).empty()) return "";
+  if (!group || !ToAddress(*group)) return "";
+  if (!IsMulticast(*group)) {
+    return fmt::format("{} is no multicast group (224.0.0.0 to 239.255.255.255): {}", *group,
+                       InPlaceOfUnicast(url));
+  }
+  if (RouteError(*group).empty()) return "";
   return fmt::format(
       "this machine has no route for multicast to {}; as root: \"{}\" for traffic on this machine "
       "alone, or with the network's interface in place of lo",

@@ -15,6 +15,12 @@ inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev
 /// other URLs.
 std::optional<std::string> GroupOf(std::string_view url);
 
+/// Whether an IPv4 address is that of a multicast group.
+bool IsMulticast(const std::string& address);
+
+/// What to write in place of a udpm:// or mpudpm:// URL with the address of one machine.
+std::string InPlaceOfUnicast(std::string_view url);
+
 /// What the kernel says when asked for a route to an IPv4 address, "" if it has one.
 std::string RouteError(const std::string& address);
 

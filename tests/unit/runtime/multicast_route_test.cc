@@ -39,9 +39,20 @@ TEST(MulticastRouteTest, HasNoInterfaceWithoutARoute) {
   EXPECT_EQ(RouteInterface(std::string(kHeading) + "eth0\ttorn", kGroup), "");
 }
 
+TEST(MulticastRouteTest, TellsAnAddressOfOneMachineFromAGroup) {
+  EXPECT_TRUE(IsMulticast("224.0.0.1"));
+  EXPECT_TRUE(IsMulticast("239.255.255.255"));
+  for (const char* address : {"223.255.255.255", "240.0.0.1", "10.0.0.1", "239.1.1", ""}) {
+    EXPECT_FALSE(IsMulticast(address)) << address;
+  }
+  EXPECT_EQ(WhyNoMulticast("udpm://10.0.0.1:7700?ttl=1"),
+            "10.0.0.1 is no multicast group (224.0.0.0 to 239.255.255.255): write "
+            "udpm://239.255.76.67:7700, the same on every machine; or tcpq://10.0.0.1:7700 with "
+            "`fogline-relay --listen 10.0.0.1:7700` on that machine");
+}
+
 TEST(MulticastRouteTest, KnowsNothingAgainstAnAddressThatIsAlwaysThere) {
   EXPECT_EQ(RouteError("127.0.0.1"), "");
-  EXPECT_EQ(WhyNoMulticast("udpm://127.0.0.1:7667"), "");
   EXPECT_EQ(WhyNoMulticast("tcpq://127.0.0.1"), "");
 }
 
