@@ -106,12 +106,24 @@ bool Conductor::IsExternal(Role role) const {
 }
 
 bool Conductor::AllReady(TimePoint now) const {
-  return std::ranges::all_of(kRoles, [&](const RoleInfo& info) {
-    const Member& role = member(info.role);
-    const bool lost = phase_ == Phase::kRunning && IsExternal(info.role) &&
-                      HeldAgainst(role.heard, now) > kSilent;
-    return role.status && role.status->state != status_t::WAITING && !role.rival && !lost;
+  return std::ranges::none_of(kRoles, [&](const RoleInfo& info) {
+    return Lacks(info.role, now) || member(info.role).rival;
   });
+}
+
+bool Conductor::Lacks(Role role, TimePoint now) const {
+  const Member& of = member(role);
+  const bool lost =
+      phase_ == Phase::kRunning && IsExternal(role) && HeldAgainst(of.heard, now) > kSilent;
+  return !of.status || of.status->state == status_t::WAITING || lost;
+}
+
+std::vector<Role> Conductor::Awaited(TimePoint now) const {
+  std::vector<Role> awaited;
+  for (const RoleInfo& info : kRoles) {
+    if (IsExternal(info.role) && Lacks(info.role, now)) awaited.push_back(info.role);
+  }
+  return awaited;
 }
 
 std::string Conductor::NotReady() const {

@@ -60,6 +60,9 @@ class Conductor {
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
+  /// Roles that others start and that are not there: never heard of, or silent while the run goes
+  /// on.
+  std::vector<Role> Awaited(TimePoint now) const;
   /// Sum over the roles of a counter of status_t.
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
@@ -110,6 +113,8 @@ class Conductor {
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
+  /// Whether the run cannot begin or go on because this role is not there.
+  bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
   /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
   bool Admit(Role role, const status_t& status, TimePoint now);

@@ -260,7 +260,8 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "1", "--stall-timeout", "2"});
   Background run(command);
-  EXPECT_TRUE(run.WaitForErr("waiting for the driver, which is started elsewhere\n"));
+  EXPECT_TRUE(
+      run.WaitForErr("waiting for the driver (60 s): start it with: fogline-driver --lcm-url "));
   while (commands.WaitForNext().header.step < 10) {
   }
   // WHEN the driver is killed

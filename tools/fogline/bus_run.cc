@@ -22,10 +22,12 @@
 #include "services/radar/radar.h"
 #include "services/recorder/event_log.h"
 #include "services/recorder/recorder.h"
+#include "services/runtime/beacon.h"
 #include "services/runtime/conductor.h"
 #include "services/runtime/fallback_log.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
+#include "tools/fogline/external_roles.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/relay_process.h"
@@ -92,18 +94,18 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
 // ---- processes ---------------------------------------------------------------------------------
 
 void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
-                       const std::vector<Role>& external) {
+                       const std::string& external) {
   fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
   if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
-  for (const Role role : external) {
-    fmt::print(stderr, "waiting for the {}, which is started elsewhere\n", NameOf(role));
-  }
+  fmt::print(stderr, "{}", external);
 }
 
 std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id,
                                      const Scenario& scenario, const ExperimentOptions& options,
                                      const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
+  Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
+  const ExternalRoles external(bus.url(), options.traffic, options.wait);
   Supervisor supervisor(bus, conductor,
                         {.url = bus.url(),
                          .run_id = run_id,
@@ -117,7 +119,9 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                          .say = [&](const std::string& line) {
                            if (options.announce) progress.Say(line);
                          }});
-  if (options.announce) AnnounceProcesses(bus, run_id, supervisor.group(), options.external);
+  if (options.announce) {
+    AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
+  }
   std::string trouble;
   FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
@@ -136,6 +140,8 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       }
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
+      external.Check(conductor, now);
+      if (beacon.Due(now)) beacon.Send(now, conductor.Awaited(now));
       progress.Show(conductor.step());
       if (options.announce && trouble.empty()) {
         trouble = conductor.KeyTrouble();

@@ -27,9 +27,10 @@ struct ExperimentOptions {
   std::string transport = "udpm";
   /// Event log to write. Empty: a temporary one, or with direct none at all.
   std::filesystem::path log;
-  double pace = 0;             // simulated seconds per second; 0: as fast as it goes
-  bool realtime = false;       // at that pace by the wall clock, whoever keeps up
-  std::vector<Role> external;  // roles that somebody else starts
+  double pace = 0;                       // simulated seconds per second; 0: as fast as it goes
+  bool realtime = false;                 // at that pace by the wall clock, whoever keeps up
+  std::vector<Role> external;            // roles that somebody else starts
+  Duration wait = milliseconds(60'000);  // for these to be ready; 0: for ever
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
   TrafficOptions traffic;

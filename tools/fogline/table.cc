@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/fogline/arguments.h"
+#include "tools/fogline/external_roles.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
@@ -79,9 +80,11 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
 std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                      const ExperimentOptions& options, Scenario scenario,
                                      std::span<const double> thresholds, const SeedRange& seeds) {
+  const ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
-    fmt::print(stderr, "each of {} runs waits on {} for the {}, which is started elsewhere\n",
-               seeds.count() * (std::ssize(thresholds) + 1), options.transport, NameOf(role));
+    fmt::print(stderr, "each of {} runs waits for the {} ({}): start it for each with: {}\n",
+               seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
+               external.Command(role));
   }
   std::vector<ThresholdRow> rows;
   for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});

@@ -7,6 +7,8 @@
 
 #include "scenario/loader.h"
 #include "services/graph.h"
+#include "services/runtime/lcm_url.h"
+#include "tools/fogline/help.h"
 
 namespace fogline {
 namespace {
@@ -21,21 +23,38 @@ std::vector<std::string> RoleNames() {
 
 TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
     : transport_(std::move(transport)) {
-  CLI::Option* where =
+  said_ =
       verb.add_option("--transport", transport_,
                       "direct: one process, no messages; memq: one process, LCM in memory; udpm: "
                       "one process per role on a multicast port of its own; tcpq: the same over "
                       "TCP, through a fogline-relay of its own; or an LCM URL")
           ->capture_default_str();
-  verb.add_option("--lcm-url", url_, "The same as --transport URL")->excludes(where);
+  verb.add_option("--lcm-url", url_,
+                  "The same as --transport URL (without either: $LCM_DEFAULT_URL, if it is set)")
+      ->excludes(said_);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(RoleNames()));
+  verb.add_option("--wait", wait_s_, "Wait so long for roles started elsewhere, in s (0: for ever)")
+      ->check(NumberIn(0, 1e6))
+      ->capture_default_str();
   AddTrafficOptions(verb, traffic_);
 }
 
+std::string TransportArguments::Unsaid() const {
+  const auto url = UrlOfEnvironment();
+  const bool as_processes = transport_ != "direct" || !external_.empty();
+  if (!url || !as_processes) return transport_;
+  if (!IsLcmUrl(*url)) {
+    throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
+                                 *url, kLcmDefaultUrl));
+  }
+  return *url;
+}
+
 void TransportArguments::Apply(ExperimentOptions& options) const {
-  options.transport = url_.empty() ? transport_ : url_;
+  options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
+  options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   // Wrong is wrong, also for a run without messages to sign.
   KeyOf(traffic_);

@@ -10,10 +10,11 @@
 
 namespace fogline {
 
-/// --transport, --lcm-url, --external, --key and --faults.
+/// --transport, --lcm-url, --external, --wait, --key and --faults.
 class TransportArguments {
  public:
-  /// @param transport where runs go unless something else is said
+  /// @param transport where runs go unless something else is said. A run whose roles are
+  ///     processes goes to $LCM_DEFAULT_URL then, if that is set.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, what is asked of its traffic, and the roles that are started elsewhere.
@@ -21,9 +22,14 @@ class TransportArguments {
   void Apply(ExperimentOptions& options) const;
 
  private:
+  /// The transport of a run that was told neither --transport nor --lcm-url.
+  std::string Unsaid() const;
+
   std::string transport_;
+  CLI::Option* said_;  // --transport
   std::string url_;
   std::vector<std::string> external_;
+  double wait_s_ = 60;
   TrafficOptions traffic_;
 };
 

@@ -128,6 +128,27 @@ TEST_F(ConductorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
   EXPECT_EQ(conductor_.Total(&status_t::repairs_asked), 7);
 }
 
+TEST_F(ConductorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
+  using testing::ElementsAre;
+  using testing::IsEmpty;
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .stall_limit = milliseconds(60'000),
+                                      .external = {Role::kDriver, Role::kAcc}});
+  const TimePoint now = Clock::now();
+  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kAcc, Role::kDriver));
+  SayStatus(Role::kAcc);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
+  BeAtStep(-1);
+  EXPECT_THAT(conductor.Awaited(now), IsEmpty());
+  // WHEN none of them is heard for more than a second of the run
+  const TimePoint later = Clock::now() + milliseconds(1200);
+  PollUntil(conductor, later);
+  EXPECT_THAT(conductor.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
+}
+
 TEST_F(ConductorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   BeAtStep(-1);
   const status_t first = role(Role::kAcc);

@@ -1,0 +1,75 @@
+// The runs that announce themselves where programs listen that were given no URL. Not a subscriber
+// and not a clock: it is fed with messages and times.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fogline/beacon_t.hpp"
+#include "services/graph.h"
+#include "services/runtime/clock.h"
+#include "services/runtime/wire.h"
+
+namespace fogline {
+
+/// The channel of beacon_t. It is no part of kGraph: no run has it.
+inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
+/// A run announces itself so often, a few times while a person looks for it.
+inline constexpr Duration kBeaconEvery = milliseconds(500);
+
+/// A run as its beacon tells it, and as it may be printed.
+struct Announcement {
+  std::int64_t run_id = 0;
+  std::int64_t began_us = 0;  // wall clock, since 1970
+  std::string url;
+  std::string scenario;  // title; UTF-8
+  std::string host;
+  std::int32_t pid = 0;
+  std::vector<Role> awaited;  // roles that the run waits for, in the order of kRoles
+
+  bool Awaits(Role role) const;
+  /// "run 123 at udpm://239.255.76.67:7700?ttl=0, scenario A box of fog, announced by pid 4711 on
+  /// lab1; it waits for the driver". ASCII: '?' stands for other characters of the title.
+  std::string Text() const;
+};
+
+/// Everything that is announced. LCM has no access control, so a beacon is refused that cannot be
+/// one of a runner on this machine, and what is remembered is bounded, whatever comes.
+class Announcements {
+ public:
+  /// @param host name of this machine; a beacon does not leave it, so none is of another
+  explicit Announcements(std::string host) : host_(std::move(host)) {}
+
+  /// @param wall_us wall clock, microseconds since 1970
+  void Hear(Bytes bytes, TimePoint now, std::int64_t wall_us);
+
+  /// The runs that go on, the newest first.
+  std::vector<Announcement> Current(TimePoint now) const;
+
+  /// Beacons that were not taken.
+  std::int64_t refused() const { return refused_; }
+
+  /// A run that has not been heard of for so long (six beacons) has ended without saying so.
+  static constexpr Duration kGone = 6 * kBeaconEvery;
+  /// So many are remembered. Where there is no room, the one that was heard least is forgotten:
+  /// invented runs that are heard once do not hide one that goes on speaking.
+  static constexpr std::size_t kMax = 256;
+  /// Of a title, in bytes.
+  static constexpr std::size_t kMaxTitle = 200;
+
+ private:
+  struct Entry {
+    Announcement announcement;
+    TimePoint heard;
+    std::int64_t times = 0;
+  };
+  bool Take(Bytes bytes, TimePoint now, std::int64_t wall_us);
+  void Keep(Announcement announcement, TimePoint now);
+
+  std::string host_;
+  std::vector<Entry> entries_;  // in the order in which they were heard first
+  std::int64_t refused_ = 0;
+};
+
+}  // namespace fogline

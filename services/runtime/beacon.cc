@@ -1,0 +1,92 @@
+#include "services/runtime/beacon.h"
+
+#include <lcm/lcm.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "scenario/wording.h"
+#include "services/runtime/lcm_url.h"
+#include "services/runtime/multicast_route.h"
+#include "services/runtime/this_process.h"
+
+namespace fogline {
+namespace {
+
+std::int64_t WallMicroseconds() {
+  using std::chrono::microseconds;
+  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// The title as a beacon carries it: a longer one is cut between two characters.
+std::string TitleOf(const std::string& scenario) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
+  std::string title = EscapeControls(scenario);
+  if (title.size() <= Announcements::kMaxTitle) return title;
+  std::size_t end = Announcements::kMaxTitle;
+  while (end > 0 && continues(title[end])) --end;
+  return title.substr(0, end);
+}
+
+/// Where to send; nothing if there is nowhere.
+std::optional<std::string> BeaconUrl(const std::string& run_url) {
+  const std::string meeting = MeetingUrl();
+  const auto address = ParseMulticastUrl(meeting);
+  if (!address || !WhyNoMulticast(meeting).empty() || SameNetwork(meeting, run_url) ||
+      !MayBeAnnounced(run_url)) {
+    return std::nullopt;
+  }
+  return fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
+}
+
+}  // namespace
+
+Beacon::Beacon(Announcement run) {
+  beacon_.header.run_id = run.run_id;
+  beacon_.began_us = WallMicroseconds();
+  beacon_.url = std::move(run.url);
+  beacon_.scenario = TitleOf(run.scenario);
+  beacon_.host = HostName();
+  beacon_.pid = getpid();
+  if (const auto url = BeaconUrl(beacon_.url)) lcm_ = lcm_create(url->c_str());
+}
+
+Beacon::~Beacon() {
+  if (lcm_ == nullptr) return;
+  beacon_.over = 1;
+  Publish();
+  lcm_destroy(lcm_);
+}
+
+void Beacon::Send(TimePoint now, const std::vector<Role>& awaited) {
+  due_ = now + kBeaconEvery;
+  beacon_.awaited.clear();
+  for (const Role role : awaited) beacon_.awaited.emplace_back(NameOf(role));
+  beacon_.num_awaited = static_cast<std::int32_t>(beacon_.awaited.size());
+  Publish();
+}
+
+void Beacon::Publish() {
+  Encode(beacon_, buffer_);
+  static_cast<void>(lcm_publish(lcm_, std::string(kBeaconChannel).c_str(), buffer_.data(),
+                                static_cast<unsigned>(buffer_.size())));
+}
+
+BeaconListener::BeaconListener(const std::string& meeting_url) : announcements_(HostName()) {
+  if (!ParseMulticastUrl(meeting_url)) return;
+  bus_.emplace(meeting_url);
+  bus_->Subscribe(kBeaconChannel, [this](Bytes bytes) {
+    const TimePoint now = Clock::now();
+    if (const auto share = gate_.Count(now)) bus_->Thin(kBeaconChannel, *share);
+    announcements_.Hear(bytes, now, WallMicroseconds());
+  });
+}
+
+void BeaconListener::Look() {
+  if (bus_) bus_->Drain();
+}
+
+}  // namespace fogline

@@ -1,0 +1,42 @@
+#include "tools/fogline/external_roles.h"
+
+#include <chrono>
+
+#include <fmt/core.h>
+
+namespace fogline {
+
+std::string ExternalRoles::Limit() const {
+  if (limit_ == Duration::zero()) return "for ever";
+  return fmt::format("{:g} s", std::chrono::duration<double>(limit_).count());
+}
+
+std::string ExternalRoles::Command(Role role) const {
+  const std::string key = key_file_.empty() ? "" : fmt::format(" --key '{}'", key_file_);
+  return fmt::format("fogline-{} --lcm-url '{}'{}", NameOf(role), url_, key);
+}
+
+std::string ExternalRoles::Text(const std::vector<Role>& roles) const {
+  std::string text;
+  for (const Role role : roles) {
+    text += fmt::format("waiting for the {} ({}): start it with: {}\n", NameOf(role), Limit(),
+                        Command(role));
+  }
+  return text;
+}
+
+void ExternalRoles::Check(Conductor& conductor, TimePoint now) const {
+  if (limit_ == Duration::zero() || conductor.phase() != Conductor::Phase::kJoining) return;
+  if (conductor.HeldAgainst(began_, now) <= limit_) return;
+  std::string names;
+  std::string commands;
+  for (const Role role : conductor.Awaited(now)) {
+    names += fmt::format("{} the {}", names.empty() ? "" : ",", NameOf(role));
+    commands += fmt::format("{} {}", commands.empty() ? "" : " and", Command(role));
+  }
+  if (names.empty()) return;
+  conductor.Fail(fmt::format("waited {} for{} in vain; start with:{} (--wait 0 waits for ever)",
+                             Limit(), names, commands));
+}
+
+}  // namespace fogline

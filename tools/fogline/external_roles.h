@@ -1,0 +1,37 @@
+// Roles of a run that are started elsewhere: what to start, and how long the run waits for them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/runtime/conductor.h"
+#include "services/runtime/traffic_options.h"
+
+namespace fogline {
+
+class ExternalRoles {
+ public:
+  /// @param url network of the run
+  /// @param limit how long the run waits until all of them are ready; 0: for ever
+  ExternalRoles(std::string url, const TrafficOptions& traffic, Duration limit)
+      : url_(std::move(url)), key_file_(traffic.key_file), limit_(limit), began_(Clock::now()) {}
+
+  /// "60 s", or "for ever".
+  std::string Limit() const;
+  /// The command that starts a role for this run, such as
+  /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".
+  std::string Command(Role role) const;
+  /// One line for each role: that the run waits for it, how long, and what starts it.
+  std::string Text(const std::vector<Role>& roles) const;
+
+  /// Ends the run, by the names of the roles that are missing, once it has waited for too long.
+  void Check(Conductor& conductor, TimePoint now) const;
+
+ private:
+  std::string url_;
+  std::string key_file_;
+  Duration limit_;
+  TimePoint began_;
+};
+
+}  // namespace fogline
