@@ -1,12 +1,16 @@
 #include "services/runtime/service.h"
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/lcm_url.h"
+#include "services/runtime/run_seeker.h"
 #include "services/runtime/this_process.h"
 #include "services/runtime/traffic_options.h"
 #include "services/runtime/version.h"
@@ -30,57 +34,164 @@ void WatchSignals() {
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
 
-int TakePart(Bus& bus, Node& node) {
-  std::string trouble;
-  bool preferred = false;
-  while (!node.left()) {
-    if (trouble.empty() && node.Waits()) {
-      trouble = SignatureTrouble(bus.unverified());
-      if (!trouble.empty()) fmt::print(stderr, "fogline-{}: {}\n", NameOf(node.role()), trouble);
-    }
-    if (interrupted != 0) {
-      node.Leave();
-      return kInterrupted;
-    }
-    if (node.realtime() && !preferred) {
-      preferred = true;  // or not: then it keeps time as well as the machine lets it
-      RunBeforeOthers(node.role() == Role::kWorld ? kWorldPriority : kPriority);
-    }
-    const TimePoint now = Clock::now();
-    bus.Wait(node.Poll(now) - now);
+struct Arguments {
+  std::string name;  // of the program
+  Role role;
+  std::string url;  // "": as NetworkUrl()
+  std::optional<std::int64_t> run_id;
+  double wait_s = 60;
+  TrafficOptions traffic;
+
+  void AddTo(CLI::App& app) {
+    app.add_option("--lcm-url", url, "LCM network to join (default: see above)");
+    app.add_option("--run-id", run_id, "Join only the run with this id");
+    app.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    AddTrafficOptions(app, traffic);
   }
-  if (node.error().empty()) return kStopped;
-  fmt::print(stderr, "fogline-{}: error: {}\n", NameOf(node.role()), node.error());
-  return kFailed;
+};
+
+/// The process on its network: a bus, and the role's node on it.
+class Service {
+ public:
+  /// @throws InputError, std::runtime_error if it cannot join the network
+  Service(const Arguments& arguments, const NodeFactory& make)
+      : arguments_(arguments), make_(make), began_(Clock::now()) {
+    Join(NetworkUrl(arguments.url), arguments.run_id);
+    if (arguments.run_id) return;
+    if (arguments.url.empty()) seeker_.emplace(arguments.role, MeetingUrl());
+    Say(fmt::format("waiting for a run on {}{}", bus_->url(), HowToStartOne()));
+  }
+
+  /// Takes part in one run. @return the exit code
+  int Run() {
+    while (!node_->left()) {
+      if (interrupted != 0) {
+        node_->Leave();
+        return kInterrupted;
+      }
+      if (node_->Waits()) {
+        WarnOfSignatures();
+        Seek(Clock::now());
+      } else {
+        seeker_.reset();
+        PreferIfRealtime();
+      }
+      TakePart();
+    }
+    if (node_->error().empty()) return kStopped;
+    Say("error: " + node_->error());
+    return kFailed;
+  }
+
+ private:
+  void Say(const std::string& what) const { fmt::print(stderr, "{}: {}\n", arguments_.name, what); }
+
+  void Join(const std::string& url, std::optional<std::int64_t> run_id) {
+    node_.reset();
+    bus_.emplace(url);
+    Apply(arguments_.traffic, arguments_.role, *bus_);
+    node_ = make_(*bus_, run_id);
+  }
+
+  std::string HowToStartOne() const {
+    // The runner itself starts the recorder, and whatever it gives a run's id.
+    if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
+    const std::string url =
+        arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);
+    return fmt::format("; start one with: fogline run SCENARIO --external {}{}",
+                       NameOf(arguments_.role), url);
+  }
+
+  void TakePart() {
+    try {
+      const TimePoint now = Clock::now();
+      bus_->Wait(node_->Poll(now) - now);
+    } catch (const std::exception& error) {
+      if (!seeker_ || !seeker_->Tries()) throw;
+      GoBack(error.what());  // the relay that a message named has ended
+    }
+  }
+
+  /// Goes where a run waits for the role, and back if it does not.
+  /// @throws std::runtime_error after --wait
+  void Seek(TimePoint now) {
+    if (arguments_.wait_s > 0 && now - began_ > std::chrono::duration<double>(arguments_.wait_s)) {
+      throw std::runtime_error(
+          fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
+                      arguments_.wait_s, bus_->url(), HowToStartOne()));
+    }
+    if (!seeker_) return;
+    if (seeker_->InVain(now)) return GoBack("nothing is heard of it");
+    const auto run = seeker_->Look(now);
+    if (!run) return;
+    Say("joins " + run->Text());
+    try {
+      Join(run->url, run->run_id);
+    } catch (const std::exception& error) {  // the address came from the network
+      GoBack(error.what());
+    }
+  }
+
+  void GoBack(const std::string& why) {
+    seeker_->GiveUp();
+    Join(MeetingUrl(), std::nullopt);
+    Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
+  }
+
+  void WarnOfSignatures() {
+    if (warned_) return;
+    const std::string trouble = SignatureTrouble(bus_->unverified());
+    warned_ = !trouble.empty();
+    if (warned_) Say(trouble);
+  }
+
+  void PreferIfRealtime() {
+    if (!node_->realtime() || std::exchange(preferred_, true)) return;
+    // If it is not granted, the process keeps time as well as the machine lets it.
+    RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
+  }
+
+  const Arguments& arguments_;
+  const NodeFactory& make_;
+  TimePoint began_;
+  std::optional<Bus> bus_;
+  std::unique_ptr<Node> node_;
+  std::optional<RunSeeker> seeker_;  // while there is no run yet
+  bool warned_ = false;
+  bool preferred_ = false;
+};
+
+std::string_view PurposeOf(Role role) {
+  for (const RoleInfo& info : kRoles) {
+    if (info.role == role) return info.purpose;
+  }
+  return "";
 }
 
 }  // namespace
 
 int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                const std::function<void(CLI::App&)>& extend) {
-  const std::string name = fmt::format("fogline-{}", NameOf(role));
-  std::string_view purpose;
-  for (const RoleInfo& info : kRoles) {
-    if (info.role == role) purpose = info.purpose;
-  }
+  Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
+  const std::string& name = arguments.name;
   CLI::App app{
-      fmt::format("Fogline's {}: {}.\n"
-                  "Joins the next run that is announced on the LCM network, takes part in it,\n"
-                  "and leaves when the runner says so.",
-                  NameOf(role), purpose),
+      fmt::format(
+          "Fogline's {}: {}.\n"
+          "Joins the next run on the LCM network, takes part in it, and leaves when the\n"
+          "runner says so. Without --lcm-url the network is $LCM_DEFAULT_URL or, if that is\n"
+          "not set, {}, and that of any run that waits\n"
+          "for this role and is announced there.",
+          NameOf(role), PurposeOf(role), kLcmDefaultUrl),
       name};
   app.set_version_flag("--version", VersionText());
-  std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  app.add_option("--lcm-url", url, "LCM network to join")
-      ->envname("LCM_DEFAULT_URL")
-      ->capture_default_str();
-  std::optional<std::int64_t> run_id;
-  app.add_option("--run-id", run_id, "Join only the run with this id");
-  TrafficOptions traffic;
-  AddTrafficOptions(app, traffic);
+  arguments.AddTo(app);
   app.footer(
       fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
-                  "\n\nExample: two shells of one machine\n"
+                  "\n\nExamples: in two shells of one machine; with a network of one's own\n"
+                  "  {0}\n"
+                  "  fogline run scenario/paper.json --external {1}\n\n"
                   "  {0} --lcm-url 'udpm://239.255.76.67:7700?ttl=0'\n"
                   "  fogline run scenario/paper.json --external {1} \\\n"
                   "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'",
@@ -96,10 +207,7 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   }
   WatchSignals();
   try {
-    Bus bus(url);
-    Apply(traffic, role, bus);
-    const std::unique_ptr<Node> node = make(bus, run_id);
-    return TakePart(bus, *node);
+    return Service(arguments, make).Run();
   } catch (const InputError& error) {
     fmt::print(stderr, "{}: {}\n", name, error.what());
     return kBadUsage;

@@ -1,0 +1,48 @@
+// Where a role looks for a run when it was told neither a network nor a run: at the meeting address
+// (lcm_url.h), and at the network of each run that is announced there and waits for the role.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "services/runtime/beacon.h"
+
+namespace fogline {
+
+class RunSeeker {
+ public:
+  /// @throws InputError as Bus()
+  RunSeeker(Role role, const std::string& meeting_url) : role_(role), listener_(meeting_url) {}
+
+  /// To be called while the role has no run. @return the run to go to now, if there is one: the
+  ///     newest that waits for this role and was not tried in vain
+  std::optional<Announcement> Look(TimePoint now);
+
+  /// Whether the role is at the network of an announced run.
+  bool Tries() const { return tried_.has_value(); }
+  /// True once nothing was heard of the run for kPatience. The role then goes back to the meeting
+  /// address.
+  bool InVain(TimePoint now) const { return tried_ && now - tried_->at > kPatience; }
+  /// The run that was gone to last is not tried again.
+  void GiveUp();
+
+ private:
+  // A runner that waits speaks 20 times a second; what a busy machine or a bad network holds back
+  // takes less.
+  static constexpr Duration kPatience = milliseconds(5000);
+  // Invented runs fill no memory.
+  static constexpr std::size_t kMaxInVain = 64;
+
+  struct Try {
+    std::int64_t run_id;
+    TimePoint at;
+  };
+  Role role_;
+  BeaconListener listener_;
+  std::optional<Try> tried_;
+  std::deque<std::int64_t> in_vain_;
+};
+
+}  // namespace fogline
