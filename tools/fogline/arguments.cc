@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/recorder/event_log.h"
+#include "services/runtime/lcm_url.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -90,18 +91,27 @@ SeedRange ReadSeeds(const std::string& text) {
 
 void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
 
-void CheckNetworkUrl(const std::string& url) {
+NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
+  verb.add_option("--lcm-url", url_,
+                  fmt::format("LCM network {} (default: $LCM_DEFAULT_URL, else {}, and the runs "
+                              "announced there)",
+                              what, kLcmDefaultUrl));
+}
+
+std::string NetworkArguments::Url() const {
+  const std::string url = NetworkUrl(url_);
+  const std::string said = fmt::format("{} {}", Follows() ? "LCM_DEFAULT_URL" : "--lcm-url", url);
   if (url.starts_with("memq:")) {
     throw InputError(
-        fmt::format("error: --lcm-url {}: the memory of one process, which no other can look into; "
-                    "give the run a udpm:// URL",
-                    url));
+        fmt::format("error: {}: the memory of one process, which no other can look into; give the "
+                    "run a udpm:// URL",
+                    said));
   }
-  for (const char* provider : {"udpm://", "mpudpm://", "tcpq://"}) {
-    if (url.starts_with(provider)) return;
+  if (!IsLcmUrl(url)) {
+    throw InputError(
+        fmt::format("error: {}: not an LCM network such as \"{}\"", said, kLcmDefaultUrl));
   }
-  throw InputError(fmt::format(
-      "error: --lcm-url {}: not an LCM network such as \"udpm://239.255.76.67:7667?ttl=0\"", url));
+  return url;
 }
 
 namespace {

@@ -98,9 +98,22 @@ SeedRange ReadSeeds(const std::string& text);
 /// --json output: `text` and a newline on stdout.
 void PrintJson(const std::string& text);
 
-/// For those who look at a network from outside: refuses URLs that name none.
-/// @throws InputError
-void CheckNetworkUrl(const std::string& url);
+/// --lcm-url of a verb that looks at a network from outside.
+class NetworkArguments {
+ public:
+  /// @param what completes "LCM network ..."
+  NetworkArguments(CLI::App& verb, std::string_view what);
+
+  /// The network to look at, by the rule of every program (lcm_url.h).
+  /// @throws InputError if the URL names no network that others can look into
+  std::string Url() const;
+  /// Whether the verb is to follow the runs that are announced there, because the command line
+  /// names no network.
+  bool Follows() const { return url_.empty(); }
+
+ private:
+  std::string url_;
+};
 
 /// {"name": value, ...} of a run's measures, to stand in a larger JSON text. With more than one
 /// following car "followers" is the list of theirs.

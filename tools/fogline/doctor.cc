@@ -29,16 +29,13 @@ Examples:
   fogline doctor --json | jq '.findings[] | select(.level != "ok")')";
 
 struct DoctorArguments {
-  explicit DoctorArguments(CLI::App& verb) {
-    verb.add_option("--lcm-url", url, "LCM network to examine")
-        ->envname("LCM_DEFAULT_URL")
-        ->capture_default_str();
+  explicit DoctorArguments(CLI::App& verb) : network(verb, "to examine") {
     verb.add_flag("--json", json, "Print the findings as JSON");
     ShowExitCodes(verb, {.done = "no problem", .check_failed = "a problem"});
     verb.footer(kExplanation);
   }
 
-  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  NetworkArguments network;
   bool json = false;
 };
 
@@ -89,9 +86,9 @@ void PrintAsText(const Findings& findings) {
 }
 
 int Doctor(const DoctorArguments& arguments) {
-  CheckNetworkUrl(arguments.url);
-  const Findings findings = Examine(arguments.url);
-  arguments.json ? PrintAsJson(arguments.url, findings) : PrintAsText(findings);
+  const std::string url = arguments.network.Url();
+  const Findings findings = Examine(url);
+  arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(
       findings, [](const Finding& finding) { return finding.level == Level::kProblem; });
   return problem ? kCheckFailed : kDone;

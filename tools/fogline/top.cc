@@ -10,11 +10,14 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/beacon.h"
 #include "services/runtime/bus.h"
+#include "services/runtime/lcm_url.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/verbs.h"
+#include "tools/watch/announced.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"
 #include "tools/watch/traffic_text.h"
@@ -28,21 +31,19 @@ interval; jitter, the standard deviation of the times between messages in it; ag
 message; steps that have not come within the next 64 (lost), came behind a newer one (late), or
 came again (twice); messages that cannot be decoded, by the type that they seem to be. Per role,
 from its STATUS: state, step, repairs asked for and served, processor time, memory, refusals;
-silent after 1 s without STATUS. It sees what the network brings to this machine: what is lost on
-the way here may have arrived elsewhere. q or Ctrl-C quits.
+silent after 1 s without STATUS. Without --lcm-url it follows the newest run that is announced on
+this machine, and names it and the others. It sees what the network brings to this machine: what is
+lost on the way here may have arrived elsewhere. q or Ctrl-C quits.
 
 Examples:
-  fogline run scenario/paper.json --pace 1 --lcm-url 'udpm://239.255.76.67:7700?ttl=0' &
+  fogline run scenario/paper.json --pace 1 & fogline top
   fogline top --lcm-url 'udpm://239.255.76.67:7700?ttl=0'
   fogline top --once --json --interval 2 | jq '.runs[].channels[] | {channel, rate_hz}'
   fogline top --for 60 --interval 10 >> traffic.txt
   lcm-logplayer logs/paper-1.lcm & fogline top     a log that is being played)";
 
 struct TopArguments {
-  explicit TopArguments(CLI::App& verb) {
-    verb.add_option("--lcm-url", url, "LCM network to look at, as `fogline run` prints it")
-        ->envname("LCM_DEFAULT_URL")
-        ->capture_default_str();
+  explicit TopArguments(CLI::App& verb) : network(verb, "to look at") {
     verb.add_option("--interval", interval_s, "Length of an observation, in s")
         ->check(NumberIn(0.1, 3600))
         ->capture_default_str();
@@ -55,7 +56,7 @@ struct TopArguments {
     verb.footer(kExplanation);
   }
 
-  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  NetworkArguments network;
   double interval_s = 1;
   double limit_s = 0;
   bool once = false;
@@ -64,6 +65,12 @@ struct TopArguments {
 
 // How often it looks at what poll() does not see: messages that a flood has left undrained.
 constexpr Duration kLookEvery = milliseconds(50);
+// How often it looks whether another run is to be followed: opening a network takes its time.
+constexpr Duration kFollowEvery = milliseconds(100);
+// Every run of this machine has announced itself in this time.
+constexpr Duration kDiscovery = 2 * kBeaconEvery;
+// Announced runs on networks that cannot be opened: so many are remembered.
+constexpr std::size_t kMaxUnreachable = 64;
 
 Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
@@ -72,14 +79,14 @@ Duration FromSeconds(double seconds) {
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
-      : arguments_(arguments), bus_(arguments.url), statistics_(Clock::now()) {
-    bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
-      if (!IsLcmsOwn(channel)) statistics_.Add(channel, bytes, Clock::now());
-    });
+      : arguments_(arguments), bus_(arguments.network.Url()), statistics_(Clock::now()) {
+    Watch(bus_);
+    if (arguments.network.Follows()) listener_.emplace(bus_.url());
     if (isatty(STDOUT_FILENO) == 1 && !arguments.once && !arguments.json) terminal_.emplace();
   }
 
   int Run() {
+    if (!terminal_) Discover();
     const TimePoint began = Clock::now();
     const TimePoint end =
         arguments_.limit_s > 0 ? began + FromSeconds(arguments_.limit_s) : TimePoint::max();
@@ -97,57 +104,130 @@ class Top {
   }
 
  private:
+  void Watch(Bus& bus) {
+    bus.SubscribeAll([this](std::string_view channel, Bytes bytes) {
+      if (!IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
+    });
+  }
+
+  /// Waits until a run is announced, so that the first interval has the whole of its traffic.
+  void Discover() {
+    const TimePoint end = Clock::now() + kDiscovery;
+    while (listener_ && !followed_ && Clock::now() < end && Listen(Clock::now() + kLookEvery)) {
+    }
+    statistics_.Observe(Clock::now());
+  }
+
+  /// Looks besides at the network of the newest run that is announced.
+  void Follow(TimePoint now) {
+    if (!listener_ || now < follow_at_) return;
+    follow_at_ = now + kFollowEvery;
+    listener_->Look();
+    runs_ = listener_->Runs();
+    const auto newest = std::ranges::find_if(runs_, [this](const Announcement& run) {
+      return std::ranges::find(unreachable_, run.run_id) == unreachable_.end();
+    });
+    if (newest == runs_.end()) return followed_.reset();
+    std::rotate(runs_.begin(), newest, newest + 1);
+    const Announcement& run = runs_.front();
+    if (followed_ && SameNetwork(followed_->url(), run.url)) return;
+    followed_.reset();
+    if (SameNetwork(bus_.url(), run.url)) return;
+    try {
+      followed_.emplace(run.url);
+      Watch(*followed_);
+    } catch (const std::exception&) {  // the address came from the network
+      Leave(run.run_id);
+    }
+  }
+
+  /// Handles what has come from the run that is followed.
+  void DrainFollowed() {
+    if (!followed_) return;
+    try {
+      followed_->Drain();
+    } catch (const std::exception&) {  // its relay has ended
+      Leave(runs_.front().run_id);
+    }
+  }
+
+  /// Follows this run no more.
+  void Leave(std::int64_t run_id) {
+    followed_.reset();
+    if (unreachable_.size() == kMaxUnreachable) unreachable_.clear();
+    unreachable_.push_back(run_id);
+  }
+
   /// Handles messages and keys. @return false if the user wants to quit before it is time
   bool Listen(TimePoint until) {
     while (true) {
       const TimePoint now = Clock::now();
       if (now >= until) return true;
-      std::array<pollfd, 2> waited{
+      std::array<pollfd, 3> waited{
           pollfd{.fd = bus_.fd(), .events = POLLIN, .revents = 0},
+          pollfd{.fd = followed_ ? followed_->fd() : -1, .events = POLLIN, .revents = 0},
           pollfd{.fd = terminal_ ? terminal_->fd() : -1, .events = POLLIN, .revents = 0}};
       const Duration wait = std::min(until - now, kLookEvery);
       poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(wait)) + 1);
       if (WasInterrupted()) return false;
       bus_.Drain();
+      DrainFollowed();
+      Follow(now);
       if (terminal_ && terminal_->Key() == 'q') return false;
     }
   }
 
   void Show() {
     const TrafficView view = statistics_.Observe(Clock::now());
-    if (terminal_) return terminal_->Draw(TrafficLines(view, bus_.url()));
+    if (terminal_) return terminal_->Draw(Lines(view));
     if (arguments_.json) {
-      PrintJson(TrafficJson(view, bus_.url())
-                    .dump(arguments_.once ? 2 : -1, ' ', false,
-                          nlohmann::json::error_handler_t::replace));
+      PrintJson(Json(view).dump(arguments_.once ? 2 : -1, ' ', false,
+                                nlohmann::json::error_handler_t::replace));
     } else {
-      for (const Line& line : TrafficLines(view, bus_.url())) fmt::print("{}\n", line.text);
+      for (const Line& line : Lines(view)) fmt::print("{}\n", line.text);
       if (!arguments_.once) fmt::print("\n");
     }
     std::fflush(stdout);
   }
 
+  /// The network of the run that is followed, else the one that was to be looked at.
+  const std::string& url() const { return followed_ ? followed_->url() : bus_.url(); }
+
+  std::vector<Line> Lines(const TrafficView& view) const {
+    std::vector<Line> lines = TrafficLines(view, url());
+    const std::vector<Line> announced = AnnouncedLines(runs_, followed_.has_value());
+    lines.insert(lines.begin() + 1, announced.begin(), announced.end());
+    return lines;
+  }
+
+  nlohmann::ordered_json Json(const TrafficView& view) const {
+    nlohmann::ordered_json json = TrafficJson(view, url());
+    if (listener_) json["announced"] = AnnouncedJson(runs_, followed_.has_value());
+    return json;
+  }
+
   const TopArguments& arguments_;
   Bus bus_;
   TrafficStatistics statistics_;
+  std::optional<BeaconListener> listener_;  // where runs are to be followed
+  std::vector<Announcement> runs_;          // that are announced; first the one to be followed
+  std::optional<Bus> followed_;             // its network
+  std::vector<std::int64_t> unreachable_;   // runs
+  TimePoint follow_at_{};
   std::optional<Terminal> terminal_;
 };
 
 }  // namespace
 
 void AddTop(CLI::App& app, Action& action) {
-  CLI::App* top = app.add_subcommand("top", "Show live traffic: channels and roles, run by run");
-  CLI::App* spy = app.add_subcommand("spy", "The same as top")->group("");  // not in the list
-  for (CLI::App* verb : {top, spy}) {
-    const auto arguments = std::make_shared<TopArguments>(*verb);
-    verb->callback([&action, arguments] {
-      action = [arguments] {
-        CheckNetworkUrl(arguments->url);
-        WatchInterrupts();
-        return Top(*arguments).Run();
-      };
-    });
-  }
+  CLI::App* verb = app.add_subcommand("top", "Show live traffic: channels and roles, run by run");
+  const auto arguments = std::make_shared<TopArguments>(*verb);
+  verb->callback([&action, arguments] {
+    action = [arguments] {
+      WatchInterrupts();
+      return Top(*arguments).Run();
+    };
+  });
 }
 
 }  // namespace fogline

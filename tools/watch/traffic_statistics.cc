@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "services/runtime/announcements.h"
 #include "services/runtime/seal.h"
 
 namespace fogline {
@@ -52,8 +53,8 @@ std::int64_t ChannelView::NumUndecodable() const {
   return sum;
 }
 
-bool IsLcmsOwn(std::string_view channel) {
-  return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm");
+bool IsHousekeeping(std::string_view channel) {
+  return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm") || channel == kBeaconChannel;
 }
 
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {

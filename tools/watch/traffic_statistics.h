@@ -58,9 +58,9 @@ struct TrafficView {
   std::int64_t forgotten = 0;       // runs, channels and roles beyond what is kept
 };
 
-/// Whether a channel carries what LCM says to itself: its test of the network, and where mpudpm
-/// tells its ports.
-bool IsLcmsOwn(std::string_view channel);
+/// Whether a channel carries no traffic of anybody: what LCM says to itself (its test of the
+/// network, and where mpudpm tells its ports), and the beacons of runs.
+bool IsHousekeeping(std::string_view channel);
 
 /// Statistics of everything that arrives. What it remembers is bounded, whatever arrives: where
 /// there is no room, what has been silent longest is forgotten.

@@ -28,7 +28,7 @@ std::string_view NameOf(Finding::Level level);
 /// Route, multicast on this machine, socket filter, receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// Who is heard on the network within a second.
+/// What is heard on the network within a second: runs there, and runs that are announced there.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
 /// Clock, wake-up, synchronisation, processors, disk.

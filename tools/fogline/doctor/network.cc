@@ -14,6 +14,7 @@
 
 #include "scenario/loader.h"
 #include "scenario/wording.h"
+#include "services/runtime/beacon.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/channel_filter.h"
 #include "services/runtime/multicast_route.h"
@@ -42,6 +43,14 @@ int UrlOption(const std::string& url, const std::string& name, int otherwise) {
   const char* begin = url.data() + at + name.size() + 1;
   std::from_chars(begin, url.data() + url.size(), value);
   return value;
+}
+
+bool ExamineGroup(const std::string& url, const std::string& group, Findings& findings) {
+  if (IsMulticast(group)) return true;
+  findings.push_back({"multicast_group", Level::kProblem,
+                      fmt::format("{} is no multicast group (224.0.0.0 to 239.255.255.255)", group),
+                      InPlaceOfUnicast(url)});
+  return false;
 }
 
 bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
@@ -205,13 +214,28 @@ std::string DescribeRun(const RunView& run) {
   return text;
 }
 
+void ReportAnnounced(const std::string& url, BeaconListener& beacons, Findings& findings) {
+  beacons.Look();
+  for (const Announcement& run : beacons.Runs()) {
+    findings.push_back({"announced_runs", Level::kOk, run.Text(), ""});
+  }
+  if (beacons.refused() > 0) {
+    findings.push_back({"announced_runs", Level::kWarning,
+                        fmt::format("on {}: {} announcements that no run of this machine can have "
+                                    "made were refused",
+                                    url, beacons.refused()),
+                        "another port keeps a run apart"});
+  }
+}
+
 }  // namespace
 
 void ExamineNetwork(const std::string& url, Findings& findings) {
   constexpr int kReceiveBuffer = 2 << 20;  // what a Bus asks for
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const auto group = GroupOf(url);
-  if (group && ExamineRoute(*group, UrlOption(url, "ttl", 0), findings)) {
+  if (group && ExamineGroup(url, *group, findings) &&
+      ExamineRoute(*group, UrlOption(url, "ttl", 0), findings)) {
     ExamineLoopback(*group, findings);
   }
   ExamineFilter(url, findings);
@@ -221,12 +245,14 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
 void ExamineTraffic(const std::string& url, Findings& findings) {
   constexpr Duration kListen = milliseconds(1000);
   Bus bus(url);
+  BeaconListener beacons(url);
   const TimePoint end = Clock::now() + kListen;
   TrafficStatistics statistics(Clock::now());
   bus.SubscribeAll([&statistics](std::string_view channel, Bytes bytes) {
-    if (!IsLcmsOwn(channel)) statistics.Add(channel, bytes, Clock::now());
+    if (!IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
   });
   for (TimePoint now = Clock::now(); now < end; now = Clock::now()) bus.Wait(end - now);
+  ReportAnnounced(url, beacons, findings);
   const TrafficView view = statistics.Observe(Clock::now());
   for (const RunView& run : view.runs) {
     findings.push_back(

@@ -1,0 +1,43 @@
+#include "tools/watch/announced.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+namespace fogline {
+namespace {
+
+// The window is for the traffic. More runs than these are not on one machine, or are invented.
+constexpr std::size_t kMaxLines = 8;
+
+}  // namespace
+
+std::vector<Line> AnnouncedLines(const std::vector<Announcement>& runs, bool followed) {
+  std::vector<Line> lines;
+  for (const Announcement& run : runs) {
+    if (lines.size() == kMaxLines) {
+      lines.push_back({fmt::format("{} more runs are announced", runs.size() - kMaxLines)});
+      break;
+    }
+    const bool shown = followed && &run == runs.data();
+    lines.push_back({(shown ? "" : "also announced: ") + run.Text()});
+  }
+  return lines;
+}
+
+nlohmann::ordered_json AnnouncedJson(const std::vector<Announcement>& runs, bool followed) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Announcement& run : runs) {
+    nlohmann::ordered_json entry{{"run_id", run.run_id},
+                                 {"lcm_url", run.url},
+                                 {"scenario", run.scenario},
+                                 {"host", run.host},
+                                 {"pid", run.pid},
+                                 {"awaited", nlohmann::ordered_json::array()},
+                                 {"followed", followed && &run == runs.data()}};
+    for (const Role role : run.awaited) entry["awaited"].push_back(NameOf(role));
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace fogline
