@@ -2,7 +2,7 @@
 // prints all its rows, with tabs between the cells, each time that a channel has appeared. lcm-spy
 // itself runs unchanged:
 //
-//   JAVA_TOOL_OPTIONS=-javaagent:probe.jar tools/spy --lcm-url URL
+//   JAVA_TOOL_OPTIONS=-javaagent:probe.jar fogline spy --lcm-url URL
 import java.awt.Component;
 import java.awt.Container;
 import java.awt.Frame;

@@ -103,7 +103,8 @@ class Logger {
   Background process_;
 };
 
-/// Debian's lcm-spy as tools/spy starts it, on a screen of its own, with SpyProbe looking at it.
+/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own, with SpyProbe looking at
+/// it.
 class Spy {
  public:
   explicit Spy(Bus& bus)
@@ -111,9 +112,9 @@ class Spy {
         screen_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
     EXPECT_TRUE(screen_.WaitForOut("\n", kPatience)) << "no X server: " << screen_.Err();
     const std::string display = screen_.Out().substr(0, screen_.Out().find('\n'));
-    process_.emplace(std::vector<std::string>{
-        "env", "DISPLAY=:" + display, "JAVA_TOOL_OPTIONS=-javaagent:" + BuildProbe(), "tools/spy",
-        "--types", FOGLINE_BINARY_DIR "/lib/fogline_lcmtypes.jar", "--lcm-url", bus.url()});
+    process_.emplace(std::vector<std::string>{"env", "DISPLAY=:" + display,
+                                              "JAVA_TOOL_OPTIONS=-javaagent:" + BuildProbe(),
+                                              Program("fogline"), "spy", "--lcm-url", bus.url()});
   }
 
   /// Waits until it shows everything that was sent so far.
@@ -322,74 +323,6 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   EXPECT_TRUE(received == ReadTraffic(log));
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());
-}
-
-TEST(LcmToolsTest, SpyStarterExplainsItself) {
-  const Outcome help = RunCommand({"tools/spy", "--help"});
-  EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.out, HasSubstr("Example"));
-  const Outcome unknown = RunCommand({"tools/spy", "--url", "udpm://"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.err, "tools/spy: error: unknown argument --url; see tools/spy --help\n");
-  EXPECT_EQ(RunCommand({"tools/spy", "--lcm-url"}).code, 2);
-}
-
-TEST(LcmToolsTest, SpyStarterNamesThePackageThatIsMissing) {
-  const ScratchFolder empty;
-  const auto error = [&](std::vector<std::string> command) {
-    const Outcome outcome = RunCommand(command);
-    EXPECT_EQ(outcome.code, 3) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-    return outcome.err;
-  };
-  const std::string nowhere = empty.path().string();
-  EXPECT_THAT(error({"env", "JAVA_HOME=" + nowhere, "tools/spy"}),
-              HasSubstr("apt-get install default-jre"));
-  EXPECT_THAT(error({"tools/spy", "--jars", nowhere}), HasSubstr("apt-get install liblcm-java"));
-  std::ofstream(empty.File("lcm.jar")) << "";
-  EXPECT_THAT(error({"tools/spy", "--jars", nowhere}),
-              HasSubstr("apt-get install libjchart2d-java"));
-  EXPECT_THAT(error({"tools/spy", "--types", empty.File("types.jar")}),
-              HasSubstr("there are no message types at " + empty.File("types.jar")));
-  std::ofstream(empty.File("types.jar")) << "";
-  EXPECT_THAT(error({"env", "--unset=DISPLAY", "tools/spy", "--types", empty.File("types.jar")}),
-              HasSubstr("DISPLAY is not set"));
-}
-
-TEST(LcmToolsTest, SpyStarterBuildsTheMessageTypesOfItsTree) {
-  // GIVEN a tree with tools/spy alone, and a Java that says what it is started with
-  const ScratchFolder tree;
-  for (const char* folder : {"tools", "build", "jars", "jdk/bin", "jdk/lib"}) {
-    std::filesystem::create_directories(tree.path() / folder);
-  }
-  std::filesystem::copy(SourceDirectory() / "tools/spy", tree.File("tools/spy"));
-  for (const char* file : {"jars/lcm.jar", "jars/jchart2d.jar", "jdk/lib/libawt_xawt.so"}) {
-    std::ofstream(tree.File(file)) << "";
-  }
-  std::ofstream(tree.File("jdk/bin/java")) << "#!/bin/sh\necho \"$@\"\n";
-  std::filesystem::permissions(tree.File("jdk/bin/java"), std::filesystem::perms::owner_all);
-  const auto spy = [&] {
-    return RunCommand({"env", "JAVA_HOME=" + tree.File("jdk"), "DISPLAY=:0", tree.File("tools/spy"),
-                       "--jars", tree.File("jars")});
-  };
-  // THEN it says what to do where nothing is configured,
-  Outcome outcome = spy();
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("build is not configured: cmake -S . -B build -G Ninja"));
-  // or was configured without Java,
-  const std::string rules = tree.File("build/build.ninja");
-  std::ofstream(rules) << "build other: phony\n";
-  outcome = spy();
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("apt-get install default-jdk"));
-  // and else builds the types and starts lcm-spy with them
-  std::ofstream(rules) << "rule touch\n  command = touch $out\n"
-                          "build lib/fogline_lcmtypes.jar: touch\n"
-                          "build fogline_lcmtypes_java: phony lib/fogline_lcmtypes.jar\n";
-  outcome = spy();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(std::filesystem::exists(tree.File("build/lib/fogline_lcmtypes.jar")));
-  EXPECT_THAT(outcome.out, HasSubstr(":" + tree.File("build/lib/fogline_lcmtypes.jar")));
 }
 
 }  // namespace

@@ -42,13 +42,12 @@ TEST_P(ToolTest, PrintsItsHelpAndDoesNothingElse) {
   EXPECT_THAT(help.out, HasSubstr("\nExample"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest,
-                         testing::Values("demo", "test", "bench", "spy", "format"),
+INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest, testing::Values("demo", "test", "bench", "format"),
                          [](const auto& script) { return std::string(script.param); });
 
 TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   const BareShell shell;
-  for (const std::string script : {"tools/demo", "tools/test", "tools/format", "tools/spy"}) {
+  for (const std::string script : {"tools/demo", "tools/test", "tools/format"}) {
     const Outcome outcome = shell.Run(script, "--fast");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");

@@ -24,7 +24,7 @@ again and catches up, and the result is the same.
 Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
-  fogline run scenario/paper.json --pace 1       in real speed, to watch with tools/spy
+  fogline run scenario/paper.json --pace 1       in real speed, for fogline top or spy
   fogline run scenario/paper.json --transport memq --json
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";

@@ -34,6 +34,7 @@ void AddExport(CLI::App& app, Action& action);
 void AddGraph(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 void AddTop(CLI::App& app, Action& action);
+void AddSpy(CLI::App& app, Action& action);
 void AddDoctor(CLI::App& app, Action& action);
 void AddKeygen(CLI::App& app, Action& action);
 void AddHelp(CLI::App& app, Action& action);

@@ -3,9 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
-#include <sstream>
 
 #include <fmt/core.h>
 
@@ -14,6 +12,7 @@
 #include "services/runtime/version.h"
 #include "tools/fogline/doctor/findings.h"
 #include "tools/fogline/process_group.h"
+#include "tools/fogline/spy_parts.h"
 
 namespace fogline {
 namespace {
@@ -22,24 +21,6 @@ using Level = Finding::Level;
 namespace fs = std::filesystem;
 
 bool Executable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
-bool Readable(const fs::path& file) { return access(file.c_str(), R_OK) == 0; }
-
-/// Where the shell would find a program, "" if nowhere.
-fs::path InPath(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (const fs::path file = fs::path(folder) / program; Executable(file)) return file;
-  }
-  return {};
-}
-
-fs::path JavaProgram() {
-  const char* home = std::getenv("JAVA_HOME");
-  if (home == nullptr || *home == '\0') return InPath("java");
-  const fs::path java = fs::path(home) / "bin/java";
-  return Executable(java) ? java : fs::path();
-}
 
 void ExamineJava(Findings& findings) {
   const fs::path java = JavaProgram();
@@ -48,9 +29,7 @@ void ExamineJava(Findings& findings) {
                         "apt-get install default-jre; `fogline top` needs none"});
     return;
   }
-  std::error_code error;
-  const fs::path real = fs::canonical(java, error);
-  if (!fs::exists(real.parent_path() / "../lib/libawt_xawt.so", error)) {
+  if (!OpensWindows(java)) {
     findings.push_back({"java", Level::kWarning,
                         fmt::format("{} cannot open windows: no lcm-spy", java.string()),
                         "apt-get install default-jre (headless is not enough)"});
@@ -62,26 +41,21 @@ void ExamineJava(Findings& findings) {
 void ExamineSpy(const fs::path& programs, Findings& findings) {
   for (const auto& [jar, package] :
        {std::pair{"lcm.jar", "liblcm-java"}, std::pair{"jchart2d.jar", "libjchart2d-java"}}) {
-    const fs::path folder = "/usr/share/java";
-    const fs::path local = "/usr/local/share/java";
-    if (Readable(folder / jar) || Readable(local / jar)) continue;
+    if (!InstalledJar(jar).empty()) continue;
     findings.push_back({"lcm_spy", Level::kWarning,
-                        fmt::format("there is no {}: no lcm-spy", (folder / jar).string()),
+                        fmt::format("there is no /usr/share/java/{}: no lcm-spy", jar),
                         fmt::format("apt-get install {}", package)});
     return;
   }
   findings.push_back({"lcm_spy", Level::kOk, "the libraries of lcm-spy are there", ""});
-  for (const char* place : {"../lib", "../share/java"}) {
-    const fs::path jar = (programs / place / "fogline_lcmtypes.jar").lexically_normal();
-    if (!Readable(jar)) continue;
+  if (const fs::path jar = TypesJar(programs); !jar.empty()) {
     findings.push_back({"lcm_spy_types", Level::kOk,
                         fmt::format("message types for lcm-spy: {}", jar.string()), ""});
     return;
   }
   findings.push_back({"lcm_spy_types", Level::kWarning,
                       "the message types for lcm-spy are not built: it decodes nothing",
-                      "tools/spy builds them, as does ninja -C build fogline_lcmtypes_java "
-                      "(needs default-jdk)"});
+                      "ninja -C build fogline_lcmtypes_java (needs default-jdk)"});
 }
 
 /// What a program prints when it is asked for its version; by role.

@@ -1,0 +1,166 @@
+// `fogline spy` starts LCM's lcm-spy: with what it needs, on the network where a run is. What
+// lcm-spy shows then is tested in lcm_tools_test.cc.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+// Programs start and messages arrive within this even when every processor is busy.
+constexpr seconds kPatience(30);
+
+/// A Java that says what it is started with, and jars.
+class Parts {
+ public:
+  Parts() {
+    for (const char* name : {"jdk/bin", "jdk/lib", "jars"}) {
+      std::filesystem::create_directories(folder_.path() / name);
+    }
+    for (const char* file : {"jars/lcm.jar", "jars/jchart2d.jar", "jdk/lib/libawt_xawt.so"}) {
+      Touch(file);
+    }
+    std::ofstream(File("jdk/bin/java")) << "#!/bin/sh\necho \"$@\"\n";
+    MakeExecutable("jdk/bin/java");
+  }
+
+  void Touch(const std::string& file) const { std::ofstream(File(file)) << ""; }
+  void Remove(const std::string& file) const { std::filesystem::remove(File(file)); }
+  void MakeExecutable(const std::string& file) const {
+    std::filesystem::permissions(File(file), std::filesystem::perms::owner_all);
+  }
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+  std::vector<std::string> Command(const std::string& program,
+                                   const std::vector<std::string>& arguments) const {
+    std::vector<std::string> command{
+        "env", "JAVA_HOME=" + File("jdk"), "DISPLAY=:0", program, "spy", "--jars", File("jars")};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return command;
+  }
+
+ private:
+  ScratchFolder folder_;
+};
+
+TEST(SpyTest, StartsLcmsOwnWithTheTypesOfItsBuildAndTheUrl) {
+  const Parts parts;
+  const Outcome spy = RunCommand(
+      parts.Command(Program("fogline"), {"--lcm-url", "udpm://239.255.76.67:7700?ttl=0"}));
+  EXPECT_EQ(spy.code, 0) << spy.err;
+  EXPECT_EQ(spy.out, "-Djava.net.preferIPv4Stack=true -cp " + parts.File("jars/lcm.jar") + ":" +
+                         parts.File("jars/jchart2d.jar") +
+                         ":" FOGLINE_BINARY_DIR
+                         "/lib/fogline_lcmtypes.jar lcm.spy.Spy "
+                         "--lcm-url=udpm://239.255.76.67:7700?ttl=0\n");
+}
+
+TEST(SpyTest, HasTheTypesOfItsInstallationToo) {
+  const Parts parts;
+  const ScratchFolder folder;
+  const Outcome install =
+      RunCommand({"cmake", "--install", FOGLINE_BINARY_DIR, "--prefix", folder.path().string()});
+  ASSERT_EQ(install.code, 0) << install.err;
+  const Outcome spy =
+      RunCommand(parts.Command(folder.File("bin/fogline"), {"--lcm-url", FreshMulticastUrl()}));
+  EXPECT_EQ(spy.code, 0) << spy.err;
+  EXPECT_THAT(spy.out, HasSubstr(":" + folder.File("share/java/fogline_lcmtypes.jar") + " "));
+}
+
+TEST(SpyTest, NamesThePackageThatIsMissing) {
+  const Parts parts;
+  const auto error = [&](std::vector<std::string> more, const std::string& setting = "X=") {
+    std::vector<std::string> command = parts.Command(Program("fogline"), more);
+    command.insert(command.begin() + 3, setting);
+    const Outcome spy = RunCommand(command);
+    EXPECT_EQ(spy.code, 3) << spy.err;
+    EXPECT_EQ(spy.out, "");
+    EXPECT_EQ(std::ranges::count(spy.err, '\n'), 1) << spy.err;
+    EXPECT_THAT(spy.err, testing::StartsWith("fogline spy: error: "));
+    return spy.err;
+  };
+  EXPECT_THAT(error({"--types", parts.File("none.jar")}),
+              HasSubstr("there are no message types at " + parts.File("none.jar")));
+  EXPECT_THAT(error({}, "DISPLAY="), HasSubstr("DISPLAY is not set"));
+  parts.Remove("jars/jchart2d.jar");
+  EXPECT_THAT(error({}), HasSubstr("there is no " + parts.File("jars/jchart2d.jar") +
+                                   ": apt-get install libjchart2d-java"));
+  parts.Remove("jars/lcm.jar");
+  EXPECT_THAT(error({}), HasSubstr("apt-get install liblcm-java"));
+  parts.Remove("jdk/lib/libawt_xawt.so");
+  EXPECT_THAT(error({}), HasSubstr("cannot open windows (default-jre-headless?): apt-get install "
+                                   "default-jre\n"));
+  parts.Remove("jdk/bin/java");
+  EXPECT_THAT(error({}), HasSubstr("there is no java: apt-get install default-jre"));
+}
+
+TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
+  const Parts parts;
+  std::filesystem::create_directory(parts.File("bin"));
+  std::filesystem::copy_file(Program("fogline"), parts.File("bin/fogline"));
+  const Outcome spy = RunCommand(parts.Command(parts.File("bin/fogline"), {}));
+  EXPECT_EQ(spy.code, 3);
+  EXPECT_THAT(spy.err, HasSubstr("apt-get install default-jdk, then cmake -S . -B build && ninja "
+                                 "-C build fogline_lcmtypes_java\n"));
+}
+
+/// At a meeting address of its own.
+class SpyAtMeetingTest : public testing::Test {
+ protected:
+  SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }
+  ~SpyAtMeetingTest() override { unsetenv("LCM_DEFAULT_URL"); }
+
+  const std::string url_ = FreshMulticastUrl();
+  const Parts parts_;
+};
+
+TEST_F(SpyAtMeetingTest, WaitsForARunAndLooksWhereItIs) {
+  Background spy(parts_.Command(Program("fogline"), {}));
+  ASSERT_TRUE(spy.WaitForErr("waiting for a run on " + url_, kPatience)) << spy.Err();
+  EXPECT_THAT(spy.Err(), HasSubstr("; start one with: fogline run SCENARIO --pace 1\n"));
+  const ScratchFolder folder;
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "udpm", "--pace",
+                  "1", "--log", folder.File("run.lcm")});
+  ASSERT_EQ(spy.Wait(), 0) << spy.Err();
+  ASSERT_TRUE(run.WaitForErr("processes: ", kPatience));
+  const std::string err = run.Err();
+  const std::size_t at = err.find(" on ") + 4;
+  EXPECT_THAT(
+      spy.Out(),
+      testing::EndsWith(" lcm.spy.Spy --lcm-url=" + err.substr(at, err.find('\n') - at) + "\n"));
+}
+
+TEST_F(SpyAtMeetingTest, LooksAtTheMeetingAddressWhereThereIsTraffic) {
+  Bus bus(url_);
+  Background spy(parts_.Command(Program("fogline"), {}));
+  const TimePoint end = Clock::now() + kPatience;
+  while (IsAlive(spy.pid()) && Clock::now() < end) {
+    bus.Publish("SOMETHING", std::vector<std::uint8_t>{1});
+    bus.Wait(milliseconds(20));
+  }
+  EXPECT_EQ(spy.Wait(), 0) << spy.Err();
+  EXPECT_THAT(spy.Out(), HasSubstr(" --lcm-url=" + url_));
+}
+
+TEST_F(SpyAtMeetingTest, EndsWhenNoRunComes) {
+  const Outcome spy = RunCommand(parts_.Command(Program("fogline"), {"--wait", "0.5"}));
+  EXPECT_EQ(spy.code, 3);
+  EXPECT_EQ(spy.out, "");
+  EXPECT_THAT(spy.err, HasSubstr("fogline spy: error: waited 0.5 s for a run on " + url_));
+  Background interrupted(parts_.Command(Program("fogline"), {}));
+  ASSERT_TRUE(interrupted.WaitForErr("waiting for a run", kPatience));
+  interrupted.Signal(SIGINT);
+  EXPECT_EQ(interrupted.Wait(), 130);
+}
+
+}  // namespace
+}  // namespace fogline::test

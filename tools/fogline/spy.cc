@@ -1,0 +1,164 @@
+// fogline spy: LCM's own lcm-spy with our message types. Debian's /usr/bin/lcm-spy cannot show
+// them: it passes an option that Java has not known since version 14, and a class path without our
+// types.
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "services/runtime/beacon.h"
+#include "tools/fogline/arguments.h"
+#include "tools/fogline/help.h"
+#include "tools/fogline/interrupt.h"
+#include "tools/fogline/spy_parts.h"
+#include "tools/fogline/verbs.h"
+#include "tools/watch/traffic_statistics.h"
+
+namespace fogline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExplanation =
+    R"(A window with a table of every channel: type, rate, jitter, undecodable messages. A double click
+shows a channel's fields; a click on a number's sparkline, its chart. lcm-spy cannot change its
+network: without --lcm-url it starts as soon as a run is announced, on the network of the newest, or
+there is traffic where runs are announced. Uses JAVA_HOME if it is set. Exit codes: 0 window closed,
+2 bad input, 3 something is missing or no run came.
+
+Examples:
+  fogline run scenario/paper.json --pace 1 & fogline spy
+  fogline spy --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
+
+struct SpyArguments {
+  explicit SpyArguments(CLI::App& verb) : network(verb, "to look at") {
+    verb.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
+        ->check(NumberIn(0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--types", types, "Message types (default: those of this build)");
+    verb.add_option("--jars", jars,
+                    "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
+                    "/usr/local/share/java)");
+    verb.footer(kExplanation);
+  }
+
+  NetworkArguments network;
+  double wait_s = 60;
+  fs::path types;
+  fs::path jars;
+};
+
+/// @throws std::runtime_error that names the package to install
+fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
+  const fs::path jar = arguments.jars.empty() ? InstalledJar(name) : arguments.jars / name;
+  if (access(jar.c_str(), R_OK) == 0) return jar;
+  const fs::path folder = arguments.jars.empty() ? "/usr/share/java" : arguments.jars;
+  throw std::runtime_error(
+      fmt::format("there is no {}: apt-get install {}", (folder / name).string(), package));
+}
+
+/// @throws std::runtime_error that says how to make it
+fs::path TypesOf(const SpyArguments& arguments) {
+  const auto programs = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path types = arguments.types.empty() ? TypesJar(programs) : arguments.types;
+  if (access(types.c_str(), R_OK) == 0) return types;
+  if (!arguments.types.empty()) {
+    throw std::runtime_error(fmt::format("there are no message types at {}", types.string()));
+  }
+  throw std::runtime_error(fmt::format(
+      "there are no message types beside {}: apt-get install default-jdk, then cmake -S "
+      ". -B build && ninja -C build fogline_lcmtypes_java",
+      programs.string()));
+}
+
+/// The command line of lcm-spy without its network. @throws std::runtime_error if it cannot run
+std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
+  const fs::path java = JavaProgram();
+  if (java.empty()) throw std::runtime_error("there is no java: apt-get install default-jre");
+  if (!OpensWindows(java)) {
+    throw std::runtime_error(
+        fmt::format("{} cannot open windows (default-jre-headless?): apt-get install default-jre",
+                    java.string()));
+  }
+  const fs::path lcm = JarOf(arguments, "lcm.jar", "liblcm-java");
+  const fs::path charts = JarOf(arguments, "jchart2d.jar", "libjchart2d-java");
+  const fs::path types = TypesOf(arguments);
+  if (const char* display = std::getenv("DISPLAY"); display == nullptr || *display == '\0') {
+    throw std::runtime_error("no screen: DISPLAY is not set (over ssh: ssh -X)");
+  }
+  return {java.string(), "-Djava.net.preferIPv4Stack=true", "-cp",
+          fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
+}
+
+/// Waits until there is something to look at. @return its network
+/// @throws Interrupted, std::runtime_error when nothing came
+std::string FindNetwork(const SpyArguments& arguments) {
+  // A run that is announced is found in this time, and comes before other traffic.
+  constexpr Duration kDiscovery = 2 * kBeaconEvery;
+  constexpr Duration kLookEvery = milliseconds(50);
+  Bus bus(arguments.network.Url());
+  bool traffic = false;
+  bus.SubscribeAll(
+      [&traffic](std::string_view channel, Bytes) { traffic |= !IsHousekeeping(channel); });
+  BeaconListener beacons(bus.url());
+  const TimePoint began = Clock::now();
+  bool said = false;
+  while (!WasInterrupted()) {
+    bus.Wait(kLookEvery);
+    bus.Drain();
+    beacons.Look();
+    if (const auto runs = beacons.Runs(); !runs.empty()) {
+      fmt::print(stderr, "{}\n", runs.front().Text());
+      return runs.front().url;
+    }
+    const Duration waited = Clock::now() - began;
+    if (waited < kDiscovery) continue;
+    if (traffic) return bus.url();
+    if (!std::exchange(said, true)) {
+      fmt::print(stderr, "waiting for a run on {}; start one with: fogline run SCENARIO --pace 1\n",
+                 bus.url());
+    }
+    if (arguments.wait_s > 0 && waited > std::chrono::duration<double>(arguments.wait_s)) {
+      throw std::runtime_error(
+          fmt::format("waited {:g} s for a run on {} in vain; start one with: fogline run SCENARIO "
+                      "--pace 1, or name its network with --lcm-url (--wait 0 waits for ever)",
+                      arguments.wait_s, bus.url()));
+    }
+  }
+  throw Interrupted("interrupted before a run came");
+}
+
+int Spy(const SpyArguments& arguments) {
+  std::string url = arguments.network.Url();
+  std::vector<std::string> command = SpyCommand(arguments);
+  if (arguments.network.Follows()) {
+    WatchInterrupts();
+    url = FindNetwork(arguments);
+  }
+  command.push_back("--lcm-url=" + url);
+  std::vector<char*> argv;
+  for (std::string& word : command) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  execv(argv.front(), argv.data());
+  throw std::runtime_error(
+      fmt::format("{} cannot be started: {}", command.front(), std::strerror(errno)));
+}
+
+}  // namespace
+
+void AddSpy(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("spy", "Start LCM's lcm-spy with our message types");
+  const auto arguments = std::make_shared<SpyArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return Spy(*arguments); }; });
+}
+
+}  // namespace fogline
