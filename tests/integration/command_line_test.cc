@@ -190,6 +190,17 @@ TEST(CommandLineTest, BeginsEveryRefusalWithTheVerb) {
             "fogline check: error: --print, --schema, --explain and --json exclude each other\n");
 }
 
+TEST(CommandLineTest, BeginsEveryRefusalOfAnotherProgramWithItsName) {
+  for (const char* program : {"fogline-relay", "fogline-radar", "fogline-recorder"}) {
+    const Outcome outcome = RunCommand({Program(program), "--bogus"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(Lines(outcome.err), SizeIs(1));
+    EXPECT_THAT(outcome.err, testing::StartsWith(program + std::string(": error: ")));
+    EXPECT_THAT(outcome.err, testing::EndsWith(" (see " + std::string(program) + " --help)\n"));
+  }
+}
+
 TEST(CommandLineTest, KeepsControlCharactersOfAWordOutOfItsMessages) {
   EXPECT_EQ(ErrorOf({"ta\nble"}),
             "fogline: error: no verb \"ta\\u000able\"; did you mean \"table\"? "

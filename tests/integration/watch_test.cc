@@ -235,6 +235,18 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   EXPECT_TRUE(IsAlive(role.pid()));
 }
 
+TEST(DoctorTest, SaysWhatToWriteInPlaceOfAnAddressThatIsNoGroup) {
+  const Outcome doctor =
+      RunCommand({Program("fogline"), "doctor", "--lcm-url", "udpm://10.0.0.1:7700"});
+  EXPECT_EQ(doctor.code, 1);
+  EXPECT_EQ(doctor.err, "");
+  EXPECT_THAT(doctor.out,
+              HasSubstr("problem  10.0.0.1 is no multicast group (224.0.0.0 to 239.255.255.255)  "
+                        "-> write udpm://239.255.76.67:7700, the same on every machine; or "
+                        "tcpq://10.0.0.1:7700 with `fogline-relay --listen 10.0.0.1:7700` on that "
+                        "machine\n"));
+}
+
 TEST(DoctorTest, ExaminesARelay) {
   Background relay({Program("fogline-relay"), "--listen", "127.0.0.1:0"});
   ASSERT_TRUE(relay.WaitForOut("\n")) << relay.Err();

@@ -17,6 +17,10 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
+// A run of a test has a port of its own, whatever the shell says in which the tests were started. A
+// test that wants the variable sets it.
+[[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
+
 std::string Content(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::ostringstream text;
