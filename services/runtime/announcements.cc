@@ -60,7 +60,7 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
     return entry.announcement.run_id == beacon.header.run_id;
   });
   if (known != entries_.end()) {
-    // A run stays where it is, and its runner is who it was.
+    // A run stays where it is, and keeps its runner.
     const Announcement& run = known->announcement;
     if (run.url != beacon.url || run.pid != beacon.pid || run.began_us != beacon.began_us) {
       return false;

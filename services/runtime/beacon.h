@@ -43,7 +43,7 @@ class Beacon {
   std::vector<std::uint8_t> buffer_;
 };
 
-/// The side of those who look for a run.
+/// The side of a program that looks for a run.
 class BeaconListener {
  public:
   /// Hears nothing where the address is no multicast group.

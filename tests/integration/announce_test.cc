@@ -331,7 +331,7 @@ TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
   EXPECT_THAT(PlaceOf(run).url, testing::StartsWith(meeting.url()));
   const json seen = TopOnce(meeting);
   EXPECT_EQ(seen["runs"].size(), 1U);
-  EXPECT_TRUE(seen["announced"].empty()) << "it is where everybody listens";
+  EXPECT_TRUE(seen["announced"].empty()) << "it is where programs listen";
   // BUT the command line wins
   const std::string other = FreshMulticastUrl();
   Background told(meeting.Run({"--pace", "1", "--lcm-url", other}));

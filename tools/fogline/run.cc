@@ -19,7 +19,9 @@ constexpr const char* kExamples =
     R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
 otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
 its log, and gives exit code 130. A process that is killed or hangs is started
-again and catches up, and the result is the same.
+again and catches up, and the result is the same. A run has a port of its own
+unless LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without
+--lcm-url find it on this machine.
 
 Examples:
   fogline run scenario/paper.json
@@ -27,6 +29,7 @@ Examples:
   fogline run scenario/paper.json --pace 1       in real speed, for fogline top or spy
   fogline run scenario/paper.json --transport memq --json
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
+  fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
 // A step of 0.1 s then takes 100 s.

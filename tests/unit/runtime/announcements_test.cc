@@ -128,7 +128,7 @@ TEST_F(AnnouncementsTest, RefuseBytesThatAreNotExactlyOneBeacon) {
   EXPECT_THAT(Runs(), testing::IsEmpty());
 }
 
-TEST_F(AnnouncementsTest, LetNobodyElseMoveOrEndARun) {
+TEST_F(AnnouncementsTest, LetNoOtherProcessMoveOrEndARun) {
   Hear(Beacon(7));
   beacon_t elsewhere = Beacon(7);
   elsewhere.url = "udpm://239.255.76.67:7701?ttl=0";

@@ -214,8 +214,7 @@ std::string DescribeRun(const RunView& run) {
   return text;
 }
 
-void ReportAnnounced(const std::string& url, BeaconListener& beacons, Findings& findings) {
-  beacons.Look();
+void ReportAnnounced(const std::string& url, const BeaconListener& beacons, Findings& findings) {
   for (const Announcement& run : beacons.Runs()) {
     findings.push_back({"announced_runs", Level::kOk, run.Text(), ""});
   }
@@ -244,6 +243,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
 
 void ExamineTraffic(const std::string& url, Findings& findings) {
   constexpr Duration kListen = milliseconds(1000);
+  constexpr Duration kLookEvery = milliseconds(20);
   Bus bus(url);
   BeaconListener beacons(url);
   const TimePoint end = Clock::now() + kListen;
@@ -251,7 +251,10 @@ void ExamineTraffic(const std::string& url, Findings& findings) {
   bus.SubscribeAll([&statistics](std::string_view channel, Bytes bytes) {
     if (!IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
   });
-  for (TimePoint now = Clock::now(); now < end; now = Clock::now()) bus.Wait(end - now);
+  for (TimePoint now = Clock::now(); now < end; now = Clock::now()) {
+    bus.Wait(std::min(end - now, kLookEvery));
+    beacons.Look();
+  }
   ReportAnnounced(url, beacons, findings);
   const TrafficView view = statistics.Observe(Clock::now());
   for (const RunView& run : view.runs) {
