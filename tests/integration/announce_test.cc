@@ -1,84 +1,28 @@
-// A run on a port of its own is found without being told where it is: by top, doctor and roles. And
-// every program obeys LCM_DEFAULT_URL. Each test has a meeting address of its own: what others
-// announce on LCM's default address is nothing to it.
+// A run on a port of its own is found without being told where it is: by top, doctor and roles.
+// Each test has a meeting address of its own: what others announce on LCM's default address is
+// nothing to it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 #include <functional>
-#include <sstream>
 #include <thread>
 
 #include "services/recorder/event_log.h"
 #include "services/runtime/announcements.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/this_process.h"
+#include "tests/integration/meeting.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
 namespace {
 
 using nlohmann::json;
-using std::chrono::seconds;
 using testing::HasSubstr;
 using testing::Not;
-
-// Programs start and messages arrive within this even when every processor is busy.
-constexpr seconds kPatience(30);
-
-/// The place where programs listen that are given no URL, as the environment names it.
-class Meeting {
- public:
-  const std::string& url() const { return url_; }
-
-  /// A program there.
-  std::vector<std::string> Command(const std::string& program,
-                                   const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command{"env", "LCM_DEFAULT_URL=" + url_, Program(program)};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return command;
-  }
-  /// A run of the paper's scenario with a log of its own.
-  std::vector<std::string> Run(const std::vector<std::string>& more) {
-    ++logs_;
-    std::vector<std::string> arguments{"run", "scenario/paper.json", "--log", Log()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return Command("fogline", arguments);
-  }
-  /// The log of the last run.
-  std::string Log() const { return folder_.File(std::to_string(logs_) + ".lcm"); }
-
- private:
-  std::string url_ = FreshMulticastUrl();
-  ScratchFolder folder_;
-  int logs_ = 0;
-};
-
-/// What a run says on stderr: "run ID on URL".
-struct Place {
-  std::int64_t run_id = 0;
-  std::string url;
-};
-
-Place PlaceOf(Background& run) {
-  EXPECT_TRUE(run.WaitForErr("processes: ", kPatience)) << run.Err();
-  std::istringstream words(run.Err());
-  std::string word;
-  Place place;
-  words >> word >> place.run_id >> word >> place.url;
-  return place;
-}
-
-/// What `fogline top` saw of one interval.
-json TopOnce(const Meeting& meeting) {
-  const Outcome top =
-      RunCommand(meeting.Command("fogline", {"top", "--once", "--json", "--interval", "0.5"}));
-  EXPECT_EQ(top.code, 0) << top.err;
-  return json::parse(top.out, nullptr, false);
-}
 
 /// `fogline top --json`, a document for each interval.
 class Top {
@@ -325,122 +269,6 @@ TEST(AnnounceTest, ABeaconIsNeitherInTheLogNorInTheDigest) {
   }
 }
 
-TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
-  Meeting meeting;
-  Background run(meeting.Run({"--pace", "1"}));
-  EXPECT_THAT(PlaceOf(run).url, testing::StartsWith(meeting.url()));
-  const json seen = TopOnce(meeting);
-  EXPECT_EQ(seen["runs"].size(), 1U);
-  EXPECT_TRUE(seen["announced"].empty()) << "it is where programs listen";
-  // BUT the command line wins
-  const std::string other = FreshMulticastUrl();
-  Background told(meeting.Run({"--pace", "1", "--lcm-url", other}));
-  EXPECT_THAT(PlaceOf(told).url, testing::StartsWith(other));
-  const Outcome direct =
-      RunCommand(meeting.Run({"--json", "--transport", "direct", "--set", "/steps=3"}));
-  EXPECT_EQ(json::parse(direct.out)["transport"], "direct");
-}
-
-TEST(DefaultUrlTest, IsWhereRolesAndRunsMeet) {
-  Meeting meeting;
-  Background driver(meeting.Command("fogline-driver", {}));
-  ASSERT_TRUE(driver.WaitForErr("waiting for a run on " + meeting.url(), kPatience));
-  const Outcome run = RunCommand(meeting.Run({"--json", "--external", "driver"}));
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(json::parse(run.out)["transport"], meeting.url());
-  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  EXPECT_THAT(driver.Err(), Not(HasSubstr("joins run")));
-}
-
-TEST(DefaultUrlTest, IsWhereATableFindsARoleFromElsewhere) {
-  Meeting meeting;
-  Background drivers({"env", "LCM_DEFAULT_URL=" + meeting.url(), "bash", "-c",
-                      "while \"$1\"; do :; done", "-", Program("fogline-driver")});
-  const std::vector<std::string> what{
-      "table", "scenario/paper.json", "--json", "--thresholds", "0.5", "--set", "/steps=250"};
-  std::vector<std::string> external = what;
-  external.insert(external.end(), {"--external", "driver"});
-  const Outcome table = RunCommand(meeting.Command("fogline", external));
-  ASSERT_EQ(table.code, 0) << table.err;
-  EXPECT_EQ(json::parse(table.out)["transport"], meeting.url());
-  // A table without one is direct as ever.
-  const Outcome direct = RunCommand(meeting.Command("fogline", what));
-  EXPECT_EQ(json::parse(direct.out)["transport"], "direct");
-  EXPECT_EQ(json::parse(direct.out)["rows"], json::parse(table.out)["rows"]);
-}
-
-TEST(DefaultUrlTest, IsNamedWhereItIsWrong) {
-  for (const char* verb : {"top", "doctor", "spy"}) {
-    const Outcome outcome =
-        RunCommand({"env", "LCM_DEFAULT_URL=memq://", "DISPLAY=:0", Program("fogline"), verb});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err,
-                HasSubstr("error: LCM_DEFAULT_URL memq://: the memory of one process"));
-  }
-  const Outcome run = RunCommand(
-      {"env", "LCM_DEFAULT_URL=direct", Program("fogline"), "run", "scenario/paper.json"});
-  EXPECT_EQ(run.code, 2);
-  EXPECT_EQ(run.err,
-            "fogline run: error: LCM_DEFAULT_URL is direct, which is no LCM URL such as "
-            "\"udpm://239.255.76.67:7667?ttl=0\"\n");
-}
-
-TEST(WaitTest, OfARunSaysWhatIsMissingAndWhatStartsItAndHasALimit) {
-  Meeting meeting;
-  const Outcome run = RunCommand(meeting.Run(
-      {"--transport", "udpm", "--external", "driver", "--external", "acc", "--wait", "0.5"}));
-  EXPECT_EQ(run.code, 3);
-  const std::string url =
-      run.err.substr(run.err.find(" on ") + 4, run.err.find('\n') - run.err.find(" on ") - 4);
-  EXPECT_THAT(run.err, HasSubstr("waiting for the driver (0.5 s): start it with: fogline-driver "
-                                 "--lcm-url '" +
-                                 url + "'\n"));
-  EXPECT_THAT(run.err, HasSubstr("fogline run: error: waited 0.5 s for the acc, the driver in "
-                                 "vain; start with: fogline-acc --lcm-url '" +
-                                 url + "' and fogline-driver --lcm-url '" + url + "' "));
-}
-
-TEST(WaitTest, OfARunIsAMinuteUnlessSaidOtherwise) {
-  Meeting meeting;
-  Background minute(meeting.Run({"--transport", "udpm", "--external", "driver"}));
-  EXPECT_TRUE(minute.WaitForErr("waiting for the driver (60 s): ", kPatience)) << minute.Err();
-  Background endless(meeting.Run({"--transport", "udpm", "--external", "acc", "--wait", "0"}));
-  EXPECT_TRUE(endless.WaitForErr("waiting for the acc (for ever): ", kPatience)) << endless.Err();
-  Background acc(meeting.Command("fogline-acc", {}));
-  EXPECT_EQ(endless.Wait(), 0) << endless.Err();
-}
-
-TEST(WaitTest, OfATableHasALimitToo) {
-  const Meeting meeting;
-  const Outcome table =
-      RunCommand({Program("fogline"), "table", "scenario/paper.json", "--external", "driver",
-                  "--lcm-url", meeting.url(), "--wait", "0.5"});
-  EXPECT_EQ(table.code, 3);
-  EXPECT_THAT(table.err, HasSubstr("each of 4 runs waits for the driver (0.5 s): start it for each "
-                                   "with: fogline-driver --lcm-url '" +
-                                   meeting.url()));
-  EXPECT_THAT(table.err, HasSubstr("fogline table: error: waited 0.5 s for the driver in vain"));
-}
-
-TEST(WaitTest, OfARoleHasALimitToo) {
-  const std::string url = FreshMulticastUrl();
-  const Outcome driver = RunCommand({Program("fogline-driver"), "--lcm-url", url, "--wait", "0.5"});
-  EXPECT_EQ(driver.code, 3);
-  const std::string full = url + "&recv_buf_size=2097152";
-  const std::string how =
-      "; start one with: fogline run SCENARIO --external driver --lcm-url '" + url + "'";
-  EXPECT_EQ(driver.err, "fogline-driver: waiting for a run on " + full + how +
-                            "\nfogline-driver: error: waited 0.5 s for a run on " + full +
-                            " in vain" + how + " (--wait 0 waits for ever)\n");
-}
-
-TEST(WaitTest, OfARoleThatTheRunnerStartsIsSilent) {
-  const Outcome role = RunCommand({Program("fogline-driver"), "--lcm-url", FreshMulticastUrl(),
-                                   "--run-id", "4711", "--wait", "0.2"});
-  EXPECT_EQ(role.code, 3);
-  EXPECT_THAT(role.err, testing::StartsWith("fogline-driver: error: waited 0.2 s for a run on "));
-}
-
 class AnnounceOnMachineTest : public NetworkTest {};
 
 TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOfThat) {
@@ -461,46 +289,6 @@ TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedOnItsOwnMachineOnly) {
   };
   EXPECT_EQ(announced(0), 1U);
   EXPECT_EQ(announced(1), 0U);
-}
-
-/// The lines of README.md that a person copies to record a run with lcm-logger.
-std::string ReadmeLinesOfLogger() {
-  std::ifstream in(SourceDirectory() / "README.md");
-  std::string block;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("    ")) {
-      block += line.substr(4) + "\n";
-    } else if (block.find("lcm-logger ") != std::string::npos) {
-      return block;
-    } else {
-      block.clear();
-    }
-  }
-  return "";
-}
-
-TEST(ReadmeLinesTest, RecordARunWithLcmLoggerByTheLinesThatItShows) {
-  // GIVEN the lines, with a port that no other test has, and a run of three seconds
-  std::string lines = ReadmeLinesOfLogger();
-  const std::string port = "udpm://239.255.76.67:7700?ttl=0";
-  ASSERT_THAT(lines, HasSubstr(port));
-  lines.replace(lines.find(port), port.size(), FreshMulticastUrl());
-  const std::string run = "fogline run scenario/paper.json";
-  ASSERT_THAT(lines, HasSubstr(run));
-  lines.insert(lines.find(run) + run.size(), " --set /steps=30 --log run.lcm");
-  // WHEN a shell does them in a folder of its own
-  const ScratchFolder folder;
-  std::filesystem::create_directory_symlink(SourceDirectory() / "scenario",
-                                            folder.path() / "scenario");
-  const Outcome shell =
-      RunCommand({"bash", "-c",
-                  "cd " + folder.path().string() + " && PATH=" + ProgramDirectory().string() +
-                      ":$PATH\n" + lines + "\nkill -INT $!; wait"});
-  // THEN lcm-logger has steps of the run; it begins with the one at which it was there
-  EventLogReader log(folder.File("copy.lcm"));
-  std::int64_t truths = 0;
-  while (const auto event = log.Next()) truths += event->channel == "TRUTH" ? 1 : 0;
-  EXPECT_GT(truths, 0) << shell.out << shell.err;
 }
 
 }  // namespace
