@@ -164,10 +164,27 @@ TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
   EXPECT_THAT(run.err, HasSubstr("pid " + std::to_string(two.pid()) + " on lab3"));
 }
 
-TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneItNeeds) {
+TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsOverTcpAndSaysSo) {
+  const Machine machine("island");
+  const Outcome run = RunCommand(machine.On(Run({})));
+  const auto result = Result(run);
+  EXPECT_THAT(run.err, HasSubstr("this machine has no route for multicast: messages go over TCP on "
+                                 "loopback, as with --transport tcpq\n"));
+  EXPECT_EQ(result["transport"], "tcpq");
+  EXPECT_EQ(result["digest"], Undisturbed());
+  // AND so does a table, which says it once
+  const Outcome table = RunCommand(machine.On(
+      {Program("fogline"), "table", "scenario/paper.json", "--transport", "udpm", "--json"}));
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_EQ(std::ranges::count(table.err, '\n'), 1) << table.err;
+  EXPECT_EQ(nlohmann::json::parse(table.out, nullptr, false)["transport"], "tcpq");
+}
+
+TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneAnUrlNeeds) {
   const Machine machine("island");
   for (const auto& command :
-       {Run({}), Run({"--lcm-url", kUrl}), {Program("fogline-driver"), "--lcm-url", kUrl}}) {
+       {Run({"--lcm-url", kUrl}),
+        std::vector<std::string>{Program("fogline-driver"), "--lcm-url", kUrl}}) {
     const Outcome outcome = RunCommand(machine.On(command));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("error: this machine has no route for multicast to 239.255."

@@ -34,6 +34,7 @@ struct ExperimentOptions {
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
   TrafficOptions traffic;
+  std::string remark;     // for the user: where the run does not go where it was asked to go
   bool announce = false;  // say on stderr where the run is and which processes take part
 };
 

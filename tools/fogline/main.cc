@@ -9,5 +9,5 @@ int main(int argc, char** argv) {
   return RunVerbs(argc, argv,
                   {AddRun, AddTable, AddSweep, AddOwnPrograms, AddMetrics, AddCompare, AddReport,
                    AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph, AddCheck, AddTop,
-                   AddDoctor, AddKeygen, AddHelp});
+                   AddSpy, AddDoctor, AddKeygen, AddHelp});
 }

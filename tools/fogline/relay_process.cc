@@ -19,7 +19,7 @@
 namespace fogline {
 namespace {
 
-constexpr Duration kStartLimit = milliseconds(5000);
+constexpr Duration kListenLimit = milliseconds(5000);
 
 /// It names on our stderr whom it disconnects.
 [[noreturn]] void Become(const char* program, int output, pid_t parent) {
@@ -31,7 +31,7 @@ constexpr Duration kStartLimit = milliseconds(5000);
 /// The line that it prints when it listens; "" if it does not.
 std::string FirstLine(int output) {
   std::string text;
-  const TimePoint end = Clock::now() + kStartLimit;
+  const TimePoint end = Clock::now() + kListenLimit;
   std::array<char, 256> buffer{};
   while (text.find('\n') == std::string::npos) {
     pollfd waited{.fd = output, .events = POLLIN, .revents = 0};

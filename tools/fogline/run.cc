@@ -139,6 +139,7 @@ int Run(RunArguments& arguments) {
   if (options.realtime) ApplyRealtime(arguments);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
+  if (options.announce && !options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {

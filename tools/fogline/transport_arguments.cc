@@ -8,6 +8,7 @@
 #include "scenario/loader.h"
 #include "services/graph.h"
 #include "services/runtime/lcm_url.h"
+#include "services/runtime/multicast_route.h"
 #include "tools/fogline/help.h"
 
 namespace fogline {
@@ -55,6 +56,12 @@ std::string TransportArguments::Unsaid() const {
 
 void TransportArguments::Apply(ExperimentOptions& options) const {
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
+  if (options.transport == "udpm" && !WhyNoMulticast(kLcmDefaultUrl).empty()) {
+    options.transport = "tcpq";
+    options.remark =
+        "this machine has no route for multicast: messages go over TCP on loopback, as with "
+        "--transport tcpq";
+  }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   // Wrong is wrong, also for a run without messages to sign.
