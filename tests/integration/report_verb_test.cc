@@ -109,20 +109,30 @@ TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
   EXPECT_THAT(Read(page), HasSubstr(">Seed</th>"));
 }
 
-TEST(ReportVerbTest, PrintsThePageOnStdoutAndWhatALogLacksOnStderrAndInThePage) {
+TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
+  // GIVEN a whole log, and one that is cut off
   const ScratchFolder folder;
-  const std::string log = Log(folder, "cut.lcm", {});
-  std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
+  const std::string whole = Log(folder, "whole.lcm", {"--set", "/arbitrator/policy=none"});
+  const std::string cut = Log(folder, "cut.lcm", {});
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
   const std::string page = folder.File("report.html");
-  const Outcome report = Report({log, "--output", page});
-  EXPECT_EQ(report.code, 0);
+  const Outcome report = Report({whole, cut, "--output", page});
+  // THEN the page is there, and the exit code says that a check failed
+  EXPECT_EQ(report.code, 1);
   EXPECT_EQ(report.out, page + "\n");
-  EXPECT_THAT(report.err, HasSubstr(log + ": cut off after event"));
-  EXPECT_THAT(Read(page), HasSubstr(">incomplete log</span>"));
-  // AND both say how far it goes, the page where everybody sees it
-  EXPECT_THAT(report.err, HasSubstr("; ends after step "));
+  // AND stderr says what the log lacks
+  EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
+                                              "[0-9]+ of 220"));
+  // AND the page says it at that run, and at no other
+  const nlohmann::json runs = DataOf(Read(page))["runs"];
+  EXPECT_EQ(runs[0]["badge"], "");
+  const std::string badge = runs[1]["badge"];
+  EXPECT_THAT(badge, ContainsRegex("^incomplete: ends after step [0-9]+ of 220$"));
+  EXPECT_THAT(Read(page), HasSubstr(">" + badge + "</span>"));
   EXPECT_THAT(Read(page), ContainsRegex("<span class=\"origin\">cut off after event [^<]*; ends "
                                         "after step [0-9]+ of 220"));
+  // AND a page of the whole log alone is a success
+  EXPECT_EQ(Report({whole, "--output", page}).code, 0);
 }
 
 TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {

@@ -154,6 +154,7 @@ ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<do
   return {.name = name,
           .log = LogNameOf(run),
           .shortage = run.complete ? "" : run.note,
+          .scenario = run.scenario,
           .scenario_title = run.scenario.title,
           .scenario_json = run.scenario_text,
           .seed = run.result.seed,
@@ -224,7 +225,7 @@ int RunReport(const ReportArguments& arguments) {
   } else {
     fmt::print("{}\n", arguments.output.string());
   }
-  return kDone;
+  return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
 }
 
 }  // namespace
@@ -252,9 +253,11 @@ void AddReport(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");
   verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
-  ShowExitCodes(*verb, {.interruptible = true});
+  ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
-      "Prints the name of the page, which needs no network. Its table appears for runs whose pair\n"
+      "Prints the name of the page, which needs no network. A log that is not complete is shown "
+      "as\n"
+      "far as it goes, marked, and makes the exit code 1. The table appears for runs whose pair\n"
       "without traded control is among the logs. Curves are computed on all cores: means of the\n"
       "seeds with their 95 % confidence intervals, percentiles, and the Pareto front of SI and "
       "RHE.\n\n"

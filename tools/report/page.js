@@ -66,6 +66,13 @@ function panelsOf() {
   return state.apart ? state.runs.map((run) => [run]) : [state.runs];
 }
 
+/** Name of a panel's run, with a badge if its log is not complete. */
+function panelTitle(run) {
+  const title = make("h4", {}, run.name);
+  if (run.badge) title.append(" ", make("span", {class: "badge"}, run.badge));
+  return title;
+}
+
 function buildFigure(figure, number) {
   const element = document.getElementById(figure.id);
   const place = element.querySelector(".panels");
@@ -77,7 +84,7 @@ function buildFigure(figure, number) {
     const chartElement = make("div", {
       class: "chart", role: "img", "aria-label": `Figure ${number}, ${figure.title}: ${names}`});
     const panel = make("div", {class: "panel"});
-    if (state.apart) panel.append(make("h4", {}, runs[0].name));
+    if (state.apart) panel.append(panelTitle(runs[0]));
     panel.append(chartElement);
     place.append(panel);
     const chart = makeChart(chartElement, figure, runs, {onTime: setTime, onSpan: setSpan});

@@ -127,6 +127,7 @@ std::string PageData(std::span<const ReportRun> runs, const std::optional<Report
       columns[std::string(column.name)] = pool.Place(Values(column, samples));
     }
     run_list.push_back({{"name", RunName(runs, i)},
+                        {"badge", BadgeOf(runs[i])},
                         {"columns", std::move(columns)},
                         {"fog", WindowsJson(FogWindows(samples))},
                         {"human", WindowsJson(HumanWindows(samples))}});

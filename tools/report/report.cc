@@ -54,10 +54,10 @@ std::string ShortageElement(const ReportRun& run) {
 }
 
 /// Says that a log is not complete; nothing if it is.
-std::string Badge(const ReportRun& run) {
+std::string BadgeElement(const ReportRun& run) {
   if (run.shortage.empty()) return "";
-  return fmt::format(" <span class=\"badge\" title=\"{}\">incomplete log</span>",
-                     EscapeHtml(run.shortage));
+  return fmt::format(" <span class=\"badge\" title=\"{}\">{}</span>", EscapeHtml(run.shortage),
+                     BadgeOf(run));
 }
 
 /// One entry of the run selector: where the run comes from, and the run in four numbers.
@@ -65,7 +65,7 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
   if (run.si_pct) facts += Fact("Safety improvement", DataElement(*run.si_pct, 2) + " %");
-  const RunMeasures measures = Measure(run.samples);
+  const RunMeasures measures = Measure(run.samples, run.scenario);
   facts += Fact("Human drives", DataElement(measures.human_time_s, 1) + " s");
   if (measures.max_compromised_safety_m) {
     facts +=
@@ -75,8 +75,8 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   return fmt::format(
       "<label class=\"run c{}\"><input type=\"checkbox\" value=\"{}\" checked>"
       "<span class=\"name\">{}{}</span>{}{}<dl>{}</dl></label>\n",
-      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), Badge(run), OriginElement(run),
-      ShortageElement(run), facts);
+      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), BadgeElement(run),
+      OriginElement(run), ShortageElement(run), facts);
 }
 
 std::string FigureElement(const Figure& figure, std::size_t number) {

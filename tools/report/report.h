@@ -28,6 +28,7 @@ struct ReportRun {
   std::string name;      // such as "threshold 0.5", or the name of its log
   std::string log;       // name of its log; "" if there is none
   std::string shortage;  // what its log lacks; "" if it is complete
+  Scenario scenario = {};
   std::string scenario_title;
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;

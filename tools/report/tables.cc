@@ -171,6 +171,14 @@ std::string RunName(std::span<const ReportRun> runs, std::size_t index) {
   return runs[index].name.empty() ? fmt::format("run {}", index + 1) : runs[index].name;
 }
 
+std::string BadgeOf(const ReportRun& run) {
+  if (run.shortage.empty()) return "";
+  if (run.samples.empty()) return fmt::format("incomplete: has no step of {}", run.scenario.steps);
+  if (run.samples.back().last) return "incomplete log";
+  return fmt::format("incomplete: ends after step {} of {}", run.samples.back().step,
+                     run.scenario.steps);
+}
+
 std::string ThresholdTable(const ReportTable& table) {
   const bool with_seed = HasSeeds(table);
   std::string rows;

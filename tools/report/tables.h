@@ -25,4 +25,7 @@ std::string DifferenceTable(std::span<const ReportRun> runs);
 /// Name of a run, or its number if it has none.
 std::string RunName(std::span<const ReportRun> runs, std::size_t index);
 
+/// Says of a run whose log is not complete where it ends; "" if it is complete.
+std::string BadgeOf(const ReportRun& run);
+
 }  // namespace fogline

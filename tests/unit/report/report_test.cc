@@ -162,13 +162,21 @@ TEST(MakeReportTest, SaysOfEveryRunWhereItComesFrom) {
                         "seed 7</span>"));
 }
 
-TEST(MakeReportTest, MarksTheRunsWhoseLogsAreNotComplete) {
+TEST(MakeReportTest, MarksTheRunsWhoseLogsAreNotCompleteAndSaysWhereTheyEnd) {
   std::vector<ReportRun> runs = ExampleRuns(10);
-  EXPECT_THAT(MakeReport(runs, {}), Not(HasSubstr(">incomplete log<")));
+  EXPECT_THAT(MakeReport(runs, {}), Not(HasSubstr("class=\"badge\"")));
   runs[1].shortage = "ends after step 8 of \"10\"";
-  const std::string page = MakeReport(runs, {});
+  std::string page = MakeReport(runs, {});
   EXPECT_EQ(Count(page, ">incomplete log<"), 1U);
   EXPECT_THAT(page, HasSubstr("title=\"ends after step 8 of &quot;10&quot;\""));
+  // Without the run's last step:
+  runs[1].scenario.steps = 10;
+  runs[1].samples.pop_back();
+  page = MakeReport(runs, {});
+  EXPECT_EQ(Count(page, ">incomplete: ends after step 8 of 10<"), 1U);
+  runs[1].samples.clear();
+  page = MakeReport(runs, {});
+  EXPECT_EQ(Count(page, ">incomplete: has no step of 10<"), 1U);
 }
 
 TEST(MakeReportTest, HasNoTableSectionWithoutATable) {
