@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "scenario/scenario.h"
@@ -172,30 +173,36 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
                           std::string_view description) { visit(name, value, unit, description); };
   count("steps", m.steps, "", "samples of the run");
   number("duration_s", m.duration_s, "s", "time from the first sample to the last");
-  number("min_host_gap_m", m.min_host_gap_m, "m", "smallest gap to the preceding car");
-  number("min_follower_gap_m", m.min_follower_gap_m, "m", "smallest gap of the following car");
+  number("min_host_gap_m", m.min_host_gap_m, "m", "host: smallest gap to the car ahead");
+  number("min_follower_gap_m", m.min_follower_gap_m, "m",
+         "following car: smallest gap to the car ahead");
   number("max_compromised_safety_m", m.max_compromised_safety_m, "m",
          "largest shortfall of the following car's safe distance");
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
-  const auto pair = [&](const std::array<std::string_view, 8>& names, const PairMeasures& of) {
-    number(names[0], of.min_ttc_s, "s", "smallest time to collision (Hayward 1972)");
+  const auto pair = [&](const std::string& car, const std::array<std::string_view, 8>& names,
+                        const PairMeasures& of) {
+    number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
     number(names[1], of.tet_s, "s",
-           "time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
-    number(names[2], of.tit_s2, "s2", "integral of TTC* - TTC over it (Minderhoud & Bovy 2001)");
-    number(names[3], of.min_headway_s, "s", "smallest time headway, bumper to bumper");
+           car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
+    number(names[2], of.tit_s2, "s2",
+           car + ": integral of TTC* - TTC over that time (Minderhoud & Bovy 2001)");
+    number(names[3], of.min_headway_s, "s", car + ": smallest time headway, bumper to bumper");
     number(names[4], of.max_drac_mps2, "m/s2",
-           "largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
+           car + ": largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
     number(names[5], of.min_picud_m, "m",
-           "smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
+           car + ": smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
     number(names[6], of.min_rss_margin_m, "m",
-           "smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
-    number(names[7], of.cpi, "", "crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
+           car + ": smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
+    number(names[7], of.cpi, "",
+           car + ": crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
   };
-  pair({"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
+  pair("host",
+       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
         "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
        m.host);
-  pair({"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
+  pair("following car",
+       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
         "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
         "follower_cpi"},
        m.follower);

@@ -1,6 +1,7 @@
 // `fogline run` as a person uses it: real processes, real LCM, real logs.
 #include <csignal>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,8 @@
 
 namespace fogline::test {
 namespace {
+
+using ::testing::ContainsRegex;
 
 /// Runs paper.json (shortened where the whole length proves nothing more) and returns the JSON
 /// result.
@@ -64,6 +67,24 @@ TEST(RunTest, MeasuresALogAsItMeasuredTheRun) {
   EXPECT_EQ(measured[0]["metrics"], run["metrics"]);
   EXPECT_EQ(measured[0]["digest"], run["digest"]);
   EXPECT_EQ(measured[0]["complete"], true);
+}
+
+TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
+  // GIVEN a run in which the human drives throughout: a calm one
+  const ScratchFolder folder;
+  const std::vector<std::string> more{"--transport", "direct", "--set",
+                                      "/arbitrator/threshold=0.2"};
+  const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
+  const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
+  ASSERT_EQ(text.code, 0) << text.err;
+  // THEN no time to collision of a year is printed, and no row of decimals of nothing
+  EXPECT_GT(json["min_follower_ttc_s"], 1e6);
+  EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
+  EXPECT_GT(json["max_compromised_safety_m"], 0);
+  EXPECT_THAT(text.out, ContainsRegex("max_compromised_safety_m +< 0\\.001 m\n"));
+  EXPECT_EQ(json["host_tet_s"], 0);
+  EXPECT_THAT(text.out, ContainsRegex("host_tet_s +0 s\n"));
+  EXPECT_THAT(text.out, ContainsRegex("steps +500 \n"));
 }
 
 TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {

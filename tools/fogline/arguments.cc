@@ -13,6 +13,7 @@
 
 #include "services/recorder/event_log.h"
 #include "services/runtime/lcm_url.h"
+#include "tools/report/measure_text.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -129,8 +130,8 @@ auto Into(nlohmann::ordered_json& json) {
       };
 }
 
-std::string Cell(std::optional<double> value) {
-  return value ? fmt::format("{:.4f}", *value) : "-";
+std::string Cell(std::string_view name, std::optional<double> value, std::string_view unit) {
+  return value ? MeasureText(name, *value, unit) : "-";
 }
 
 /// One line for each following car, under a line of names.
@@ -143,8 +144,8 @@ std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
   for (std::size_t i = 0; i < followers.size(); ++i) {
     text += fmt::format("  {:<10}", i + 1);
     VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
-                                                std::string_view, std::string_view) {
-      text += fmt::format("  {:>{}}", Cell(value), name.size());
+                                                std::string_view unit, std::string_view) {
+      text += fmt::format("  {:>{}}", Cell(name, value, unit), name.size());
     });
     text += '\n';
   }
@@ -169,7 +170,7 @@ std::string MeasuresText(const ExperimentResult& result) {
   VisitMeasures(result.measures, [&text]<class V>(std::string_view name, const V& value,
                                                   std::string_view unit, std::string_view) {
     if constexpr (std::is_same_v<V, std::optional<double>>) {
-      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(value), unit);
+      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
     } else {
       text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
     }

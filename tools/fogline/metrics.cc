@@ -9,6 +9,7 @@
 #include "tools/fogline/help.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/verbs.h"
+#include "tools/report/measure_text.h"
 
 namespace fogline {
 namespace {
@@ -40,7 +41,9 @@ int RunMetrics(const MetricsArguments& arguments) {
     }
     fmt::print("{}: {}, seed {}\n", run.result.log.string(), run.scenario.title, run.result.seed);
     if (run.result.realtime) fmt::print("{}", RealtimeText(*run.result.realtime));
-    if (improvements[i]) fmt::print("  {:<32}{:>12.4f} %\n", "si_pct", *improvements[i]);
+    if (improvements[i]) {
+      fmt::print("  {:<32}{:>12} %\n", "si_pct", MeasureText("si_pct", *improvements[i], "%"));
+    }
     fmt::print("{}", MeasuresText(run.result));
   }
   if (arguments.json) PrintJson(rows.dump(2));

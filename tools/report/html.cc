@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "tools/report/measure_text.h"
+
 namespace fogline {
 namespace {
 
@@ -92,6 +94,15 @@ std::string Decimal(double value, int decimals) {
 std::string DataElement(double value, int decimals) {
   if (!std::isfinite(value)) return std::string(kNone);
   return fmt::format("<data value=\"{}\">{}</data>", value, Decimal(value, decimals));
+}
+
+std::string MeasureElement(std::string_view name, double value, std::string_view unit) {
+  if (!std::isfinite(value)) return std::string(kNone);
+  std::string text = MeasureText(name, value, unit);
+  if (const std::size_t minus = text.find('-'); minus != std::string::npos) {
+    text.replace(minus, 1, kMinus);
+  }
+  return fmt::format("<data value=\"{}\">{}</data>", value, EscapeHtml(text));
 }
 
 }  // namespace fogline

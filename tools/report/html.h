@@ -25,4 +25,7 @@ std::string Decimal(double value, int decimals);
 /// The same in a data element, which carries the exact number too.
 std::string DataElement(double value, int decimals);
 
+/// The same of a measure, by MeasureText().
+std::string MeasureElement(std::string_view name, double value, std::string_view unit);
+
 }  // namespace fogline

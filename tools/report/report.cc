@@ -30,6 +30,11 @@ std::string Fact(std::string_view what, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", what, value);
 }
 
+std::string MeasureFact(std::string_view what, std::string_view name, double value,
+                        std::string_view unit) {
+  return Fact(what, fmt::format("{} {}", MeasureElement(name, value, unit), unit));
+}
+
 std::string CollisionFact(const RunMeasures& measures) {
   if (!measures.collision_time_s) return "";
   const bool host = measures.collision == truth_t::COLLISION_HOST;
@@ -64,12 +69,12 @@ std::string BadgeElement(const ReportRun& run) {
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
-  if (run.si_pct) facts += Fact("Safety improvement", DataElement(*run.si_pct, 2) + " %");
+  if (run.si_pct) facts += MeasureFact("Safety improvement", "si_pct", *run.si_pct, "%");
   const RunMeasures measures = Measure(run.samples, run.scenario);
-  facts += Fact("Human drives", DataElement(measures.human_time_s, 1) + " s");
+  facts += MeasureFact("Human drives", "human_time_s", measures.human_time_s, "s");
   if (measures.max_compromised_safety_m) {
-    facts +=
-        Fact("Worst compromised safety", DataElement(*measures.max_compromised_safety_m, 3) + " m");
+    facts += MeasureFact("Worst compromised safety", "max_compromised_safety_m",
+                         *measures.max_compromised_safety_m, "m");
   }
   facts += CollisionFact(measures);
   return fmt::format(

@@ -73,21 +73,6 @@ std::string SummaryCells(const Summary& summary) {
   return cells;
 }
 
-/// Decimals that give the largest of `values` five significant digits.
-int DecimalsFor(const std::vector<std::optional<double>>& values) {
-  constexpr int kSignificant = 5;
-  double largest = 0;
-  bool whole = true;
-  for (const std::optional<double>& value : values) {
-    if (!value || !std::isfinite(*value)) continue;
-    largest = std::max(largest, std::fabs(*value));
-    whole = whole && *value == std::round(*value);
-  }
-  if (whole) return 0;
-  const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
-  return std::clamp(kSignificant - 1 - magnitude, 0, 6);
-}
-
 /// A measure's place in the table: runs may have different ones.
 struct MeasureRow {
   ReportMeasure measure;
@@ -225,9 +210,9 @@ std::string MeasureTable(std::span<const ReportRun> runs) {
   std::string body;
   for (const MeasureRow& row : MeasureRows(runs)) {
     body += fmt::format("<tr><th scope=\"row\">{}</th>", HeadOf(row.measure));
-    const int decimals = DecimalsFor(row.values);
     for (const std::optional<double>& value : row.values) {
-      body += fmt::format("<td>{}</td>", DataElement(value.value_or(kNone), decimals));
+      body += fmt::format(
+          "<td>{}</td>", MeasureElement(row.measure.name, value.value_or(kNone), row.measure.unit));
     }
     body += "</tr>\n";
   }

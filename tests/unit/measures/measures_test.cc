@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -316,6 +317,28 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
   };
   VisitMeasures(RunMeasures(), check);
   EXPECT_EQ(names.size(), 42U);
+}
+
+TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
+  constexpr std::string_view kHost = "host: ";
+  constexpr std::string_view kFollower = "following car: ";
+  std::map<std::string, std::string, std::less<>> host;
+  std::map<std::string, std::string, std::less<>> follower;
+  const auto without = [](std::string_view name, std::string_view car) {
+    const std::size_t at = name.find(car);
+    return std::string(name.substr(0, at)) + std::string(name.substr(at + car.size()));
+  };
+  VisitMeasures(RunMeasures(), [&](std::string_view name, const auto&, std::string_view,
+                                   std::string_view description) {
+    if (description.starts_with(kHost)) {
+      host[without(name, "host")] = description.substr(kHost.size());
+    } else if (name.find("follower") != name.npos) {
+      ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
+      follower[without(name, "follower")] = description.substr(kFollower.size());
+    }
+  });
+  EXPECT_EQ(host.size(), 9U);
+  EXPECT_EQ(host, follower);
 }
 
 }  // namespace

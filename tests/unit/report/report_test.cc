@@ -116,8 +116,7 @@ TEST(MakeReportTest, ShowsEveryMeasureOfEveryRunSideBySide) {
   }
   EXPECT_EQ(Count(table, "<tr>"), 1U + 4U);  // head; SI and three measures
   EXPECT_EQ(Count(table, "<td>–</td>"), 3U);
-  EXPECT_THAT(table,
-              HasSubstr("<data value=\"2.5\">2.5000</data></td><td><data value=\"3.5\">3.5000"));
+  EXPECT_THAT(table, HasSubstr("<data value=\"2.5\">2.50</data></td><td><data value=\"3.5\">3.50"));
 }
 
 TEST(MakeReportTest, NamesAMeasureByItsDescriptionFirstAndTypesetsItsUnit) {
@@ -220,7 +219,7 @@ TEST(MakeReportTest, SumsUpHowLongTheHumanDrives) {
     run.samples[i].lambda_human = i == 1 || i == 2 || i == 6 ? 1.0 : 0.0;
   }
   EXPECT_THAT(MakeReport({&run, 1}, {}),
-              HasSubstr("<dt>Human drives</dt><dd><data value=\"1.5\">1.5</data> s</dd>"));
+              HasSubstr("<dt>Human drives</dt><dd><data value=\"1.5\">1.50</data> s</dd>"));
 }
 
 TEST(MakeReportTest, MakesAPageOfNoRunsAndOfARunWithoutSteps) {

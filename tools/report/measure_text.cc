@@ -1,0 +1,45 @@
+#include "tools/report/measure_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace fogline {
+namespace {
+
+constexpr int kSignificant = 4;
+constexpr std::string_view kPercent = "%";
+
+/// Decimals beyond which a measure of that unit says nothing about traffic.
+int DecimalsOfUnit(std::string_view unit) {
+  constexpr int kOther = 3;  // a millimetre, a millimetre per second ...
+  // Percentages are printed as the paper prints them.
+  constexpr std::array<std::pair<std::string_view, int>, 5> kDecimals{
+      {{kPercent, 2}, {"s", 2}, {"s2", 2}, {"1/min", 2}, {"1/h", 1}}};
+  const auto* const found =
+      std::ranges::find(kDecimals, unit, &std::pair<std::string_view, int>::first);
+  return found == kDecimals.end() ? kOther : found->second;
+}
+
+}  // namespace
+
+std::string MeasureText(std::string_view name, double value, std::string_view unit) {
+  if (value == 0) return "0";
+  if (unit.empty() && value == std::round(value)) return fmt::format("{:.0f}", value);
+  if (name.ends_with("ttc_s") && value > kLongestTtc_s) return fmt::format("> {}", kLongestTtc_s);
+  int decimals = DecimalsOfUnit(unit);
+  const double least = std::pow(10, -decimals);
+  if (std::fabs(value) < least / 2) {
+    return fmt::format("{} {:.{}f}", value < 0 ? ">" : "<", std::copysign(least, value), decimals);
+  }
+  if (unit != kPercent) {
+    const int magnitude = static_cast<int>(std::floor(std::log10(std::fabs(value))));
+    decimals = std::clamp(kSignificant - 1 - magnitude, 0, decimals);
+  }
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+}  // namespace fogline
