@@ -183,7 +183,27 @@ TEST(ReportVerbTest, TriesItsOutputsBeforeItComputes) {
             "/proc/report.html: error: --output: cannot write: No such file or directory\n");
   EXPECT_EQ(error_of({"--output", page, "--png", "/proc"}),
             "/proc: error: --png: cannot write: No such file or directory\n");
+  EXPECT_EQ(error_of({"--output", page, "--svg", "/proc"}),
+            "/proc: error: --svg: cannot write: No such file or directory\n");
+  EXPECT_EQ(error_of({"--output", page, "--pdf", "/proc"}),
+            "/proc: error: --pdf: cannot write: No such file or directory\n");
   EXPECT_FALSE(std::filesystem::exists(page));
+}
+
+TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
+  const ScratchFolder folder;
+  const Outcome report =
+      Report({Log(folder, "run.lcm", {}), "-o", folder.File("report.html"), "--png",
+              folder.File("pixels"), "--svg", folder.File("lines"), "--pdf", folder.File("lines")});
+  EXPECT_EQ(report.code, 0) << report.err;
+  EXPECT_THAT(Read(folder.File("pixels/figure-1-speeds.png")), StartsWith("\x89PNG"));
+  EXPECT_THAT(Read(folder.File("lines/figure-1-speeds.svg")), HasSubstr("<svg"));
+  EXPECT_THAT(Read(folder.File("lines/figure-1-speeds.pdf")), StartsWith("%PDF-"));
+  const auto count = [](const std::string& path) {
+    return std::distance(std::filesystem::directory_iterator(path), {});
+  };
+  EXPECT_EQ(count(folder.File("pixels")), 6);
+  EXPECT_EQ(count(folder.File("lines")), 2 * 6);
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {

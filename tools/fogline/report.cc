@@ -1,7 +1,9 @@
-// fogline report: the figures and measures of runs as one HTML file, and as PNG files for papers.
+// fogline report: the figures and measures of runs as one HTML file, and as PNG, SVG or PDF files
+// for papers.
 #include "tools/report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -39,7 +41,25 @@ struct ReportArguments {
   std::string seeds = "1:200";
   std::filesystem::path output = "report.html";
   std::filesystem::path png;
+  std::filesystem::path svg;
+  std::filesystem::path pdf;
   bool json = false;
+};
+
+/// An option for a folder of figures.
+struct FigureOption {
+  const char* name;
+  const char* help;
+  FigureFormat format;
+  std::filesystem::path ReportArguments::*folder;
+};
+
+constexpr std::array kFigureOptions{
+    FigureOption{"--png", "Folder for the figures as PNG files (needs gnuplot)", FigureFormat::kPng,
+                 &ReportArguments::png},
+    FigureOption{"--svg", "The same as SVG files", FigureFormat::kSvg, &ReportArguments::svg},
+    FigureOption{"--pdf", "The same as PDF files, 8 inches wide", FigureFormat::kPdf,
+                 &ReportArguments::pdf},
 };
 
 /// Only a page may be replaced: "-o *.lcm" must not cost a log. @throws InputError
@@ -201,7 +221,10 @@ int RunReport(const ReportArguments& arguments) {
   }
   RefuseToReplaceOther(arguments.output);
   RequireWritable(arguments.output, "--output");
-  if (!arguments.png.empty()) RequireWritableFolder(arguments.png, "--png");
+  for (const FigureOption& option : kFigureOptions) {
+    const std::filesystem::path& folder = arguments.*option.folder;
+    if (!folder.empty()) RequireWritableFolder(folder, option.name);
+  }
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
@@ -216,9 +239,11 @@ int RunReport(const ReportArguments& arguments) {
   WholeFile file(arguments.output);
   file.Write(MakeReport(pages, table, curves));
   file.Finish();
-  if (!arguments.png.empty()) {
-    WritePngFigures(arguments.png, pages);
-    if (curves) WritePngCurves(arguments.png, *curves);
+  for (const FigureOption& option : kFigureOptions) {
+    const std::filesystem::path& folder = arguments.*option.folder;
+    if (folder.empty()) continue;
+    WriteFigures(folder, option.format, pages);
+    if (curves) WriteCurveFigures(folder, option.format, *curves);
   }
   if (arguments.json) {
     PrintJson(ToJson(arguments, runs).dump(2));
@@ -251,7 +276,9 @@ void AddReport(CLI::App& app, Action& action) {
   verb->add_option("-o,--output", arguments->output,
                    "HTML file to write; replaces a page, and no other file")
       ->capture_default_str();
-  verb->add_option("--png", arguments->png, "Folder for the figures as PNG files (needs gnuplot)");
+  for (const FigureOption& option : kFigureOptions) {
+    verb->add_option(option.name, *arguments.*option.folder, option.help);
+  }
   verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
   ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
@@ -263,6 +290,7 @@ void AddReport(CLI::App& app, Action& action) {
       "RHE.\n\n"
       "Examples:\n  fogline report logs/paper-1.lcm\n"
       "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures\n"
+      "  fogline report logs/demo/*.lcm --svg figures --pdf figures\n"
       "  fogline report logs/demo/*.lcm --curves scenario/paper.json\n"
       "  fogline report --curves scenario/paper.json --thresholds 0.3:0.6:61 --seeds 1:1000 \\\n"
       "    --set /fog/bias_m=0.3");

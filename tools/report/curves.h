@@ -1,4 +1,4 @@
-// What the figures of the curves over thresholds show, for the page and the PNG files alike.
+// What the figures of the curves over thresholds show, for the page and the files of figures alike.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What the figures show: the one table that the page and the PNG files are drawn from.
+// What the figures show: the one table that the page and the files for papers are drawn from.
 #pragma once
 
 #include <array>

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -77,13 +78,38 @@ int StatusOfGnuplot(const Streams& streams) {
   pid_t child = 0;
   const int error =
       posix_spawnp(&child, name.c_str(), streams.get(), nullptr, arguments.data(), environ);
-  if (error == ENOENT) Fail("gnuplot", "not found; it draws the PNG files (package gnuplot-nox)");
+  if (error == ENOENT)
+    Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
   if (error != 0) Fail("gnuplot", std::strerror(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) Fail("gnuplot", std::strerror(errno));
   }
   return status;
+}
+
+/// How gnuplot is told of a format. Letters and lines have the same share of the picture in all.
+struct FormatRow {
+  FigureFormat format;
+  std::string_view suffix;
+  std::string_view terminal;
+  double unit;  // of the terminal's size
+  std::string_view font;
+  double font_scale;
+  double line_width;
+  double point_scale;
+};
+
+constexpr double kInches = 1.0 / 200;  // so that a PDF figure is 8 inches wide
+constexpr std::array kFormats{
+    FormatRow{FigureFormat::kPng, "png", "pngcairo", 1, "sans", 1, 2, 1},
+    // Points of type are 4/3 of the unit in the cairo terminals, and 1 in svg.
+    FormatRow{FigureFormat::kSvg, "svg", "svg", 1, "sans-serif", 4.0 / 3, 2, 0.7},
+    FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
+};
+
+const FormatRow& RowOf(FigureFormat format) {
+  return *std::ranges::find(kFormats, format, &FormatRow::format);
 }
 
 }  // namespace
@@ -110,15 +136,39 @@ void RunGnuplot(const std::string& script, const std::filesystem::path& output) 
   }
 }
 
-std::string PngTerminal(std::size_t height_px) {
-  return fmt::format(
-      "set encoding utf8\nset minussign\n"
-      "set terminal pngcairo noenhanced size 1600,{} font 'sans,20' linewidth 2 "
-      "background rgb 'white'\n",
-      height_px);
+std::string FigureFile(FigureFormat format, std::string_view name) {
+  return fmt::format("figure-{}.{}", name, RowOf(format).suffix);
 }
 
-const std::string_view kPngAxes =
+std::string Terminal(FigureFormat format, double height) {
+  const FormatRow& row = RowOf(format);
+  return fmt::format(
+      "set encoding utf8\nset minussign\n"
+      "set terminal {} noenhanced size {},{} font '{},20' fontscale {} linewidth {} "
+      "background rgb 'white'\npoint_scale = {}\n",
+      row.terminal, kWidth * row.unit, height * row.unit, row.font, row.font_scale, row.line_width,
+      row.point_scale);
+}
+
+std::string Margins(const Place& place) {
+  return fmt::format(
+      "set margins at screen {:.4f}, at screen {:.4f}, at screen {:.4f}, at screen {:.4f}\n",
+      place.left, place.right, place.bottom, place.top);
+}
+
+std::string NameOfX(std::string_view name, double height) {
+  constexpr double kBelowPlot = 88;  // to the middle of the letters
+  return fmt::format("set label {} {} at graph 0.5, graph 0 center offset screen 0, {:.4f}\n",
+                     kLabelOfX, GnuplotString(name), -kBelowPlot / height);
+}
+
+std::string NameOfY(std::string_view name, double middle) {
+  constexpr double kFromLeft = 38;  // to the middle of the letters
+  return fmt::format("set label {} {} at screen {:.4f}, screen {:.4f} center rotate\n", kLabelOfY,
+                     GnuplotString(name), kFromLeft / kWidth, middle);
+}
+
+const std::string_view kAxes =
     "set border 3 linecolor rgb '#1b2127' linewidth 0.6\n"
     "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
     "set grid linecolor rgb '#e3e3de' linetype 1 linewidth 0.5\n";

@@ -1,5 +1,5 @@
-// The report of runs: one self-contained HTML page, and PNG figures for a paper. This library draws
-// what it is given. It reads no log and runs nothing.
+// The report of runs: one self-contained HTML page, and figures as files for a paper. This library
+// draws what it is given. It reads no log and runs nothing.
 #pragma once
 
 #include <cstdint>
@@ -74,13 +74,18 @@ struct ReportCurves {
 std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table,
                        const std::optional<ReportCurves>& curves = std::nullopt);
 
-/// Writes one PNG file for each figure into `dir` (made if missing), with gnuplot: a panel for each
+/// What a figure is written as: pixels, or lines that can be enlarged.
+enum class FigureFormat { kPng, kSvg, kPdf };
+
+/// Writes one file for each figure into `dir` (made if missing), with gnuplot: a panel for each
 /// run, all with the same axes. Files are named figure-1-speeds.png and so on.
 /// @throws std::runtime_error with gnuplot's own words if it fails or is not installed
-void WritePngFigures(const std::filesystem::path& dir, std::span<const ReportRun> runs);
+void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
+                  std::span<const ReportRun> runs);
 
 /// The same for the curves: figure-a-thresholds.png and figure-b-front.png.
 /// @throws std::runtime_error likewise
-void WritePngCurves(const std::filesystem::path& dir, const ReportCurves& curves);
+void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
+                       const ReportCurves& curves);
 
 }  // namespace fogline

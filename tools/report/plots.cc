@@ -1,4 +1,4 @@
-// The figures as PNG files, for a paper: the panels of a figure share their axes, the key stands
+// The figures as files, for a paper: the panels of a figure share their axes, the key stands
 // above them.
 #include <algorithm>
 #include <cmath>
@@ -32,55 +32,47 @@ struct Span {
 };
 
 /// Where the panels lie: below each other up to three, else in two columns; the key above them.
-/// Places are shares of the picture, from its lower left corner.
 class Layout {
  public:
   explicit Layout(std::size_t panels)
       : columns_(panels <= 3 ? 1 : 2),
         rows_((panels + columns_ - 1) / columns_),
-        above_px_(panels == 1 ? kKey : kKey + kName),
-        height_px_(std::max(kHeight, kHeight * rows_ / 3)) {}
+        above_(panels == 1 ? kRoomOfKey : kRoomOfKey + kName),
+        height_(std::max(kLeastHeight, kLeastHeight * static_cast<double>(rows_) / 3)) {}
 
-  std::size_t height_px() const { return height_px_; }
+  double height() const { return height_; }
   bool IsLeft(std::size_t panel) const { return panel % columns_ == 0; }
   bool IsLowest(std::size_t panel, std::size_t panels) const { return panel + columns_ >= panels; }
 
-  /// Commands that put the next plot into the place of a panel.
-  std::string Place(std::size_t panel) const {
-    const double width = (1.0 - kLeft - kRight + kColumnGap) / static_cast<double>(columns_);
-    const double left = kLeft + width * static_cast<double>(panel % columns_);
-    const double below = Share(kBelow);
-    const double gap = Share(kRowGap);
-    const double height = (1.0 - below - Share(above_px_) + gap) / static_cast<double>(rows_);
-    const double top = 1.0 - Share(above_px_) - height * static_cast<double>(panel / columns_);
-    return Margins(left, left + width - kColumnGap, top - height + gap, top);
+  /// Of a panel.
+  Place PlaceOf(std::size_t panel) const {
+    const auto column = static_cast<double>(panel % columns_);
+    const auto row = static_cast<double>(panel / columns_);
+    const double width = (kWidth - kRoomLeft - kRoomRight + kColumnGap) / Columns();
+    const double height = (height_ - kRoomBelow - above_ + kRowGap) / static_cast<double>(rows_);
+    const double left = kRoomLeft + width * column;
+    const double top = height_ - above_ - height * row;
+    return {left / kWidth, (left + width - kColumnGap) / kWidth, (top - height + kRowGap) / height_,
+            top / height_};
   }
 
-  /// The same for the key.
-  std::string PlaceOfKey() const { return Margins(0.0, 1.0, 1.0 - Share(kKey), 1.0); }
+  /// Middle of all panels, from below.
+  double Middle() const { return (1 + (kRoomBelow - above_) / height_) / 2; }
+
+  Place PlaceOfKey() const { return {0, 1, 1 - kRoomOfKey / height_, 1}; }
 
  private:
-  static constexpr std::size_t kHeight = 1000;  // in pixels, as are those up to kRowGap
-  static constexpr double kKey = 90;
+  static constexpr double kLeastHeight = 1000;  // in the unit of kWidth, as are the following
   static constexpr double kName = 50;
-  static constexpr double kBelow = 95;
   static constexpr double kRowGap = 75;
-  static constexpr double kLeft = 0.1;
-  static constexpr double kRight = 0.02;
-  static constexpr double kColumnGap = 0.04;
+  static constexpr double kColumnGap = 64;
 
-  double Share(double pixels) const { return pixels / static_cast<double>(height_px_); }
-
-  static std::string Margins(double left, double right, double bottom, double top) {
-    return fmt::format(
-        "set margins at screen {:.4f}, at screen {:.4f}, at screen {:.4f}, at screen {:.4f}\n",
-        left, right, bottom, top);
-  }
+  double Columns() const { return static_cast<double>(columns_); }
 
   std::size_t columns_;
   std::size_t rows_;
-  double above_px_;
-  std::size_t height_px_;
+  double above_;
+  double height_;
 };
 
 /// Least and greatest value of some columns over all runs.
@@ -215,57 +207,62 @@ std::string Key(const Figure& figure, const Layout& layout) {
       "set key center center horizontal Left reverse samplen 2 width 1 font ',18'\n"
       "plot {}\n"
       "unset key\n{}",
-      layout.PlaceOfKey(), fmt::join(parts, ", \\\n     "), kPngAxes);
+      Margins(layout.PlaceOfKey()), fmt::join(parts, ", \\\n     "), kAxes);
 }
 
-std::string AxisLabel(const Figure& figure) {
-  return GnuplotString(figure.unit.empty() ? std::string(figure.quantity)
-                                           : fmt::format("{} ({})", figure.quantity, figure.unit));
+std::string NameOfValues(const Figure& figure) {
+  return figure.unit.empty() ? std::string(figure.quantity)
+                             : fmt::format("{} ({})", figure.quantity, figure.unit);
 }
 
-std::string Heading(const Figure& figure, std::span<const ReportRun> runs, const Layout& layout) {
+std::string Heading(const Figure& figure, FigureFormat format, std::span<const ReportRun> runs,
+                    const Layout& layout) {
   const Span time = TimeSpanOf(runs);
   const Span values = Widened(SpanOf(runs, figure.curves), figure.least_span);
-  return PngTerminal(layout.height_px()) + fmt::format(
-                                               "set style fill solid noborder\n"
-                                               "set xrange [{}:{}]\nset yrange [{}:{}]\n"
-                                               "set multiplot\n",
-                                               time.low, time.high, values.low, values.high);
+  return Terminal(format, layout.height()) + fmt::format(
+                                                 "set style fill solid noborder\n"
+                                                 "set xrange [{}:{}]\nset yrange [{}:{}]\n"
+                                                 "set multiplot\n",
+                                                 time.low, time.high, values.low, values.high);
 }
+
+std::string Unset(int label) { return fmt::format("unset label {}\n", label); }
 
 std::string Panel(const Figure& figure, std::span<const ReportRun> runs, std::size_t index,
                   const Layout& layout) {
-  std::string commands = layout.Place(index) + Shades(runs[index]);
+  std::string commands = Margins(layout.PlaceOf(index)) + Shades(runs[index]);
   if (runs.size() > 1) {
     commands += fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.7 left\n",
                             GnuplotString(RunName(runs, index)));
   }
-  commands += layout.IsLeft(index)
-                  ? fmt::format("set ylabel {}\nset format y '%h'\n", AxisLabel(figure))
-                  : "unset ylabel\nset format y ''\n";
-  commands += layout.IsLowest(index, runs.size())
-                  ? "set xlabel 'Time (s)' offset 0,0.3\nset format x '%h'\n"
-                  : "unset xlabel\nset format x ''\n";
+  const bool left = layout.IsLeft(index);
+  const bool lowest = layout.IsLowest(index, runs.size());
+  commands +=
+      fmt::format("set format x '{}'\nset format y '{}'\n", lowest ? "%h" : "", left ? "%h" : "");
+  commands += lowest ? NameOfX("Time (s)", layout.height()) : Unset(kLabelOfX);
+  commands += index == 0 ? NameOfY(NameOfValues(figure), layout.Middle()) : Unset(kLabelOfY);
   return commands + Plot(figure, index);
 }
 
-std::string Script(const Figure& figure, std::span<const ReportRun> runs) {
+std::string Script(const Figure& figure, FigureFormat format, std::span<const ReportRun> runs) {
   const Layout layout(runs.size());
   std::string script;
   for (std::size_t i = 0; i < runs.size(); ++i) script += DataBlock(i, runs[i], figure.curves);
-  script += Heading(figure, runs, layout) + Key(figure, layout);
+  script += Heading(figure, format, runs, layout) + Key(figure, layout);
   for (std::size_t i = 0; i < runs.size(); ++i) script += Panel(figure, runs, i, layout);
   return script + "unset multiplot\n";
 }
 
 }  // namespace
 
-void WritePngFigures(const std::filesystem::path& dir, std::span<const ReportRun> runs) {
+void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
+                  std::span<const ReportRun> runs) {
   if (runs.empty()) return;
   std::filesystem::create_directories(dir);
   for (std::size_t i = 0; i < Figures().size(); ++i) {
     const Figure& figure = Figures()[i];
-    RunGnuplot(Script(figure, runs), dir / fmt::format("figure-{}-{}.png", i + 1, figure.id));
+    RunGnuplot(Script(figure, format, runs),
+               dir / FigureFile(format, fmt::format("{}-{}", i + 1, figure.id)));
   }
 }
 

@@ -1,4 +1,4 @@
-// Figures A and B as PNG files, for a paper.
+// Figures A and B as files, for a paper.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -24,7 +24,7 @@ constexpr std::string_view kSi = kPalette[0];
 constexpr std::string_view kRhe = kPalette[1];
 constexpr std::string_view kLight = "d8";  // how transparent the bands are, of ff
 constexpr std::string_view kDark = "98";
-constexpr std::size_t kHeightPx = 1000;
+constexpr double kHeight = 1000;              // in the unit of kWidth
 constexpr double kLeastThresholdSpan = 0.01;  // of an axis, so that a flat line does not fill it
 constexpr double kLeastPercentSpan = 1;
 
@@ -107,7 +107,9 @@ std::string Bands(int column, std::string_view colour) {
 
 std::string Diamonds(std::string_view columns, std::string_view colour) {
   return fmt::format(
-      "$published using {} with points pointtype 12 pointsize 2.4 linewidth 1.2 linecolor rgb '{}' "
+      "$published using {} with points pointtype 12 pointsize 2.4*point_scale linewidth "
+      "1.2/point_scale "
+      "linecolor rgb '{}' "
       "notitle",
       columns, colour);
 }
@@ -135,9 +137,11 @@ std::string Range(char axis, const std::vector<double>& values, double least) {
   return fmt::format("set {}range [{}:{}]\n", axis, low - margin, high + margin);
 }
 
-std::string Axes(std::string_view x_label, std::string_view y_label) {
-  return fmt::format("{}{}set xlabel '{}' offset 0,0.3\nset ylabel '{}'\n", PngTerminal(kHeightPx),
-                     kPngAxes, x_label, y_label);
+std::string Axes(FigureFormat format, std::string_view x_name, std::string_view y_name) {
+  constexpr Place kPlace{kRoomLeft / kWidth, 1 - kRoomRight / kWidth, kRoomBelow / kHeight,
+                         1 - kRoomOfKey / kHeight};
+  return Terminal(format, kHeight) + std::string(kAxes) + Margins(kPlace) +
+         NameOfX(x_name, kHeight) + NameOfY(y_name, (kPlace.bottom + kPlace.top) / 2);
 }
 
 std::string ThresholdRanges(const ReportCurves& curves) {
@@ -171,52 +175,59 @@ std::string FrontRanges(const ReportCurves& curves, const std::vector<FrontPoint
   return Range('x', rhe, kLeastPercentSpan) + Range('y', si, kLeastPercentSpan);
 }
 
-std::string ThresholdScript(const ReportCurves& curves) {
+std::string ThresholdScript(FigureFormat format, const ReportCurves& curves) {
   constexpr int kSiColumn = 2;
   constexpr int kRheColumn = 7;
-  return CurvesBlock(curves) + PublishedBlock(curves) + Axes("DoC threshold", "SI, RHE (%)") +
-         ThresholdRanges(curves) +
+  return CurvesBlock(curves) + PublishedBlock(curves) +
+         Axes(format, "DoC threshold", "SI, RHE (%)") + ThresholdRanges(curves) +
          Key({Bands(kSiColumn, kSi), Bands(kRheColumn, kRhe),
               fmt::format("$curves using 1:{} with lines linewidth 1.5 linecolor rgb '{}' title "
                           "'safety improvement (SI)'",
                           kSiColumn, kSi),
               fmt::format("$curves using 1:{} with lines linewidth 1.5 dashtype (8, 4) linecolor "
-                          "rgb '{}' title 'redundant human engagement (RHE)'",
+                          "rgb '{}' title 'redundant engagement (RHE)'",
                           kRheColumn, kRhe),
               Diamonds("1:2", kSi), Diamonds("1:3", kRhe),
               fmt::format("keyentry with boxes fillcolor rgb '{}' fillstyle solid noborder title "
-                          "'95 % confidence interval of the mean'",
+                          "'95 % CI of the mean'",
                           Transparent(kSi, kDark)),
               fmt::format("keyentry with boxes fillcolor rgb '{}' fillstyle solid noborder title "
                           "'5th to 95th percentile of seeds'",
                           Transparent(kSi, kLight)),
-              "keyentry with points pointtype 12 pointsize 2 linecolor rgb 'black' title "
+              "keyentry with points pointtype 12 pointsize 2*point_scale "
+              "linecolor rgb 'black' "
+              "title "
               "'published'"});
 }
 
-std::string FrontScript(const ReportCurves& curves) {
+std::string FrontScript(FigureFormat format, const ReportCurves& curves) {
   const std::vector<FrontPoint> points = FrontPoints(curves);
   return PointsBlock(points) + PublishedBlock(curves) + Labels(curves, points) +
-         Axes("Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
+         Axes(format, "Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
          FrontRanges(curves, points) +
-         Key({"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize 1.2 "
+         Key({"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize "
+              "1.2*point_scale "
               "linecolor "
               "rgb '#6b757f' title 'another threshold is better'",
-              fmt::format("$points using ($3 == 1 ? $1 : NaN):2 with linespoints pointtype 7 "
-                          "pointsize 1.4 linewidth 1.2 linecolor rgb '{}' title 'Pareto front'",
-                          kSi),
+              fmt::format(
+                  "$points using ($3 == 1 ? $1 : NaN):2 with linespoints pointtype 7 "
+                  "pointsize 1.4*point_scale linewidth 1.2 linecolor rgb '{}' title 'Pareto front'",
+                  kSi),
               Diamonds("3:2", kInk),
-              fmt::format("keyentry with points pointtype 12 pointsize 2 linecolor rgb '{}' title "
+              fmt::format("keyentry with points pointtype 12 pointsize 2*point_scale linewidth "
+                          "1/point_scale linecolor rgb "
+                          "'{}' title "
                           "'published'",
                           kInk)});
 }
 
 }  // namespace
 
-void WritePngCurves(const std::filesystem::path& dir, const ReportCurves& curves) {
+void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
+                       const ReportCurves& curves) {
   std::filesystem::create_directories(dir);
-  RunGnuplot(ThresholdScript(curves), dir / "figure-a-thresholds.png");
-  RunGnuplot(FrontScript(curves), dir / "figure-b-front.png");
+  RunGnuplot(ThresholdScript(format, curves), dir / FigureFile(format, "a-thresholds"));
+  RunGnuplot(FrontScript(format, curves), dir / FigureFile(format, "b-front"));
 }
 
 }  // namespace fogline
