@@ -9,17 +9,19 @@ constexpr double kSecondsPerHour = 3600;
 
 }  // namespace
 
+double LidarError(const Sample& sample, const LidarSection& lidar) {
+  const double right_m = std::sqrt(sample.host_gap_m * sample.host_gap_m +
+                                   lidar.lateral_offset_m * lidar.lateral_offset_m) +
+                         lidar.bias_m;
+  return sample.lidar_range_m - right_m;
+}
+
 DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)
-    : tolerance_m_(scenario.measures.lidar_tolerance_m),
-      lidar_bias_m_(scenario.lidar.bias_m),
-      lidar_lateral_offset_m_(scenario.lidar.lateral_offset_m) {}
+    : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar) {}
 
 // A value that is not there (NaN) is not off.
 bool DetectionAccumulator::IsDeceived(const Sample& sample) const {
-  const double right_m = std::sqrt(sample.host_gap_m * sample.host_gap_m +
-                                   lidar_lateral_offset_m_ * lidar_lateral_offset_m_) +
-                         lidar_bias_m_;
-  return std::abs(sample.lidar_range_m - right_m) > tolerance_m_;
+  return std::abs(LidarError(sample, lidar_)) > tolerance_m_;
 }
 
 void DetectionAccumulator::Pass(double duration_s) {

@@ -29,6 +29,10 @@ struct DetectionMeasures {
   std::optional<double> false_alarms_ph;
 };
 
+/// How far the LiDAR's value is from what it would read, mounted as it is, of the true gap, m:
+/// below 0 where it reads short. NaN without a value.
+double LidarError(const Sample& sample, const LidarSection& lidar);
+
 /// Collects them, step by step.
 class DetectionAccumulator {
  public:
@@ -43,8 +47,7 @@ class DetectionAccumulator {
   void Pass(double duration_s);
 
   double tolerance_m_;
-  double lidar_bias_m_;
-  double lidar_lateral_offset_m_;
+  LidarSection lidar_;
 
   bool begun_ = false;
   // Of the step before.

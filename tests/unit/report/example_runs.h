@@ -23,6 +23,9 @@
 
 namespace fogline {
 
+/// How the LiDAR is mounted.
+inline constexpr double kExampleLidarBias_m = -0.93;
+
 /// What differs between the example runs. No threshold: no traded control.
 struct ExampleSettings {
   std::optional<double> threshold = {};
@@ -69,7 +72,7 @@ class ExampleRoad {
     const double level = fog ? std::sin(std::numbers::pi * phase) : 0.0;
     const double radar = host_.gap_m + 0.02 * radar_noise_.Normal2(step, 0)[0];
     const double lidar =
-        host_.gap_m - 0.93 - 0.34 * level + 0.01 * lidar_noise_.Normal2(step, 0)[0];
+        host_.gap_m + kExampleLidarBias_m - 0.34 * level + 0.01 * lidar_noise_.Normal2(step, 0)[0];
     return {.step = step,
             .time_s = time_s,
             .preceding_speed_mps = kLeadSpeed,
@@ -129,6 +132,12 @@ inline ReportRun ExampleRun(const ExampleSettings& settings) {
       "  \"arbitrator\": {{\n    \"policy\": \"{}\",\n    \"threshold\": {}\n  }}\n}}\n",
       settings.steps, settings.threshold ? "traded" : "none", settings.threshold.value_or(0.5));
   run.seed = 7;
+  run.scenario.title = run.scenario_title;
+  run.scenario.seed = run.seed;
+  run.scenario.steps = settings.steps;
+  run.scenario.lidar.bias_m = kExampleLidarBias_m;
+  run.scenario.arbitrator.policy = settings.threshold ? Policy::kTraded : Policy::kNone;
+  run.scenario.arbitrator.threshold = settings.threshold.value_or(0.5);
   run.digest = fmt::format("{:064x}", std::hash<std::string>{}(run.name));
   ExampleRoad road(settings.threshold);
   for (std::int64_t step = 0; step < settings.steps; ++step) run.samples.push_back(road.Step(step));

@@ -1,0 +1,302 @@
+#include "tools/report/story.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scenario/loader.h"
+#include "services/measures/detection.h"
+#include "services/measures/measures.h"
+#include "tools/report/figures.h"
+#include "tools/report/tables.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::size_t kMostSituations = 3;  // that have a sentence each
+constexpr std::size_t kMostRuns = 3;        // with traded control that a sentence names
+
+/// A run with what the story takes from it.
+struct Told {
+  const ReportRun* run;
+  std::string name;
+  RunMeasures measures;
+
+  bool IsTraded() const { return run->scenario.arbitrator.policy != Policy::kNone; }
+};
+
+using Group = std::vector<Told>;
+
+/// Runs that differ in their arbitrator alone, together, in the order of their first ones. Runs
+/// without a step tell nothing.
+std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
+  std::vector<std::pair<std::string, Group>> situations;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].samples.empty()) continue;
+    Scenario scenario = runs[i].scenario;
+    scenario.arbitrator = {};
+    std::string key = PrintScenario(scenario);
+    auto found = std::ranges::find(situations, key, &std::pair<std::string, Group>::first);
+    if (found == situations.end()) {
+      situations.emplace_back(std::move(key), Group());
+      found = situations.end() - 1;
+    }
+    found->second.push_back(
+        {&runs[i], RunName(runs, i), Measure(runs[i].samples, runs[i].scenario)});
+  }
+  std::vector<Group> parts;
+  for (auto& [key, situation] : situations) parts.push_back(std::move(situation));
+  return parts;
+}
+
+/// "3.9 cm": a length with the digits that a reader needs.
+std::string LengthText(double length_m) {
+  constexpr double kMillimetres = 1e3;
+  constexpr double kCentimetres = 1e2;
+  if (length_m < 0.001) return "less than 1 mm";
+  if (length_m < 0.01) return fmt::format("{:.0f} mm", kMillimetres * length_m);
+  if (length_m < 0.1) return fmt::format("{:.1f} cm", kCentimetres * length_m);
+  return fmt::format("{:.2f} m", length_m);
+}
+
+/// "9.4", "11": a time in s.
+std::string TimeText(double time_s) {
+  std::string text = fmt::format("{:.1f}", time_s);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+/// "a, b and c".
+std::string Listed(const std::vector<std::string>& parts, std::string_view comma) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? std::string_view(" and ") : comma;
+    text += parts[i];
+  }
+  return text;
+}
+
+/// "In fog from 19 s to 30 s"; "" without fog.
+std::string FogText(std::span<const Sample> samples) {
+  constexpr std::size_t kMostNamed = 3;
+  const std::vector<Window> windows = FogWindows(samples);
+  if (windows.empty()) return "";
+  if (windows.size() > kMostNamed) {
+    return fmt::format("In fog, {} times from {} s to {} s", windows.size(),
+                       TimeText(windows.front().begin_s), TimeText(windows.back().end_s));
+  }
+  std::vector<std::string> spans;
+  for (const Window& window : windows) {
+    spans.push_back(
+        fmt::format("from {} s to {} s", TimeText(window.begin_s), TimeText(window.end_s)));
+  }
+  return "In fog " + Listed(spans, ", ");
+}
+
+/// What the LiDAR made of the fog, over all runs of a situation.
+struct Deception {
+  double short_m = 0;  // largest error towards the car
+  double far_m = 0;
+  double lost_s = 0;  // without an echo, in the run with the most of it
+};
+
+Deception DeceptionOf(const Group& situation) {
+  Deception worst;
+  for (const Told& told : situation) {
+    double lost_s = 0;
+    const std::span<const Sample> samples = told.run->samples;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!samples[i].fog_present) continue;
+      const double error_m = LidarError(samples[i], told.run->scenario.lidar);
+      if (std::isnan(error_m) && i + 1 < samples.size()) {
+        lost_s += samples[i + 1].time_s - samples[i].time_s;
+      }
+      worst.short_m = std::max(worst.short_m, -error_m);
+      worst.far_m = std::max(worst.far_m, error_m);
+    }
+    worst.lost_s = std::max(worst.lost_s, lost_s);
+  }
+  return worst;
+}
+
+/// "In fog from 19 s to 30 s the LiDAR read up to 0.22 m short".
+std::string FogSentence(const Group& situation) {
+  const std::string fog = FogText(situation.front().run->samples);
+  if (fog.empty()) return "There was no fog";
+  const double tolerance_m = situation.front().run->scenario.measures.lidar_tolerance_m;
+  const Deception deception = DeceptionOf(situation);
+  std::vector<std::string> effects;
+  if (deception.short_m > tolerance_m) {
+    effects.push_back(fmt::format("read up to {} short", LengthText(deception.short_m)));
+  }
+  if (deception.far_m > tolerance_m) {
+    effects.push_back(fmt::format("read up to {} too far", LengthText(deception.far_m)));
+  }
+  if (deception.lost_s > 0) {
+    effects.push_back(fmt::format("had no echo for {} s", TimeText(deception.lost_s)));
+  }
+  if (effects.empty()) {
+    effects.push_back(fmt::format("was never more than {} wrong", LengthText(tolerance_m)));
+  }
+  return fmt::format("{} the LiDAR {}", fog, Listed(effects, ", "));
+}
+
+/// "the host hit the preceding car at 12.3 s"; "" without a collision.
+std::string CollisionText(const RunMeasures& measures) {
+  if (!measures.collision_time_s) return "";
+  return fmt::format("{} at {} s",
+                     measures.collision == truth_t::COLLISION_HOST
+                         ? "the host hit the preceding car"
+                         : "a following car hit the car ahead",
+                     TimeText(*measures.collision_time_s));
+}
+
+/// How safe a run was by itself.
+std::string SafetyText(const RunMeasures& measures) {
+  if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
+  if (!measures.max_compromised_safety_m) return "no car collided";
+  if (*measures.max_compromised_safety_m == 0) return "the following car never came too close";
+  return fmt::format("the following car came {} too close",
+                     LengthText(*measures.max_compromised_safety_m));
+}
+
+/// What a run came to, beside its pair without traded control, if there is one.
+std::string OutcomeText(const Told& told, const Told* baseline) {
+  const std::optional<double>& si_pct = told.run->si_pct;
+  if (baseline == nullptr || !si_pct || told.measures.collision_time_s) {
+    return SafetyText(told.measures);
+  }
+  std::string outcome = *si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", *si_pct)
+                                     : fmt::format("that got {:.0f} % worse", -*si_pct);
+  if (baseline->measures.collision_time_s) return "no car collided";
+  return outcome;
+}
+
+/// "the human drove for 9.4 s".
+std::string DrivingText(const Told& told) {
+  const RunMeasures& measures = told.measures;
+  if (measures.human_time_s == 0) return "the human never drove";
+  if (measures.human_time_s >= measures.duration_s) return "the human drove all the time";
+  return fmt::format("the human drove for {} s", TimeText(measures.human_time_s));
+}
+
+/// "at threshold 0.5 the human drove for 9.4 s and 81 % of that was avoided".
+std::string TradedText(const Told& told, const Told* baseline) {
+  return fmt::format("{} {} {} and {}", told.name.starts_with("threshold") ? "at" : "with",
+                     told.name, DrivingText(told), OutcomeText(told, baseline));
+}
+
+/// "10 to 100", "7" of values as `text` prints them.
+template <class Value, class Text>
+std::string RangeText(const std::vector<const Told*>& runs, Value value, Text text) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const Told* told : runs) {
+    least = std::min<double>(least, value(*told));
+    most = std::max<double>(most, value(*told));
+  }
+  const std::string low = text(least);
+  const std::string high = text(most);
+  return low == high ? low : fmt::format("{} to {}", low, high);
+}
+
+std::string HumanTimes(const std::vector<const Told*>& runs) {
+  const auto time = [](const Told& told) { return told.measures.human_time_s; };
+  return fmt::format("the human drove for {} s", RangeText(runs, time, TimeText));
+}
+
+/// Of more runs than a sentence can name.
+std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline) {
+  std::string text =
+      fmt::format("in {} runs with traded control {}", runs.size(), HumanTimes(runs));
+  const bool all_paired =
+      baseline != nullptr && !baseline->measures.collision_time_s &&
+      std::ranges::all_of(runs, [](const Told* told) { return told->run->si_pct.has_value(); });
+  if (all_paired) {
+    const auto share = [](const Told& told) { return *told.run->si_pct; };
+    const auto percent = [](double value) { return fmt::format("{:.0f}", value); };
+    text += fmt::format(" and {} % of that was avoided", RangeText(runs, share, percent));
+  }
+  const auto collisions = std::ranges::count_if(
+      runs, [](const Told* told) { return told->measures.collision_time_s.has_value(); });
+  if (collisions > 0) text += fmt::format("; in {} of them a car collided", collisions);
+  return text;
+}
+
+std::string SentenceOf(const Group& situation) {
+  const Told* baseline = nullptr;
+  std::vector<const Told*> traded;
+  for (const Told& told : situation) {
+    if (told.IsTraded()) {
+      traded.push_back(&told);
+    } else if (baseline == nullptr) {
+      baseline = &told;
+    }
+  }
+  std::vector<std::string> parts{FogSentence(situation)};
+  if (baseline != nullptr) {
+    parts.push_back(fmt::format("without traded control {}", SafetyText(baseline->measures)));
+  }
+  if (traded.size() > kMostRuns) {
+    parts.push_back(ManyText(traded, baseline));
+  } else {
+    for (const Told* told : traded) parts.push_back(TradedText(*told, baseline));
+  }
+  return fmt::format("{}.", fmt::join(parts, "; "));
+}
+
+/// What tells a situation from others: its title, if they differ in it, and its seed.
+std::string HeadingOf(const Group& situation, bool with_title) {
+  const ReportRun& run = *situation.front().run;
+  return with_title ? fmt::format("{}, seed {}: ", run.scenario_title, run.seed)
+                    : fmt::format("Seed {}: ", run.seed);
+}
+
+/// Of more situations than can be told one by one.
+std::string SummedUp(const std::vector<Group>& situations) {
+  std::vector<const Told*> runs;
+  for (const Group& situation : situations) {
+    for (const Told& told : situation) runs.push_back(&told);
+  }
+  double worst_m = 0;
+  std::size_t too_close = 0;
+  std::size_t collided = 0;
+  for (const Told* told : runs) {
+    const double compromised_m = told->measures.max_compromised_safety_m.value_or(0);
+    worst_m = std::max(worst_m, compromised_m);
+    if (compromised_m > 0) ++too_close;
+    if (told->measures.collision_time_s) ++collided;
+  }
+  return fmt::format(
+      "In {} of {} runs, of {} situations, the following car came too close{}; {}; in {} runs a "
+      "car collided.",
+      too_close, runs.size(), situations.size(),
+      too_close > 0 ? fmt::format(", by up to {}", LengthText(worst_m)) : "", HumanTimes(runs),
+      collided);
+}
+
+}  // namespace
+
+std::string StoryOf(std::span<const ReportRun> runs) {
+  const std::vector<Group> situations = GroupsOf(runs);
+  const bool cut =
+      std::ranges::any_of(runs, [](const ReportRun& run) { return !run.shortage.empty(); });
+  std::string story = cut && !situations.empty() ? "As far as the logs go: " : "";
+  if (situations.size() > kMostSituations) return story + SummedUp(situations);
+  const bool with_title = std::ranges::any_of(
+      runs, [&](const ReportRun& run) { return run.scenario_title != runs[0].scenario_title; });
+  for (const Group& situation : situations) {
+    if (&situation != &situations.front()) story += ' ';
+    if (situations.size() > 1) story += HeadingOf(situation, with_title);
+    story += SentenceOf(situation);
+  }
+  return story;
+}
+
+}  // namespace fogline
