@@ -4,6 +4,7 @@ set(assets
   kPageHtml=page.html
   kPageCss=page.css
   kModelJs=model.js
+  kScrollJs=scroll.js
   kChartJs=chart.js
   kLegendJs=legend.js
   kCurvesJs=curves.js

@@ -8,6 +8,7 @@ namespace fogline::assets {
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
 extern const std::string_view kModelJs;
+extern const std::string_view kScrollJs;
 extern const std::string_view kChartJs;
 extern const std::string_view kLegendJs;
 extern const std::string_view kCurvesJs;

@@ -1,28 +1,42 @@
 // One panel of a figure: a uPlot chart of one or several runs over time.
 
-const TICK_SPACE = {time: 56, value: 34};  // least distance of ticks, in pixels
+const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // least distance of ticks, in pixels
 const VALUE_AXIS_WIDTH = 50;               // the same everywhere, so that time axes line up
 const TOP = 8;                             // above the plot, in pixels
+const STRIP_HEIGHT = 96;
 const LANE = {height: 4, gap: 2};          // bars above the plot that say when the human drives
 
-/** The curves of a panel, in drawing order: [{run, curve, stroke, dash, width}]. */
+/** The lines of a panel, in drawing order: [{run, curve, stroke, dash, width}]. */
 function panelCurves(figure, runs) {
   const {palette, shared} = state.theme;
   return visibleCurves(figure).flatMap((curve) => {
     const width = curve.limit ? 1.5 : curve.detail ? 1.25 : 1.75;
-    if (runs.length === 1) {
+    if (!isOverlaid(figure)) {
       const dash = curve.limit ? curve.dash : [];
       return [{run: runs[0], curve, stroke: palette[curve.colour], dash, width}];
     }
     if (isShared(runs, curve.column)) {
       return [{run: runs[0], curve, stroke: shared, dash: curve.dash, width}];
     }
-    return runs.map((run) => ({run, curve, stroke: runColour(run), dash: curve.dash, width}));
+    return runs.flatMap((run) => runLines(run, curve, width));
   });
 }
 
 function runColour(run) {
-  return state.theme.palette[run.index % state.theme.palette.length];
+  return state.theme.palette[run.index % PALETTE_SIZE];
+}
+
+/** Colour of the core of a run's lines; null if they have none. */
+function runCore(run) {
+  const {surface, ink} = state.theme;
+  return [null, surface, ink][Math.floor(run.index / PALETTE_SIZE) % CORES];
+}
+
+/** A run's line where runs share the axes: its colour, and on it its core, if it has one. */
+function runLines(run, curve, width) {
+  const line = {run, curve, stroke: runColour(run), dash: curve.dash, width};
+  const core = runCore(run);
+  return core ? [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width}] : [line];
 }
 
 /** Columns for uPlot: one time axis for all, whatever the lengths and steps of the runs. */
@@ -77,21 +91,23 @@ function drawLanes(chart, runs) {
   const lanes = runs.filter((run) => run.human.length);
   lanes.forEach((run, lane) => {
     const top = chart.bbox.top - (lanes.length - lane) * (LANE.height + LANE.gap) * devicePixelRatio;
+    const height = LANE.height * devicePixelRatio;
     for (const span of run.human) {
-      fillSpan(chart, span, runColour(run), top, LANE.height * devicePixelRatio);
+      fillSpan(chart, span, runColour(run), top, height);
+      if (runCore(run)) fillSpan(chart, span, runCore(run), top + height / 3, height / 3);
     }
   });
 }
 
-function laneSpace(runs) {
-  if (runs.length === 1) return 0;
+function laneSpace(figure, runs) {
+  if (!isOverlaid(figure)) return 0;
   return runs.filter((run) => run.human.length).length * (LANE.height + LANE.gap);
 }
 
-/** Shades where the gap is below the safe distance. */
-function drawShortfall(chart, runs) {
+/** Shades where one curve is below another. */
+function drawShortfall(chart, {below, limit}, runs) {
   for (const run of runs) {
-    const {time_s: times, follower_gap_m: gaps, follower_safe_distance_m: limits} = run.columns;
+    const {time_s: times, [below]: gaps, [limit]: limits} = run.columns;
     const at = (i, value) => [chart.valToPos(times[i], "x", true), chart.valToPos(value, "y", true)];
     const upper = (i) => at(i, Math.max(gaps[i], limits[i]));
     const {ctx} = chart;
@@ -119,11 +135,12 @@ function drawShades(chart, figure, runs) {
   ctx.rect(bbox.left, 0, bbox.width, bbox.top + bbox.height);
   ctx.clip();
   drawFog(chart, runs);
-  if (runs.length === 1) drawHuman(chart, runs[0]);
-  else drawLanes(chart, runs);
+  if (isOverlaid(figure)) drawLanes(chart, runs);
+  else drawHuman(chart, runs[0]);
   const visible = new Set(visibleCurves(figure).map((curve) => curve.column));
-  if (figure.shortfall && figure.curves.every((curve) => visible.has(curve.column))) {
-    drawShortfall(chart, runs);
+  const {shade} = figure;
+  if (shade && visible.has(shade.below) && visible.has(shade.limit)) {
+    drawShortfall(chart, shade, runs);
   }
   ctx.restore();
 }
@@ -161,8 +178,14 @@ function tickTexts(suffix) {
   };
 }
 
-function chartHeight(width, runs) {
-  return Math.round(Math.min(300, Math.max(200, width * 0.42))) + laneSpace(runs);
+/** Several runs of a figure of strips, one below the other. */
+function isStrip(figure) {
+  return sharesAxes() && figure.strips;
+}
+
+function chartHeight(width, figure, runs) {
+  if (isStrip(figure)) return STRIP_HEIGHT;
+  return Math.round(Math.min(300, Math.max(200, width * 0.42))) + laneSpace(figure, runs);
 }
 
 /**
@@ -175,8 +198,8 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
   const width = element.clientWidth;
   const options = {
     width,
-    height: chartHeight(width, runs),
-    padding: [TOP + laneSpace(runs), 10, 0, 0],
+    height: chartHeight(width, figure, runs),
+    padding: [TOP + laneSpace(figure, runs), 10, 0, 0],
     legend: {show: false},
     series: [{}, ...curves.map(seriesOptions)],
     scales: {
@@ -184,8 +207,9 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
       y: {range: () => valueSpan(figure, ...state.span)},
     },
     axes: [
-      axisOptions(TICK_SPACE.time, tickTexts(" s"), {size: 30}),
-      axisOptions(TICK_SPACE.value, tickTexts(""), {size: VALUE_AXIS_WIDTH}),
+      axisOptions(TICK_SPACE.time, tickTexts(" s"), {size: isStrip(figure) ? 22 : 30}),
+      axisOptions(isStrip(figure) ? TICK_SPACE.stripValue : TICK_SPACE.value, tickTexts(""),
+                  {size: VALUE_AXIS_WIDTH}),
     ],
     cursor: {
       y: false,

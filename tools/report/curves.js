@@ -230,6 +230,7 @@ function makeCurveLegend(figure) {
            make("table", {}, make("thead", {}, head),
                 make("tbody", {}, ...rows.map(({element}) => element)))),
       makeKeys(keys));
+  watchScrolls(figure);
   return (row) => {
     clock.textContent = `at ${curves.thresholds[row]} in %`;
     for (const {measure, cells} of rows) {

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
 namespace fogline {
 namespace {
 
@@ -54,21 +56,23 @@ constexpr std::array kFigures{
     Figure{"host-gap", "Gap from the host to the preceding car",
            "What it is, what radar and LiDAR say, what the fusion makes of both, and the safe "
            "distance that the host’s ACC aims at.",
-           "Distance", "m", 3, 0.2, kHostGap},
+           "Distance", "m", 3, 0.2, kHostGap,
+           Shade{"lidar_range_m", "host_gap_m", "LiDAR reads short"}},
     Figure{"conflict", "Degree of Conflict, and who drives",
            "From the threshold on, the arbitrator hands the host over to the human.",
            "Degree of Conflict, authority", "", 3, 1.0, kConflict},
     Figure{"follower-gap", "Gap from the following car to the host",
            "Safety is compromised while the gap is below the following car’s safe distance.",
-           "Distance", "m", 3, 0.2, kFollowerGap, true},
+           "Distance", "m", 3, 0.2, kFollowerGap,
+           Shade{"follower_gap_m", "follower_safe_distance_m", "safety compromised"}},
     Figure{"accelerations", "Accelerations",
            "What host and following car did, and what the automation and the human would have the "
            "host do.",
-           "Acceleration", "m/s²", 3, 0.1, kAccelerations},
+           "Acceleration", "m/s²", 3, 0.1, kAccelerations, Shade{}, true},
     Figure{"jerk", "Jerk of the host",
            "The change of its acceleration from step to step: abrupt transfers of control show as "
            "peaks.",
-           "Jerk", "m/s³", 2, 0.2, kJerk},
+           "Jerk", "m/s³", 2, 0.2, kJerk, Shade{}, true},
 };
 
 template <class Predicate>
@@ -84,6 +88,11 @@ std::vector<Window> WindowsWhere(std::span<const Sample> samples, Predicate hold
 }
 
 }  // namespace
+
+std::string RunStyle(std::size_t index) {
+  constexpr std::size_t kCores = 3;
+  return fmt::format("c{} r{}", index % kPaletteSize, index / kPaletteSize % kCores);
+}
 
 double HostJerk(std::span<const Sample> samples, std::size_t index) {
   if (index == 0) return std::numeric_limits<double>::quiet_NaN();

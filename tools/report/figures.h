@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,13 +18,17 @@ struct Column {
   double (*value)(std::span<const Sample> samples, std::size_t index);
 };
 
-/// Colours on paper, as in page.css; a run or a curve beyond the last starts over. Under simulated
+/// Colours on paper, as in page.css; RunStyle() tells runs beyond the last apart. Under simulated
 /// protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first five are
 /// at least 25 apart in CIELAB, any two of all at least 15; on white each has a contrast of 3 or
 /// more.
 inline constexpr std::array<std::string_view, 8> kPalette{
     "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
 inline constexpr std::size_t kPaletteSize = kPalette.size();
+
+/// Classes of page.css for what stands for the run of that place: its colour and, from the ninth
+/// run on, a core in its lines. 24 runs look different.
+std::string RunStyle(std::size_t index);
 
 /// How a curve goes from one sample to the next.
 enum class Hold {
@@ -46,6 +51,13 @@ struct Curve {
   Part part;   // a detail is hidden at first where several runs share the axes
 };
 
+/// An area that means something: where one curve is below another.
+struct Shade {
+  std::string_view below;  // a curve's column; "" for no area
+  std::string_view limit;  // the other's
+  std::string_view meaning;
+};
+
 struct Figure {
   std::string_view id;
   std::string_view title;
@@ -55,7 +67,10 @@ struct Figure {
   int decimals;           // of a value that the reader points at
   double least_span;      // an axis never shows less, so that noise does not look like an event
   std::span<const Curve> curves;
-  bool shortfall = false;  // shades where the gap is below the safe distance
+  Shade shade = {};
+  /// A panel for each run even where several share the axes: curves of noise laid over each other
+  /// cannot be read.
+  bool strips = false;
 };
 
 /// The change of the host's acceleration since the sample before, per second.

@@ -36,14 +36,18 @@ function makeKeys(keys) {
 }
 
 function shadeKeys(figure) {
-  const overlaid = isOverlaid();
+  const overlaid = isOverlaid(figure);
   const keys = [];
   if (state.runs.some((run) => run.fog.length)) keys.push(["fog", "fog"]);
   if (state.runs.some((run) => run.human.length)) {
     keys.push(overlaid ? ["bars", "bar: the human drives, in the run of that colour"]
                        : ["human", "the human drives"]);
   }
-  if (figure.shortfall) keys.push([overlaid ? "short neutral" : "short", "safety compromised"]);
+  const {shade} = figure;
+  const hidden = state.hidden.get(figure.id);
+  if (shade && !hidden.has(shade.below) && !hidden.has(shade.limit)) {
+    keys.push([overlaid ? "short neutral" : "short", shade.meaning]);
+  }
   return makeKeys(keys);
 }
 
@@ -52,11 +56,11 @@ function shadeKeys(figure) {
  * curve. Returns a function that shows the values at a time.
  */
 function makeLegend(element, figure, onToggle) {
-  const overlaid = isOverlaid();
+  const overlaid = isOverlaid(figure);
   const clock = make("span");
   const head = make("tr", {}, make("th", {scope: "col"}, clock));
   for (const run of state.runs) {
-    head.append(make("th", {scope: "col", class: `c${run.index % 8}`}, run.name));
+    head.append(make("th", {scope: "col", class: run.style}, run.name));
   }
   const cells = [];
   const rows = figure.curves.map((curve) => {
@@ -78,6 +82,7 @@ function makeLegend(element, figure, onToggle) {
       make("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": label},
            make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows))),
       shadeKeys(figure));
+  watchScrolls(element);
   return (time) => {
     const unit = figure.unit ? ` in ${figure.unit}` : "";
     clock.textContent = `at ${decimal(time, 1)} s${unit}`;

@@ -3,14 +3,18 @@
 
 const report = JSON.parse(document.getElementById("report-data").textContent);
 
+const PALETTE_SIZE = 8;
+const CORES = 3;  // a line is plain, or has a core of the page's colour, or of the ink's
+
 report.runs.forEach((run, index) => {
   run.index = index;
+  run.style = `c${index % PALETTE_SIZE} r${Math.floor(index / PALETTE_SIZE) % CORES}`;
   for (const name in run.columns) run.columns[name] = report.columns[run.columns[name]];
 });
 
 const state = {
   runs: report.runs,  // those in the figures
-  apart: false,       // a panel for each run, instead of all in one
+  apart: true,        // a panel for each run, instead of all in one
   hidden: new Map(),  // names of the columns that a figure leaves out, by figure id
   time: 0,            // where the cursor is, in s
   span: [0, 1],       // what the time axes show, in s
@@ -23,7 +27,7 @@ function readTheme() {
   const style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue(name).trim();
   state.theme = {
-    palette: Array.from({length: 8}, (_, i) => colour(`--p${i}`)),
+    palette: Array.from({length: PALETTE_SIZE}, (_, i) => colour(`--p${i}`)),
     ink: colour("--ink"),
     surface: colour("--surface"),
     muted: colour("--muted"),
@@ -92,16 +96,22 @@ function tellingTime() {
   return time ?? (fog ? (fog[0] + fog[1]) / 2 : wholeSpan()[0]);
 }
 
-/** True if several runs share the axes: a colour then says which run, a dash which curve. */
-function isOverlaid() {
+/** True if several runs are laid over each other, in the figures that can be read so. */
+function sharesAxes() {
   return state.runs.length > 1 && !state.apart;
+}
+
+/** True if several runs share the figure's axes: a colour then says which run, a dash which curve. */
+function isOverlaid(figure) {
+  return sharesAxes() && !figure.strips;
 }
 
 /** Hides the details where several runs share the axes, and shows them else. */
 function resetHidden() {
   for (const figure of report.figures) {
     const details = figure.curves.filter((curve) => curve.detail);
-    state.hidden.set(figure.id, new Set(isOverlaid() ? details.map((curve) => curve.column) : []));
+    state.hidden.set(figure.id,
+                     new Set(isOverlaid(figure) ? details.map((curve) => curve.column) : []));
   }
 }
 

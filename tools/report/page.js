@@ -3,7 +3,7 @@
 const page = {
   charts: [],   // of all figures
   legends: [],  // functions that show the values at a time
-  panels: new Map(),  // chart and its runs, by its element
+  panels: new Map(),  // chart, its figure and its runs, by its element
   toolbar: document.getElementById("toolbar"),
   slider: document.getElementById("time"),
   sliderText: document.getElementById("time-text"),
@@ -51,24 +51,25 @@ function setSpan([from, to]) {
 }
 
 const fitCharts = oncePerFrame(() => {
-  for (const [element, {chart, runs}] of page.panels) {
+  for (const [element, {chart, figure, runs}] of page.panels) {
     const width = element.clientWidth;
-    if (width > 0 && width !== chart.width) chart.setSize({width, height: chartHeight(width, runs)});
+    if (width > 0 && width !== chart.width) {
+      chart.setSize({width, height: chartHeight(width, figure, runs)});
+    }
   }
   showTime();
 });
 
 const sizes = new ResizeObserver(fitCharts);
 
-/** A panel for each run where they stand side by side, else one panel for all. */
-function panelsOf() {
-  if (state.runs.length === 0) return [];
-  return state.apart ? state.runs.map((run) => [run]) : [state.runs];
+/** One panel for all runs where they are overlaid, else a panel for each. */
+function panelsOf(figure) {
+  return isOverlaid(figure) ? [state.runs] : state.runs.map((run) => [run]);
 }
 
 /** Name of a panel's run, with a badge if its log is not complete. */
 function panelTitle(run) {
-  const title = make("h4", {}, run.name);
+  const title = make("h4", {}, make("i", {class: `dot ${run.style}`}), run.name);
   if (run.badge) title.append(" ", make("span", {class: "badge"}, run.badge));
   return title;
 }
@@ -76,20 +77,21 @@ function panelTitle(run) {
 function buildFigure(figure, number) {
   const element = document.getElementById(figure.id);
   const place = element.querySelector(".panels");
-  const panels = panelsOf();
-  place.classList.toggle("several", panels.length > 1);
+  const panels = panelsOf(figure);
+  place.classList.toggle("strips", isStrip(figure));
+  place.classList.toggle("overlaid", isOverlaid(figure));
   place.replaceChildren();
   for (const runs of panels) {
     const names = runs.map((run) => run.name).join(", ");
     const chartElement = make("div", {
       class: "chart", role: "img", "aria-label": `Figure ${number}, ${figure.title}: ${names}`});
     const panel = make("div", {class: "panel"});
-    if (state.apart) panel.append(panelTitle(runs[0]));
+    if (!isOverlaid(figure)) panel.append(panelTitle(runs[0]));
     panel.append(chartElement);
     place.append(panel);
     const chart = makeChart(chartElement, figure, runs, {onTime: setTime, onSpan: setSpan});
     page.charts.push(chart);
-    page.panels.set(chartElement, {chart, runs});
+    page.panels.set(chartElement, {chart, figure, runs});
     sizes.observe(chartElement);
   }
   page.legends.push(makeLegend(element.querySelector(".legend"), figure, (curve) => {
@@ -109,9 +111,7 @@ function build() {
   page.charts = [];
   page.legends = [];
   page.panels.clear();
-  const {classList} = document.querySelector(".figures");
-  classList.toggle("apart", state.apart);
-  classList.toggle("overlaid", isOverlaid());
+  document.querySelector("#figures .figures").classList.toggle("apart", !sharesAxes());
   readTheme();
   report.figures.forEach((figure, index) => buildFigure(figure, index + 1));
   showTime();
@@ -125,9 +125,9 @@ function draw() {
 
 /** After a change of what is compared. */
 function compare(change) {
-  const wasOverlaid = isOverlaid();
+  const shared = sharesAxes();
   change();
-  if (isOverlaid() !== wasOverlaid) resetHidden();
+  if (sharesAxes() !== shared) resetHidden();
   const whole = wholeSpan();
   if (!state.zoomed) state.span = whole;
   Object.assign(page.slider, {min: whole[0], max: whole[1], step: timeStep()});
@@ -157,6 +157,7 @@ function listen() {
 
 function start() {
   const several = report.runs.length > 1;
+  watchScrolls(document);
   document.getElementById("runs").classList.toggle("single", !several);
   document.getElementById("views").hidden = !several;
   page.toolbar.hidden = report.runs.length === 0;

@@ -93,6 +93,11 @@ json CurveJson(const Curve& curve) {
           {"limit", curve.part == Part::kLimit}};
 }
 
+json ShadeJson(const Shade& shade) {
+  if (shade.below.empty()) return nullptr;
+  return {{"below", shade.below}, {"limit", shade.limit}, {"meaning", shade.meaning}};
+}
+
 json FigureJson(const Figure& figure) {
   json curves = json::array();
   for (const Curve& curve : figure.curves) curves.push_back(CurveJson(curve));
@@ -101,7 +106,8 @@ json FigureJson(const Figure& figure) {
           {"unit", figure.unit},
           {"decimals", figure.decimals},
           {"leastSpan", figure.least_span},
-          {"shortfall", figure.shortfall},
+          {"shade", ShadeJson(figure.shade)},
+          {"strips", figure.strips},
           {"curves", std::move(curves)}};
 }
 

@@ -170,14 +170,20 @@ std::string_view StyleOf(Hold hold) {
   return "lines";
 }
 
+/// Of a curve in its data block, from 1.
+std::size_t PlaceOf(const Figure& figure, std::string_view column) {
+  const auto found = std::ranges::find(figure.curves, column, &Curve::column);
+  return static_cast<std::size_t>(found - figure.curves.begin()) + 2;
+}
+
 /// The plot command of one panel.
 std::string Plot(const Figure& figure, std::size_t number) {
   std::vector<std::string> parts;
-  if (figure.shortfall) {  // columns 2 and 3 are the gap and its safe distance
-    parts.push_back(
-        fmt::format("$run{} using 1:2:($3 > $2 ? $3 : $2) with filledcurves fillcolor rgb '{}' "
-                    "fillstyle solid noborder",
-                    number, kShortfall));
+  if (const Shade& shade = figure.shade; !shade.below.empty()) {
+    parts.push_back(fmt::format(
+        "$run{0} using 1:{1}:(${2} > ${1} ? ${2} : ${1}) with filledcurves fillcolor "
+        "rgb '{3}' fillstyle solid noborder",
+        number, PlaceOf(figure, shade.below), PlaceOf(figure, shade.limit), kShortfall));
   }
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     const Curve& curve = figure.curves[i];
@@ -201,7 +207,7 @@ std::string Key(const Figure& figure, const Layout& layout) {
   };
   add_shade(kFog, "solid", "fog");
   add_shade(kHumanLines, "pattern 4", "the human drives");
-  if (figure.shortfall) add_shade(kShortfall, "solid", "safety compromised");
+  if (!figure.shade.below.empty()) add_shade(kShortfall, "solid", figure.shade.meaning);
   return fmt::format(
       "{}unset border\nunset tics\nunset grid\n"
       "set key center center horizontal Left reverse samplen 2 width 1 font ',18'\n"

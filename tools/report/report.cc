@@ -13,6 +13,7 @@
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
 #include "tools/report/page_data.h"
+#include "tools/report/story.h"
 #include "tools/report/tables.h"
 
 namespace fogline {
@@ -78,9 +79,9 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   }
   facts += CollisionFact(measures);
   return fmt::format(
-      "<label class=\"run c{}\"><input type=\"checkbox\" value=\"{}\" checked>"
+      "<label class=\"run {}\"><input type=\"checkbox\" value=\"{}\" checked>"
       "<span class=\"name\">{}{}</span>{}{}<dl>{}</dl></label>\n",
-      index % kPaletteSize, index, EscapeHtml(RunName(runs, index)), BadgeElement(run),
+      RunStyle(index), index, EscapeHtml(RunName(runs, index)), BadgeElement(run),
       OriginElement(run), ShortageElement(run), facts);
 }
 
@@ -98,10 +99,10 @@ std::string FigureElement(const Figure& figure, std::size_t number) {
 std::string ScenarioElement(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   return fmt::format(
-      "<details><summary><i class=\"dot c{}\"></i><span class=\"name\">{}</span>"
+      "<details><summary><i class=\"dot {}\"></i><span class=\"name\">{}</span>"
       "<span class=\"facts\">seed {}, digest <code>{}</code></span></summary>\n"
       "<pre tabindex=\"0\" aria-label=\"Scenario of {}\">{}</pre></details>\n",
-      index % kPaletteSize, EscapeHtml(RunName(runs, index)), run.seed, EscapeHtml(run.digest),
+      RunStyle(index), EscapeHtml(RunName(runs, index)), run.seed, EscapeHtml(run.digest),
       EscapeHtml(RunName(runs, index)), EscapeHtml(run.scenario_json));
 }
 
@@ -152,6 +153,21 @@ std::string SummaryOf(std::span<const ReportRun> runs, const std::optional<Repor
   return summary;
 }
 
+/// Keeps numbers and what they count on one line.
+std::string WithFixedNumbers(const std::string& text) {
+  std::string fixed;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool after_digit = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9';
+    fixed += text[i] == ' ' && after_digit ? "\u00a0" : std::string(1, text[i]);
+  }
+  return fixed;
+}
+
+std::string StoryElement(std::span<const ReportRun> runs) {
+  const std::string story = WithFixedNumbers(StoryOf(runs));
+  return story.empty() ? "" : fmt::format("<p class=\"story\">{}</p>\n", EscapeHtml(story));
+}
+
 }  // namespace
 
 std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table,
@@ -167,12 +183,14 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
     figures += FigureElement(Figures()[i], i + 1);
   }
   const bool no_figures = runs.empty() && curves;
-  const std::array scripts{assets::kModelJs,  assets::kChartJs, assets::kLegendJs,
-                           assets::kCurvesJs, assets::kFrontJs, assets::kPageJs};
+  const std::array scripts{assets::kModelJs,  assets::kScrollJs, assets::kChartJs,
+                           assets::kLegendJs, assets::kCurvesJs, assets::kFrontJs,
+                           assets::kPageJs};
   return Fill(assets::kPageHtml,
               {{"title", EscapeHtml(TitleOf(runs, curves))},
                {"style", fmt::format("{}\n{}", assets::kUplotCss, assets::kPageCss)},
                {"summary", SummaryOf(runs, curves)},
+               {"story", StoryElement(runs)},
                {"runs", cards},
                {"table", TableSection(table)},
                {"curves", CurvesSection(curves)},

@@ -267,5 +267,6 @@ new ResizeObserver(() => {
     if (width > 0 && width !== chart.width) chart.setSize({width, height: chartHeight(width)});
   }
 }).observe(document.body);
+watchScrolls(document);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", build);
 build();

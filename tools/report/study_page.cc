@@ -123,7 +123,7 @@ std::string MakeStudyPage(const std::string& command, std::span<const StudySecti
        {"data", EscapeScript(figures.dump())},
        {"uplot", std::string(assets::kUplotJs)},
        {"uplot_license", EscapeHtml(assets::kUplotLicense)},
-       {"script", std::string(assets::kStudyJs)}});
+       {"script", fmt::format("{}\n{}", assets::kScrollJs, assets::kStudyJs)}});
 }
 
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections) {

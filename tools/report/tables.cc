@@ -31,7 +31,7 @@ std::string Scrolling(std::string_view label, std::string_view head, std::string
 std::string HeadOfRuns(std::string_view first, std::span<const ReportRun> runs) {
   std::string head = fmt::format("<tr><th scope=\"col\">{}</th>", first);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    head += fmt::format("<th scope=\"col\"><i class=\"dot c{}\"></i>{}</th>", i % kPaletteSize,
+    head += fmt::format("<th scope=\"col\"><i class=\"dot {}\"></i>{}</th>", RunStyle(i),
                         EscapeHtml(RunName(runs, i)));
   }
   return head + "</tr>\n";
@@ -128,7 +128,7 @@ std::string HeadOf(const ReportMeasure& measure) {
   const bool described = !measure.description.empty();
   std::string head = EscapeHtml(described ? measure.description : measure.name);
   if (!measure.unit.empty()) {
-    head += fmt::format(" <span class=\"unit\">{}</span>", UnitText(measure.unit));
+    head += fmt::format("\u00a0<span class=\"unit\">{}</span>", UnitText(measure.unit));
   }
   if (described) head += fmt::format("<small>{}</small>", EscapeHtml(measure.name));
   return head;

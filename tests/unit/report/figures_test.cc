@@ -1,5 +1,6 @@
 #include "tools/report/figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -30,6 +31,16 @@ TEST(FiguresTest, DrawOnlyColumnsThatExistAndColoursOfThePalette) {
   }
 }
 
+TEST(FiguresTest, ShadeBetweenCurvesOfTheirOwn) {
+  for (const Figure& figure : Figures()) {
+    if (figure.shade.below.empty()) continue;
+    for (const std::string_view column : {figure.shade.below, figure.shade.limit}) {
+      EXPECT_NE(std::ranges::find(figure.curves, column, &Curve::column), figure.curves.end())
+          << figure.id << ": " << column;
+    }
+  }
+}
+
 TEST(FiguresTest, LeaveNoColumnUndrawn) {
   std::set<std::string_view> drawn{"time_s"};
   for (const Figure& figure : Figures()) {
@@ -52,6 +63,16 @@ TEST(FiguresTest, TellTheCurvesOfAFigureApartByColourAndByDash) {
 TEST(FiguresTest, HaveThePaletteOfThePage) {
   for (std::size_t i = 0; i < kPaletteSize; ++i) {
     const std::string rule = fmt::format("--p{}: {};", i, kPalette[i]);
+    EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
+  }
+}
+
+TEST(RunStyleTest, TellsTwentyFourRunsApartByClassesOfThePage) {
+  std::set<std::string> styles;
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_TRUE(styles.insert(RunStyle(i)).second) << i;
+  EXPECT_EQ(RunStyle(7), "c7 r0");
+  EXPECT_EQ(RunStyle(8), "c0 r1");
+  for (const char* rule : {".c7 {", ".r0 {", ".r1 {", ".r2 {"}) {
     EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
   }
 }

@@ -52,6 +52,19 @@ TEST(MakeReportTest, HasEveryFigureAndEveryRun) {
   }
 }
 
+TEST(MakeReportTest, TellsWhatHappenedAndExplainsItsTermsBeforeAllElse) {
+  const std::string page = MakeReport(ExampleRuns(), ExampleTable());
+  const std::string header = Between(page, "<header>", "</header>");
+  EXPECT_THAT(header,
+              HasSubstr("<p class=\"story\">In fog from 19\u00a0s to 30\u00a0s the LiDAR read"));
+  for (const char* term : {"Compromised safety", "Safety improvement, SI",
+                           "Degree of Conflict, DoC", "Redundant human engagement, RHE"}) {
+    EXPECT_THAT(header,
+                ::testing::ContainsRegex(fmt::format("<dt>{}</dt><dd>[^<.]+\\.</dd>", term)));
+  }
+  EXPECT_THAT(MakeReport({}, {}), Not(HasSubstr("class=\"story\"")));
+}
+
 TEST(MakeReportTest, LeavesNoPlaceOfTheTemplateOpen) {
   const std::string page = MakeReport(ExampleRuns(10), {});
   EXPECT_THAT(page, Not(HasSubstr("{{title}}")));
@@ -123,7 +136,7 @@ TEST(MakeReportTest, NamesAMeasureByItsDescriptionFirstAndTypesetsItsUnit) {
   ReportRun run = ExampleRun({.steps = 3});
   run.measures = {{"max_abs_jerk_mps3", 2.0, "m/s3", "largest jerk of the host"}};
   EXPECT_THAT(MakeReport({&run, 1}, {}),
-              HasSubstr("largest jerk of the host <span class=\"unit\">m/s³</span>"
+              HasSubstr("largest jerk of the host\u00a0<span class=\"unit\">m/s³</span>"
                         "<small>max_abs_jerk_mps3</small>"));
 }
 
@@ -131,7 +144,7 @@ TEST(MakeReportTest, KeepsAMeasureThatARunHasTwice) {
   ReportRun run = ExampleRun({.steps = 3});
   const double none = std::numeric_limits<double>::quiet_NaN();
   run.measures = {{"twice", none, "m", ""}, {"twice", 2.0, "m", ""}};
-  EXPECT_EQ(Count(SectionOf(MakeReport({&run, 1}, {}), "measures"), ">twice <span"), 2U);
+  EXPECT_EQ(Count(SectionOf(MakeReport({&run, 1}, {}), "measures"), ">twice\u00a0<span"), 2U);
 }
 
 TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
