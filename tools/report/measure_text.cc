@@ -26,10 +26,12 @@ int DecimalsOfUnit(std::string_view unit) {
 
 }  // namespace
 
+bool IsTimeToCollision(std::string_view name) { return name.ends_with("ttc_s"); }
+
 std::string MeasureText(std::string_view name, double value, std::string_view unit) {
   if (value == 0) return "0";
   if (unit.empty() && value == std::round(value)) return fmt::format("{:.0f}", value);
-  if (name.ends_with("ttc_s") && value > kLongestTtc_s) return fmt::format("> {}", kLongestTtc_s);
+  if (IsTimeToCollision(name) && value > kLongestTtc_s) return fmt::format("> {}", kLongestTtc_s);
   int decimals = DecimalsOfUnit(unit);
   const double least = std::pow(10, -decimals);
   if (std::fabs(value) < least / 2) {

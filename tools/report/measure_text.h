@@ -12,6 +12,9 @@ namespace fogline {
 /// as the noise of a radar's range rate; critical ones are below 4 s (measures.critical_ttc_s).
 inline constexpr double kLongestTtc_s = 1000;
 
+/// Whether a measure of that name is a time to collision.
+bool IsTimeToCollision(std::string_view name);
+
 /// A finite value with the digits that mean something: at most those of the unit (a millimetre, a
 /// hundredth of a second), and at most four significant ones, percentages apart. A whole number
 /// without unit has no decimals. 0 is "0", and what is not 0 but rounds to it is "< 0.001" or

@@ -1,12 +1,15 @@
 "use strict";
-// The figures of a page of studies: lines with bands over a quantity, or points with whiskers over
-// categories. Each has a legend that shows, hides, and gives the values at the cursor.
+// The figures of a page of studies: lines with bands over a quantity, or a row of points with
+// whiskers for each category. Each has a legend that shows, hides, and gives the values at the
+// cursor.
 
 const figures = JSON.parse(document.getElementById("study-data").textContent);
 
 const COLOURS = 8;
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];  // one for each round of the colours
-const SPREAD = 0.6;  // share of a category's place over which its series stand side by side
+const SPREAD = 0.6;  // share of a category's row over which its series stand
+const ROW = {point: 11, line: 14, gap: 10, names: 0.44};  // in pixels; names: share of the width
+const MOST_IN_LEGEND = 8;  // series; the others wait behind "more"
 
 let theme = null;
 let charts = [];
@@ -16,6 +19,7 @@ function readTheme() {
   const colour = (name) => style.getPropertyValue(name).trim();
   theme = {
     palette: Array.from({length: COLOURS}, (_, i) => colour(`--p${i}`)),
+    surface: colour("--surface"),
     muted: colour("--muted"),
     grid: colour("--grid"),
     font: getComputedStyle(document.body).fontFamily,
@@ -36,13 +40,20 @@ function numberText(value) {
   return value < 0 ? `−${text}` : text;
 }
 
-const strokeOf = (index) => theme.palette[index % COLOURS];
-/** Where a value of x lies on the axis, and what lies there. */
+/** A series' colour and dashes. Those that any figure of the same series shows at first are first. */
+const strokeOf = (figure, index) => theme.palette[figure.rank[index] % COLOURS];
+const dashOf = (figure, index) => DASHES[Math.floor(figure.rank[index] / COLOURS) % DASHES.length];
+/** Where a value lies on the axis, and what lies there. */
 const placeOfX = (figure, x) => figure.logX ? Math.log10(x) : x;
 const xAtPlace = (figure, place) => figure.logX ? 10 ** place : place;
-const dashOf = (index) => DASHES[Math.floor(index / COLOURS) % DASHES.length];
+const placeOfY = (figure, y) => !figure.logY || y == null ? y : y > 0 ? Math.log10(y) : null;
+const yAtPlace = (figure, place) => figure.logY ? 10 ** place : place;
+const isBeyond = (figure, y) => figure.most != null && y > figure.most;
 
-/** Columns for uPlot, and the intervals in the same order: {data, low, high}. */
+/**
+ * Columns for uPlot, and in the same order the values themselves and the intervals:
+ * {data, values, low, high}.
+ */
 function columnsOf(figure) {
   const count = figure.series.length;
   const tables = figure.series.map(({x, y, low, high}, i) => {
@@ -52,16 +63,24 @@ function columnsOf(figure) {
   });
   const [xs, ...columns] = uPlot.join(tables);
   const every = (first) => figure.series.map((_, i) => columns[3 * i + first]);
-  return {data: [xs, ...every(0)], low: every(1), high: every(2)};
+  const values = every(0);
+  // A value beyond the axis has a mark of its own, and no interval.
+  const placed = (column, i) => column.map((y, k) => {
+    if (isBeyond(figure, values[i][k])) return null;
+    return placeOfY(figure, isBeyond(figure, y) ? figure.most : y);
+  });
+  return {data: [xs, ...values.map(placed)], values,
+          low: every(1).map(placed), high: every(2).map(placed)};
 }
 
 /** Least and greatest of the shown values and intervals, with a margin. */
-function valueSpan(chart, {data, low, high}) {
+function valueSpan(chart, figure, {data, values, low, high}) {
   let least = Infinity;
   let most = -Infinity;
-  data.slice(1).forEach((values, i) => {
+  data.slice(1).forEach((places, i) => {
     if (!chart.series[i + 1].show) return;
-    for (const column of [values, low[i], high[i]]) {
+    if (values[i].some((y) => isBeyond(figure, y))) most = figure.most;
+    for (const column of [places, low[i], high[i]]) {
       for (const value of column) {
         if (value == null) continue;
         least = Math.min(least, value);
@@ -98,7 +117,7 @@ function drawBand(chart, xs, low, high, colour) {
   ctx.fill();
 }
 
-/** A whisker at each point. */
+/** A whisker at each point of the rows. */
 function drawWhiskers(chart, xs, low, high, colour) {
   const {ctx} = chart;
   const half = 3 * devicePixelRatio;
@@ -106,17 +125,45 @@ function drawWhiskers(chart, xs, low, high, colour) {
   ctx.lineWidth = 1.25 * devicePixelRatio;
   xs.forEach((x, i) => {
     if (low[i] == null || high[i] == null) return;
-    const left = chart.valToPos(x, "x", true);
-    const [bottom, top] = [chart.valToPos(low[i], "y", true), chart.valToPos(high[i], "y", true)];
+    const top = chart.valToPos(x, "x", true);
+    const [left, right] = [chart.valToPos(low[i], "y", true), chart.valToPos(high[i], "y", true)];
     ctx.beginPath();
-    ctx.moveTo(left, bottom);
-    ctx.lineTo(left, top);
-    for (const end of [bottom, top]) {
-      ctx.moveTo(left - half, end);
-      ctx.lineTo(left + half, end);
+    ctx.moveTo(left, top);
+    ctx.lineTo(right, top);
+    for (const end of [left, right]) {
+      ctx.moveTo(end, top - half);
+      ctx.lineTo(end, top + half);
     }
     ctx.stroke();
   });
+}
+
+/** At the end of the axis, an arrow and the value of each point that lies beyond it. */
+function drawBeyond(chart, figure, {data, values}) {
+  const {ctx} = chart;
+  const pixel = devicePixelRatio;
+  ctx.save();
+  ctx.font = `${11 * pixel}px ${theme.font}`;
+  ctx.textAlign = "right";
+  ctx.textBaseline = "middle";
+  figure.series.forEach((_, i) => {
+    if (!chart.series[i + 1].show) return;
+    values[i].forEach((y, k) => {
+      if (!isBeyond(figure, y)) return;
+      const [tip, top] = [chart.valToPos(figure.most, "y", true), chart.valToPos(data[0][k], "x", true)];
+      ctx.fillStyle = strokeOf(figure, i);
+      ctx.beginPath();
+      ctx.moveTo(tip + 4 * pixel, top);
+      ctx.lineTo(tip - 5 * pixel, top - 5 * pixel);
+      ctx.lineTo(tip - 5 * pixel, top + 5 * pixel);
+      ctx.fill();
+      ctx.lineWidth = 4 * pixel;
+      ctx.strokeStyle = theme.surface;
+      ctx.strokeText(numberText(y), tip - 9 * pixel, top);
+      ctx.fillText(numberText(y), tip - 9 * pixel, top);
+    });
+  });
+  ctx.restore();
 }
 
 function drawIntervals(chart, figure, {data, low, high}) {
@@ -128,9 +175,23 @@ function drawIntervals(chart, figure, {data, low, high}) {
   figure.series.forEach((_, i) => {
     if (!chart.series[i + 1].show) return;
     const draw = figure.categories.length ? drawWhiskers : drawBand;
-    draw(chart, data[0], low[i], high[i], strokeOf(i));
+    draw(chart, data[0], low[i], high[i], strokeOf(figure, i));
   });
   ctx.restore();
+}
+
+/** The legend's list: the series that are shown at first, and the others folded if they are many. */
+function legendList(figure, items) {
+  const list = (parts) => make("ul", {}, ...parts);
+  if (items.length <= MOST_IN_LEGEND) return [list(items)];
+  const first = items.filter((_, i) => figure.atFirst[i]);
+  const others = items.filter((_, i) => !figure.atFirst[i]);
+  if (others.length === 0) return [list(items)];
+  const more = make("details", {class: "more-series"},
+                    make("summary", {}, `${others.length} more to choose from`), list(others));
+  more.open = figure.open ?? false;
+  more.addEventListener("toggle", () => { figure.open = more.open; });
+  return [list(first), more];
 }
 
 /** The legend: a button for each series. Returns what shows the values at a place. */
@@ -143,8 +204,8 @@ function makeLegend(element, figure, chart, columns) {
     for (const [name, value] of Object.entries({width: 22, height: 10, "aria-hidden": "true"})) {
       swatch.setAttribute(name, value);
     }
-    const stroke = {x1: 0, y1: 5, x2: 22, y2: 5, stroke: strokeOf(i), "stroke-width": 2.5,
-                    "stroke-dasharray": dashOf(i).join(" ")};
+    const stroke = {x1: 0, y1: 5, x2: 22, y2: 5, stroke: strokeOf(figure, i), "stroke-width": 2.5,
+                    "stroke-dasharray": dashOf(figure, i).join(" ")};
     for (const [name, value] of Object.entries(stroke)) line.setAttribute(name, value);
     swatch.append(line);
     const value = make("span", {class: "value"});
@@ -158,25 +219,52 @@ function makeLegend(element, figure, chart, columns) {
     });
     return make("li", {}, button);
   });
-  element.replaceChildren(at, make("ul", {}, ...items));
+  element.replaceChildren(at, ...legendList(figure, items));
   return (place) => {
     if (place == null) return;
     const x = columns.data[0][place];
     const category = figure.categories[Math.round(x)];
     at.textContent = category ?? `${figure.xLabel}: ${numberText(xAtPlace(figure, x))}`;
     figure.series.forEach((_, i) => {
-      // In a category the series stand side by side: each has its own place.
+      // In a category each series has a place of its own.
       const own = figure.categories.length
           ? columns.data[0].findIndex((other, k) => Math.round(other) === Math.round(x) &&
-                                                    columns.data[i + 1][k] != null)
+                                                    columns.values[i][k] != null)
           : place;
-      const value = own < 0 ? null : columns.data[i + 1][own];
+      const value = own < 0 ? null : columns.values[i][own];
       values[i].textContent = value == null ? "" : numberText(value);
     });
   };
 }
 
-function chartHeight(width) {
+/** The name of a category in lines that are no wider than `room`, where words allow it. */
+function linesOf(name, room) {
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = `12px ${theme.font}`;
+  const lines = [];
+  for (const word of name.replace(/(\d) (?=\D)/g, "$1\u00a0").split(" ")) {
+    const longer = lines.length ? `${lines.at(-1)} ${word}` : word;
+    if (lines.length && pen.measureText(longer).width <= room) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return {lines, width: Math.max(...lines.map((line) => pen.measureText(line).width))};
+}
+
+/** Names of the rows, their room, and the height of a row, in a chart of that width. */
+function rowsOf(figure, width) {
+  const names = figure.categories.map((name) => linesOf(name, ROW.names * width));
+  const lines = Math.max(...names.map((name) => name.lines.length));
+  return {
+    names: names.map((name) => name.lines.join("\n")),
+    room: Math.ceil(Math.max(...names.map((name) => name.width))) + 14,
+    height: ROW.gap + Math.max(ROW.line * lines, ROW.point * figure.series.length),
+  };
+}
+
+function chartHeight(figure, width) {
+  if (figure.categories.length) {
+    return rowsOf(figure, width).height * figure.categories.length + 44;
+  }
   return Math.round(Math.min(380, Math.max(240, width * 0.52)));
 }
 
@@ -205,14 +293,29 @@ function xAxis(figure) {
                  values: (_, places) => places.map((x) => numberText(xAtPlace(figure, x)))});
   }
   if (!figure.categories.length) return axis({size: 28, ...label});
-  const longest = Math.max(...figure.categories.map((name) => name.length));
   return axis({
-    ...label,
-    size: Math.min(120, 16 + 5 * longest),
-    rotate: -35,
+    side: 3,
+    lineGap: ROW.line / 12,
+    size: (chart) => rowsOf(figure, chart.width).room,
     splits: () => figure.categories.map((_, i) => i),
-    values: () => figure.categories,
+    values: (chart) => rowsOf(figure, chart.width).names,
   });
+}
+
+/** 1, 2, 5, 10 ... on a logarithmic axis; 1, 10, 100 ... on a long one. */
+function logTicks(least, most) {
+  const decades = Array.from({length: Math.ceil(most) - Math.floor(least) + 1},
+                             (_, i) => Math.floor(least) + i);
+  const steps = most - least > 2 ? [1] : [1, 2, 5];
+  return decades.flatMap((decade) => steps.map((step) => decade + Math.log10(step)))
+      .filter((place) => place >= least && place <= most);
+}
+
+function yAxis(figure) {
+  const place = figure.categories.length ? {side: 2, size: 28, space: 56} : {size: 56};
+  const splits = figure.logY ? (chart, index, least, most) => logTicks(least, most) : undefined;
+  return axis({...place, splits,
+               values: (_, places) => places.map((y) => numberText(yAtPlace(figure, y)))});
 }
 
 function makeChart(figure) {
@@ -226,33 +329,34 @@ function makeChart(figure) {
   const width = panel.clientWidth;
   const chart = new uPlot({
     width,
-    height: chartHeight(width),
-    padding: [8, points ? 48 : 12, 0, 0],  // room for the last category's slanted name
+    height: chartHeight(figure, width),
+    padding: [8, points ? 24 : 12, 0, 0],  // room for half of the last value
     legend: {show: false},
     series: [{}, ...figure.series.map((series, i) => ({
       show: series.shown,
-      stroke: strokeOf(i),
-      dash: dashOf(i),
+      stroke: strokeOf(figure, i),
+      dash: dashOf(figure, i),
       width: 1.75,
       spanGaps: true,
       paths: points ? () => null : undefined,
-      points: points ? {show: true, size: 7, fill: strokeOf(i)} : {show: false},
+      points: points ? {show: true, size: 7, fill: strokeOf(figure, i)} : {show: false},
     }))],
     scales: {
       x: {time: false, range: (_, min, max) => min == null || max == null ? whole : [min, max],
-          min: whole[0], max: whole[1]},
-      y: {range: (chart) => valueSpan(chart, columns)},
+          min: whole[0], max: whole[1], ...(points ? {ori: 1, dir: -1} : {})},
+      y: {range: (chart) => valueSpan(chart, figure, columns), ...(points ? {ori: 0} : {})},
     },
-    axes: [xAxis(figure), axis({size: 56})],
+    axes: [xAxis(figure), yAxis(figure)],
     cursor: {drag: {x: !points, y: false}, points: {size: 6}},
     hooks: {
       drawAxes: [(chart) => drawIntervals(chart, figure, columns)],
+      draw: [(chart) => drawBeyond(chart, figure, columns)],
       setCursor: [(chart) => show(chart.cursor.idx)],
     },
   }, columns.data, panel);
   chart.setScale("x", {min: whole[0], max: whole[1]});
   show = makeLegend(element.querySelector(".legend"), figure, chart, columns);
-  charts.push({chart, panel});
+  charts.push({chart, figure, panel});
 }
 
 function build() {
@@ -263,10 +367,23 @@ function build() {
 }
 
 new ResizeObserver(() => {
-  for (const {chart, panel: {clientWidth: width}} of charts) {
-    if (width > 0 && width !== chart.width) chart.setSize({width, height: chartHeight(width)});
+  for (const {chart, figure, panel: {clientWidth: width}} of charts) {
+    if (width > 0 && width !== chart.width) {
+      chart.setSize({width, height: chartHeight(figure, width)});
+    }
   }
 }).observe(document.body);
+/** What stays as it was at first, whatever the reader shows and hides. */
+function prepare(figure) {
+  const names = ({series}) => series.map(({name}) => name).join();
+  const alike = figures.filter((other) => names(other) === names(figure));
+  const telling = figure.series.map((_, i) => alike.some(({series}) => series[i].shown));
+  const order = [...telling.keys()].sort((a, b) => telling[b] - telling[a] || a - b);
+  figure.rank = telling.map((_, i) => order.indexOf(i));
+  figure.atFirst = figure.series.map(({shown}) => shown);
+}
+
+figures.forEach(prepare);
 watchScrolls(document);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", build);
 build();

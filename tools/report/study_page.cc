@@ -41,15 +41,25 @@ json FigureData(const StudyFigure& figure) {
           {"xLabel", figure.x_label},
           {"categories", figure.categories},
           {"logX", figure.log_x},
+          {"logY", figure.log_y},
+          {"most", Numbers({figure.most})[0]},
           {"series", std::move(series)}};
+}
+
+/// What a reader must know of the axis of y.
+std::string ScaleText(const StudyFigure& figure) {
+  if (figure.log_y) return " <span class=\"unit\">(logarithmic)</span>";
+  if (!std::isfinite(figure.most)) return "";
+  return fmt::format(" <span class=\"unit\">(▸ beyond {:g})</span>", figure.most);
 }
 
 std::string FigureElement(const StudyFigure& figure) {
   return fmt::format(
       "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">{1}"
-      "</h3><p>{2}</p></figcaption>\n<p class=\"axis\">{3}</p>\n<div class=\"panels\"></div>\n"
+      "</h3><p>{2}</p></figcaption>\n<p class=\"axis\">{3}{4}</p>\n<div class=\"panels\"></div>\n"
       "<div class=\"legend\"></div>\n</figure>\n",
-      figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption), EscapeHtml(figure.y_label));
+      figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption), EscapeHtml(figure.y_label),
+      ScaleText(figure));
 }
 
 std::string Row(const std::vector<std::string>& cells, std::string_view first,

@@ -2,6 +2,7 @@
 // intervals, and tables. This file draws what it is given and runs nothing.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,10 +25,13 @@ struct StudyFigure {
   std::string caption;
   std::string x_label;
   std::string y_label;
-  /// Names of the places 0, 1, 2 ... on the x axis: points with whiskers then, lines with bands
-  /// else.
+  /// Names of the places 0, 1, 2 ... of x: a row for each then, with points and whiskers, and lines
+  /// with bands else.
   std::vector<std::string> categories;
   bool log_x = false;
+  bool log_y = false;  // such as of times to collision, which go from seconds to half an hour
+  /// Values of y above it are marked at the end of the axis, so that they flatten no others.
+  double most = std::numeric_limits<double>::infinity();
   std::vector<StudySeries> series;
 };
 

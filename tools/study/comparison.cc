@@ -11,6 +11,7 @@
 #include "scenario/loader.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/measures/measures.h"
+#include "tools/report/measure_text.h"
 #include "tools/study/paired_worker.h"
 #include "tools/sweep/in_order.h"
 
@@ -206,7 +207,10 @@ StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::
                              info.description),
       .x_label = "",
       .y_label = info.unit.empty() ? NameForReaders(measure)
-                                   : fmt::format("{} ({})", NameForReaders(measure), info.unit)};
+                                   : fmt::format("{} ({})", NameForReaders(measure), info.unit),
+      .log_y = IsTimeToCollision(measure)};
+  // No car brakes harder (MADR, Cunto & Saccomanno 2008): beyond it is as good as a collision.
+  if (measure.ends_with("drac_mps2")) figure.most = MeasuresSection{}.madr_most_mps2;
   const std::size_t series = cases_on_axis ? variants_.size() : cases_.size();
   const std::size_t places = cases_on_axis ? cases_.size() : variants_.size();
   for (std::size_t p = 0; p < places; ++p) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/report/measure_text.h"
 #include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/findings.h"
@@ -62,7 +63,8 @@ StudyFigure OverVisibility(const Comparison& comparison, std::string_view measur
                      .caption = "Means over the seeds with their 95 % confidence intervals.",
                      .x_label = "Visibility (m)",
                      .y_label = NameForReaders(measure),
-                     .log_x = true};
+                     .log_x = true,
+                     .log_y = IsTimeToCollision(measure)};
   const std::size_t first = Kinds().size();
   for (const auto& [name, driver, variant] :
        {std::tuple("without traded control", 0U, 0U), std::tuple("paper's driver", 0U, 1U),

@@ -129,7 +129,8 @@ StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view var
                          "Means over the seeds with their 95 % confidence bands. Place 0 is "
                          "the host.",
                      .x_label = "Place in the string",
-                     .y_label = std::move(y_label)};
+                     .y_label = std::move(y_label),
+                     .log_y = values == &CarInString::min_ttc_s};
   for (const StringOutcome& string : strings) {
     if (string.variant != variant) continue;
     StudySeries& series = figure.series.emplace_back();

@@ -105,7 +105,7 @@ TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
   const json found = Show(kDesktop, R"(
     const index = figures.findIndex(({id}) => id === "transfer-jerk");
     const {chart} = charts[index];
-    mouse("mousemove", chart.over, chart.valToPos(0, "x"));
+    mouse("mousemove", chart.over, 100, chart.valToPos(0, "x"));
     await settled();
     const legend = document.querySelector("#transfer-jerk .legend");
     found.at = legend.querySelector(".at").textContent;
@@ -114,6 +114,74 @@ TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
   EXPECT_EQ(found["at"], "step");
   EXPECT_THAT(found["values"], SizeIs(2));
   EXPECT_THAT(found["values"], Each(::testing::Ne("")));
+}
+
+TEST_F(StudyInBrowserTest, CutsNoNameOfARowOff) {
+  // A text that goes on beyond the canvas has ink in the last pixels of it.
+  constexpr std::string_view kInk = R"(
+    const hasInk = (canvas, x, y, width, height) =>
+        canvas.getContext("2d").getImageData(x, y, width, height).data.some((v) => v > 0);
+    const places = figures.map(({id}) => document.querySelector(`#${id} canvas`));
+    found.ink = places.map((c) => hasInk(c, 0, 0, 1, c.height) || hasInk(c, c.width - 1, 0, 1, c.height) ||
+                                  hasInk(c, 0, c.height - 1, c.width, 1));
+    found.names = figures.map(({categories}) => categories.length);)";
+  for (const ViewSize size : {kDesktop, kPhone}) {
+    const json found = Show(size, kInk);
+    EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+    EXPECT_THAT(found["ink"], Each(false)) << size.width;
+    EXPECT_THAT(found["names"].get<std::vector<int>>(), ::testing::Contains(16));
+  }
+}
+
+TEST_F(StudyInBrowserTest, HasAFewNamesInALegendAndTheOthersBehindOneMore) {
+  const json found = Show(kDesktop, R"(
+    const seen = ({id}) => [...document.querySelectorAll(`#${id} .legend button`)]
+        .filter((button) => button.checkVisibility()).length;
+    found.seen = figures.map(seen);
+    found.series = figures.map(({series}) => series.length);
+    const more = document.querySelector("#conflict-delay-bias details");
+    more.open = true;
+    found.open = seen(figures[0]);
+    const colours = figures[0].series.map((_, i) => i).filter((i) => figures[0].atFirst[i])
+        .map((i) => strokeOf(figures[0], i));
+    found.colours = [colours.length, new Set(colours).size];)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["seen"], Each(::testing::AllOf(Ge(1), ::testing::Le(8))));
+  EXPECT_GT(found["series"][0], 20);
+  EXPECT_EQ(found["open"], found["series"][0]);
+  EXPECT_EQ(found["colours"][0], found["colours"][1]) << "what is shown at first differs in colour";
+}
+
+TEST_F(StudyInBrowserTest, LetsNoGreatValueFlattenTheOthers) {
+  const json found = Show(kDesktop, R"(
+    // Of the shown points, the share that lies in the first tenth of the axis.
+    const flat = (name) => {
+      const {chart} = charts[figures.findIndex(({id}) => id === name)];
+      const {min, max} = chart.scales.y;
+      const places = chart.data.slice(1).flat().filter(Number.isFinite);
+      return places.filter((place) => place < min + 0.1 * (max - min)).length / places.length;
+    };
+    found.flat = ["followers-ttc", "followers-string-ttc-traded", "driver-ttc-visibility"].map(flat);
+    const drac = figures.findIndex(({id}) => id === "vehicle-drac");
+    found.most = charts[drac].chart.scales.y.max;
+    found.beyond = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most).length;
+    found.note = document.querySelector("#vehicle-drac .axis").textContent;
+    const spy = [];
+    const fillText = CanvasRenderingContext2D.prototype.fillText;
+    CanvasRenderingContext2D.prototype.fillText = function (text, ...more) {
+      spy.push(text);
+      return fillText.call(this, text, ...more);
+    };
+    charts[drac].chart.redraw();
+    await settled();
+    found.marked = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most)
+        .every((y) => spy.includes(numberText(y)));)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["flat"], Each(::testing::Le(0.5))) << found;
+  EXPECT_LT(found["most"], 14);
+  EXPECT_GE(found["beyond"], 1) << "a truck that brakes hard collides";
+  EXPECT_EQ(found["marked"], true);
+  EXPECT_EQ(found["note"], "follower's largest DRAC (m/s2) (▸ beyond 12.68)");
 }
 
 TEST_F(StudyInBrowserTest, FitsAPhoneWithEveryTableOpen) {

@@ -50,6 +50,20 @@ TEST(StudyPageTest, HasValuesThatAreNotThereAsNullAndRoundsTheOthers) {
   EXPECT_TRUE(y[1].is_null());
 }
 
+TEST(StudyPageTest, SaysOfAnAxisThatItIsLogarithmicOrWhereItEnds) {
+  StudySection section = Hostile();
+  EXPECT_EQ(DataOf(MakeStudyPage("", std::array{section}))[0]["most"], nullptr);
+  section.figures[0].log_y = true;
+  std::string page = MakeStudyPage("", std::array{section});
+  EXPECT_THAT(page, HasSubstr("<span class=\"unit\">(logarithmic)</span></p>"));
+  EXPECT_EQ(DataOf(page)[0]["logY"], true);
+  section.figures[0].log_y = false;
+  section.figures[0].most = 12.5;
+  page = MakeStudyPage("", std::array{section});
+  EXPECT_THAT(page, HasSubstr("(▸ beyond 12.5)</span></p>"));
+  EXPECT_EQ(DataOf(page)[0]["most"], 12.5);
+}
+
 TEST(StudyTextTest, KeepsBarsOutOfItsTables) {
   const std::string text = MakeStudyText("fogline study evil", std::array{Hostile()});
   EXPECT_THAT(text, HasSubstr("Made by `fogline study evil`."));
