@@ -282,11 +282,11 @@ void AddReport(CLI::App& app, Action& action) {
   verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
   ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
-      "Prints the name of the page, which needs no network. A log that is not complete is shown "
-      "as\n"
-      "far as it goes, marked, and makes the exit code 1. The table appears for runs whose pair\n"
+      "Prints the name of the page, which needs no network. A log that is not complete is shown\n"
+      "as far as it goes, marked, and makes the exit code 1. The table appears for runs whose "
+      "pair\n"
       "without traded control is among the logs. Curves are computed on all cores: means of the\n"
-      "seeds with their 95 % confidence intervals, percentiles, and the Pareto front of SI and "
+      "seeds with their 95 % confidence intervals, percentiles, and the Pareto front of SI and\n"
       "RHE.\n\n"
       "Examples:\n  fogline report logs/paper-1.lcm\n"
       "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures\n"

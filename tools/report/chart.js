@@ -6,7 +6,7 @@ const TOP = 8;                             // above the plot, in pixels
 const STRIP_HEIGHT = 96;
 const LANE = {height: 4, gap: 2};          // bars above the plot that say when the human drives
 
-/** The lines of a panel, in drawing order: [{run, curve, stroke, dash, width}]. */
+/** The lines of a panel, in drawing order: [{run, curve, stroke, dash, width, isCore}]. */
 function panelCurves(figure, runs) {
   const {palette, shared} = state.theme;
   return visibleCurves(figure).flatMap((curve) => {
@@ -36,7 +36,8 @@ function runCore(run) {
 function runLines(run, curve, width) {
   const line = {run, curve, stroke: runColour(run), dash: curve.dash, width};
   const core = runCore(run);
-  return core ? [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width}] : [line];
+  if (!core) return [line];
+  return [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width, isCore: true}];
 }
 
 /** Columns for uPlot: one time axis for all, whatever the lengths and steps of the runs. */
@@ -151,8 +152,8 @@ const holdPaths = {
   until: uPlot.paths.stepped({align: 1}),
 };
 
-function seriesOptions({curve, stroke, dash, width}) {
-  return {stroke, dash, width, paths: holdPaths[curve.hold], points: {show: false}};
+function seriesOptions({curve, stroke, dash, width, isCore}) {
+  return {stroke, dash, width, isCore, paths: holdPaths[curve.hold], points: {show: false}};
 }
 
 function axisOptions(space, values, more) {
@@ -213,7 +214,7 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
     ],
     cursor: {
       y: false,
-      points: {size: 6},
+      points: {size: (chart, place) => chart.series[place].isCore ? 0 : 6},
       drag: {x: true, y: false, dist: 6, setScale: false},  // onSpan sets it, in every chart
       bind: {mouseleave: () => null, dblclick: () => () => onSpan(wholeSpan())},
     },

@@ -25,10 +25,10 @@ struct ReportMeasure {
 
 /// One run, as the report shows it. Every text may hold anything; it is escaped.
 struct ReportRun {
-  std::string name;      // such as "threshold 0.5", or the name of its log
-  std::string log;       // name of its log; "" if there is none
-  std::string shortage;  // what its log lacks; "" if it is complete
-  Scenario scenario = {};
+  std::string name;        // such as "threshold 0.5", or the name of its log
+  std::string log;         // name of its log; "" if there is none
+  std::string shortage;    // what its log lacks; "" if it is complete
+  Scenario scenario = {};  // as run: how the LiDAR is mounted, who may drive, how many steps
   std::string scenario_title;
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;

@@ -51,7 +51,7 @@ std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
         {&runs[i], RunName(runs, i), Measure(runs[i].samples, runs[i].scenario)});
   }
   std::vector<Group> parts;
-  for (auto& [key, situation] : situations) parts.push_back(std::move(situation));
+  for (auto& [key, group] : situations) parts.push_back(std::move(group));
   return parts;
 }
 
@@ -62,7 +62,7 @@ std::string LengthText(double length_m) {
   if (length_m < 0.001) return "less than 1 mm";
   if (length_m < 0.01) return fmt::format("{:.0f} mm", kMillimetres * length_m);
   if (length_m < 0.1) return fmt::format("{:.1f} cm", kCentimetres * length_m);
-  return fmt::format("{:.2f} m", length_m);
+  return fmt::format("{:.{}f} m", length_m, length_m < 10 ? 2 : 0);
 }
 
 /// "9.4", "11": a time in s.
@@ -99,16 +99,16 @@ std::string FogText(std::span<const Sample> samples) {
   return "In fog " + Listed(spans, ", ");
 }
 
-/// What the LiDAR made of the fog, over all runs of a situation.
+/// What the LiDAR made of the fog, over all runs of a group.
 struct Deception {
   double short_m = 0;  // largest error towards the car
   double far_m = 0;
   double lost_s = 0;  // without an echo, in the run with the most of it
 };
 
-Deception DeceptionOf(const Group& situation) {
+Deception DeceptionOf(const Group& group) {
   Deception worst;
-  for (const Told& told : situation) {
+  for (const Told& told : group) {
     double lost_s = 0;
     const std::span<const Sample> samples = told.run->samples;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -126,11 +126,12 @@ Deception DeceptionOf(const Group& situation) {
 }
 
 /// "In fog from 19 s to 30 s the LiDAR read up to 0.22 m short".
-std::string FogSentence(const Group& situation) {
-  const std::string fog = FogText(situation.front().run->samples);
+std::string FogSentence(const Group& group) {
+  const auto length = [](const Told& told) { return told.run->samples.size(); };
+  const std::string fog = FogText(std::ranges::max_element(group, {}, length)->run->samples);
   if (fog.empty()) return "There was no fog";
-  const double tolerance_m = situation.front().run->scenario.measures.lidar_tolerance_m;
-  const Deception deception = DeceptionOf(situation);
+  const double tolerance_m = group.front().run->scenario.measures.lidar_tolerance_m;
+  const Deception deception = DeceptionOf(group);
   std::vector<std::string> effects;
   if (deception.short_m > tolerance_m) {
     effects.push_back(fmt::format("read up to {} short", LengthText(deception.short_m)));
@@ -166,16 +167,25 @@ std::string SafetyText(const RunMeasures& measures) {
                      LengthText(*measures.max_compromised_safety_m));
 }
 
+/// Whether a run's safety improvement says what became of the whole baseline. Where a log or a run
+/// ends early, it is of the steps before that.
+bool IsComparable(const Told& told, const Told* baseline) {
+  const auto is_whole = [](const Told& run) {
+    return run.run->shortage.empty() && !run.measures.collision_time_s;
+  };
+  return baseline != nullptr && told.run->si_pct && is_whole(told) && is_whole(*baseline);
+}
+
 /// What a run came to, beside its pair without traded control, if there is one.
 std::string OutcomeText(const Told& told, const Told* baseline) {
-  const std::optional<double>& si_pct = told.run->si_pct;
-  if (baseline == nullptr || !si_pct || told.measures.collision_time_s) {
-    return SafetyText(told.measures);
+  if (!IsComparable(told, baseline)) {
+    const bool saved = baseline != nullptr && baseline->measures.collision_time_s &&
+                       !told.measures.collision_time_s;
+    return saved ? "no car collided" : SafetyText(told.measures);
   }
-  std::string outcome = *si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", *si_pct)
-                                     : fmt::format("that got {:.0f} % worse", -*si_pct);
-  if (baseline->measures.collision_time_s) return "no car collided";
-  return outcome;
+  const double si_pct = std::round(*told.run->si_pct) + 0.0;  // + 0.0: no negative zero
+  return si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", si_pct)
+                     : fmt::format("that got {:.0f} % worse", -si_pct);
 }
 
 /// "the human drove for 9.4 s".
@@ -188,8 +198,9 @@ std::string DrivingText(const Told& told) {
 
 /// "at threshold 0.5 the human drove for 9.4 s and 81 % of that was avoided".
 std::string TradedText(const Told& told, const Told* baseline) {
-  return fmt::format("{} {} {} and {}", told.name.starts_with("threshold") ? "at" : "with",
-                     told.name, DrivingText(told), OutcomeText(told, baseline));
+  const std::string_view comma = told.name.find(',') == std::string::npos ? "" : ",";
+  return fmt::format("{} {}{} {} and {}", told.name.starts_with("threshold") ? "at" : "with",
+                     told.name, comma, DrivingText(told), OutcomeText(told, baseline));
 }
 
 /// "10 to 100", "7" of values as `text` prints them.
@@ -215,10 +226,9 @@ std::string HumanTimes(const std::vector<const Told*>& runs) {
 std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline) {
   std::string text =
       fmt::format("in {} runs with traded control {}", runs.size(), HumanTimes(runs));
-  const bool all_paired =
-      baseline != nullptr && !baseline->measures.collision_time_s &&
-      std::ranges::all_of(runs, [](const Told* told) { return told->run->si_pct.has_value(); });
-  if (all_paired) {
+  const bool all_comparable =
+      std::ranges::all_of(runs, [&](const Told* told) { return IsComparable(*told, baseline); });
+  if (all_comparable) {
     const auto share = [](const Told& told) { return *told.run->si_pct; };
     const auto percent = [](double value) { return fmt::format("{:.0f}", value); };
     text += fmt::format(" and {} % of that was avoided", RangeText(runs, share, percent));
@@ -229,17 +239,17 @@ std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline)
   return text;
 }
 
-std::string SentenceOf(const Group& situation) {
+std::string SentenceOf(const Group& group) {
   const Told* baseline = nullptr;
   std::vector<const Told*> traded;
-  for (const Told& told : situation) {
+  for (const Told& told : group) {
     if (told.IsTraded()) {
       traded.push_back(&told);
     } else if (baseline == nullptr) {
       baseline = &told;
     }
   }
-  std::vector<std::string> parts{FogSentence(situation)};
+  std::vector<std::string> parts{FogSentence(group)};
   if (baseline != nullptr) {
     parts.push_back(fmt::format("without traded control {}", SafetyText(baseline->measures)));
   }
@@ -252,8 +262,8 @@ std::string SentenceOf(const Group& situation) {
 }
 
 /// What tells a situation from others: its title, if they differ in it, and its seed.
-std::string HeadingOf(const Group& situation, bool with_title) {
-  const ReportRun& run = *situation.front().run;
+std::string HeadingOf(const Group& group, bool with_title) {
+  const ReportRun& run = *group.front().run;
   return with_title ? fmt::format("{}, seed {}: ", run.scenario_title, run.seed)
                     : fmt::format("Seed {}: ", run.seed);
 }
@@ -261,8 +271,8 @@ std::string HeadingOf(const Group& situation, bool with_title) {
 /// Of more situations than can be told one by one.
 std::string SummedUp(const std::vector<Group>& situations) {
   std::vector<const Told*> runs;
-  for (const Group& situation : situations) {
-    for (const Told& told : situation) runs.push_back(&told);
+  for (const Group& group : situations) {
+    for (const Told& told : group) runs.push_back(&told);
   }
   double worst_m = 0;
   std::size_t too_close = 0;
@@ -291,10 +301,10 @@ std::string StoryOf(std::span<const ReportRun> runs) {
   if (situations.size() > kMostSituations) return story + SummedUp(situations);
   const bool with_title = std::ranges::any_of(
       runs, [&](const ReportRun& run) { return run.scenario_title != runs[0].scenario_title; });
-  for (const Group& situation : situations) {
-    if (&situation != &situations.front()) story += ' ';
-    if (situations.size() > 1) story += HeadingOf(situation, with_title);
-    story += SentenceOf(situation);
+  for (const Group& group : situations) {
+    if (&group != &situations.front()) story += ' ';
+    if (situations.size() > 1) story += HeadingOf(group, with_title);
+    story += SentenceOf(group);
   }
   return story;
 }

@@ -113,6 +113,26 @@ TEST(StoryTest, TellsOfCollisionsBeforeAllElse) {
   EXPECT_THAT(StoryOf(runs), HasSubstr("and a following car hit the car ahead at 7.5 s."));
 }
 
+TEST(StoryTest, HasTheFogOfTheRunThatLastsLongest) {
+  std::vector<ReportRun> runs{CalmRun(Policy::kNone), CalmRun(Policy::kTraded)};
+  for (ReportRun& run : runs) AddFog(run, 12.25);
+  CollideAt(runs[0], 30, truth_t::COLLISION_FOLLOWER);
+  EXPECT_THAT(StoryOf(runs), StartsWith("In fog from 2 s to 5 s the LiDAR read up to 12 m short; "
+                                        "without traded control a following car hit the car ahead "
+                                        "at 3 s; "));
+}
+
+TEST(StoryTest, ComparesNoRunWhoseLogEndsEarly) {
+  std::vector<ReportRun> runs{CalmRun(Policy::kNone), CalmRun(Policy::kTraded)};
+  runs[1].si_pct = 34;
+  runs[1].name = "threshold 0.5, cut.lcm";
+  EXPECT_THAT(StoryOf(runs), HasSubstr("at threshold 0.5, cut.lcm, the human never drove and 34 % "
+                                       "of that was avoided."));
+  runs[1].shortage = "ends after step 100 of 500";
+  EXPECT_THAT(StoryOf(runs), HasSubstr("the human never drove and the following car never came too "
+                                       "close."));
+}
+
 TEST(StoryTest, SumsUpMoreRunsThanASentenceCanName) {
   std::vector<ReportRun> runs{CalmRun(Policy::kNone)};
   for (const double threshold : {0.1, 0.3, 0.5, 0.7}) {
