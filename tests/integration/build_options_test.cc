@@ -15,23 +15,42 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The commands that a build with these options would run.
+/// A build folder on a machine without make, as a fresh Debian system is.
+class ConfiguredBuild {
+ public:
+  explicit ConfiguredBuild(const std::vector<std::string>& options) {
+    std::vector<std::string> command = WithoutMake(folder_);
+    command.insert(command.end(), {"cmake", "-S", SourceDirectory().string(), "-B", Folder(), "-G",
+                                   "Ninja", "-DFOGLINE_TESTS=OFF"});
+    command.insert(command.end(), options.begin(), options.end());
+    const Outcome configured = RunCommand(command);
+    EXPECT_EQ(configured.code, 0) << configured.err;
+  }
+
+  /// The commands that it would run.
+  std::string CompileCommands() const {
+    std::ifstream file(Folder() + "/compile_commands.json");
+    std::ostringstream text;
+    text << file.rdbuf();
+    EXPECT_THAT(text.str(), HasSubstr("-Wall"));
+    return text.str();
+  }
+
+  /// All files that a target is made of.
+  std::string InputsOf(const std::string& target) const {
+    const Outcome inputs = RunCommand({"ninja", "-C", Folder(), "-t", "inputs", target});
+    EXPECT_EQ(inputs.code, 0) << inputs.err;
+    return inputs.out;
+  }
+
+ private:
+  std::string Folder() const { return folder_.File("build"); }
+
+  ScratchFolder folder_;
+};
+
 std::string CompileCommands(const std::vector<std::string>& options) {
-  const ScratchFolder build;
-  std::vector<std::string> command{"cmake",
-                                   "-S",
-                                   SourceDirectory().string(),
-                                   "-B",
-                                   build.path().string(),
-                                   "-DFOGLINE_TESTS=OFF"};
-  command.insert(command.end(), options.begin(), options.end());
-  const Outcome configured = RunCommand(command);
-  EXPECT_EQ(configured.code, 0) << configured.err;
-  std::ifstream file(build.File("compile_commands.json"));
-  std::ostringstream text;
-  text << file.rdbuf();
-  EXPECT_THAT(text.str(), HasSubstr("-Wall"));
-  return text.str();
+  return ConfiguredBuild(options).CompileCommands();
 }
 
 TEST(BuildOptionsTest, TakeWarningsForErrorsWhereThatIsWanted) {
@@ -41,6 +60,25 @@ TEST(BuildOptionsTest, TakeWarningsForErrorsWhereThatIsWanted) {
 
 TEST(BuildOptionsTest, DoNotTakeTheWarningsOfAnotherCompilerForErrors) {
   EXPECT_THAT(CompileCommands({"-DCMAKE_CXX_COMPILER=clang++"}), Not(HasSubstr("-Werror")));
+}
+
+TEST(BuildOptionsTest, CompileFilesTogetherUnlessEachIsToBeCompiledAlone) {
+  EXPECT_THAT(CompileCommands({}), HasSubstr("fogline_world.dir/Unity/"));
+  const std::string alone = CompileCommands({"-DFOGLINE_UNITY=OFF"});
+  EXPECT_THAT(alone, Not(HasSubstr("/Unity/")));
+  EXPECT_THAT(alone, HasSubstr("services/world/fog_schedule.cc"));
+}
+
+TEST(BuildOptionsTest, BuildForTheDemoNeitherStudiesNorCalibrationNorBenchmarks) {
+  const ConfiguredBuild build({});
+  const std::string demo = build.InputsOf("fogline_demo");
+  EXPECT_THAT(demo, HasSubstr("fogline-world.dir"));
+  EXPECT_THAT(demo, HasSubstr("fogline_report"));
+  for (const char* part : {"fogline_study", "fogline_calibrate", "benchmarks"}) {
+    EXPECT_THAT(demo, Not(HasSubstr(part)));
+    if (std::string_view(part) == "benchmarks") continue;
+    EXPECT_THAT(build.InputsOf("fogline_programs"), HasSubstr(part));
+  }
 }
 
 }  // namespace

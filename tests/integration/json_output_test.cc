@@ -86,7 +86,7 @@ TEST_F(JsonOutputTest, NamesThePageAndTheRunsOfAReport) {
       RunCommand({Program("fogline"), "report", log_, "--output", page, "--json"});
   const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
   EXPECT_EQ(json["report"], page);
-  EXPECT_EQ(json["figures"], nullptr);
+  EXPECT_EQ(json["png"], nullptr);
   ASSERT_EQ(json["runs"].size(), 1U);
   EXPECT_EQ(json["runs"][0]["log"], log_);
   EXPECT_EQ(json["runs"][0]["seed"], 1);

@@ -161,7 +161,7 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
   const std::vector<std::string> table{
       Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5", "--logs", logs};
   Background first(WaitingForADriver(table));
-  ASSERT_TRUE(first.WaitForErr("for the driver, which is started elsewhere"));
+  ASSERT_TRUE(first.WaitForErr("for the driver"));
   ASSERT_TRUE(GrowsTo(1, logs + "/paper-seed1-threshold-none.lcm")) << first.Err();
   for (const char* transport : {"direct", "udpm"}) {
     const Outcome second = RunCommand(With(table, {"--transport", transport}));

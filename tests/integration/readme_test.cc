@@ -6,6 +6,7 @@
 #include <regex>
 #include <sstream>
 
+#include "services/runtime/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -30,6 +31,32 @@ TEST(ReadmeTest, ShowsThePartThatTheSwapTestBuilds) {
   std::string source = ReadSource("tests/integration/external_driver/my_driver.cc");
   source.erase(0, source.find("#include"));  // without the comment on top
   EXPECT_NE(ReadSource("services/README.md").find(source), std::string::npos) << source;
+}
+
+TEST(ReadmeTest, BuildsAndDrivesAPartByTheCommandsOfSwapAPart) {
+  // GIVEN a clone with its build, on a machine without make, and a home of its own
+  const ScratchFolder folder;
+  for (const char* part : {"scenario", "tests"}) {
+    std::filesystem::create_directory_symlink(SourceDirectory() / part, folder.path() / part);
+  }
+  std::filesystem::create_directory_symlink(FOGLINE_BINARY_DIR, folder.path() / "build");
+  // WHEN the README's commands are followed
+  const std::string readme = ReadSource("README.md");
+  const std::size_t begin = readme.find("\n## Swap a part");
+  const std::string section = readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
+  std::string commands = "set -e; cd " + folder.path().string() +
+                         "; export HOME=$PWD PATH=" + ProgramDirectory().string() +
+                         ":$PATH LCM_DEFAULT_URL='" + FreshMulticastUrl() + "'\n";
+  static const std::regex kCommand("\n    ([^\n]*)");
+  for (std::sregex_iterator at(section.begin(), section.end(), kCommand), end; at != end; ++at) {
+    commands += (*at)[1].str() + "\n";
+  }
+  std::vector<std::string> command = WithoutMake(folder);
+  command.insert(command.end(), {"bash", "-c", commands});
+  const Outcome outcome = RunCommand(command);
+  // THEN the part drives
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
 }
 
 TEST(ReadmeTest, IsShortAndNamesOnlyFilesThatAreThere) {
@@ -77,7 +104,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   std::smatch words;
   ASSERT_TRUE(std::regex_search(readme, words, std::regex("`export LOG (--out [^`]*)`")));
   in_clone("fogline export logs/paper-1.lcm " + words[1].str());
-  ASSERT_TRUE(std::regex_search(readme, words, std::regex("`lcm-logger [^`]* ([^` ]*)`")));
+  ASSERT_TRUE(std::regex_search(readme, words, std::regex("\n    lcm-logger ([^ ]*) &")));
   in_clone("cp logs/paper-1.lcm " + words[1].str());
   // THEN git has nothing to say
   EXPECT_EQ(in_clone("git ls-files --others --exclude-standard"), "");

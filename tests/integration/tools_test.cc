@@ -42,18 +42,30 @@ TEST_P(ToolTest, PrintsItsHelpAndDoesNothingElse) {
   EXPECT_THAT(help.out, HasSubstr("\nExample"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest, testing::Values("demo", "test", "bench", "format"),
+INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest,
+                         testing::Values("demo", "test", "bench", "build", "progress", "fresh",
+                                         "format"),
                          [](const auto& script) { return std::string(script.param); });
 
 TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   const BareShell shell;
-  for (const std::string script : {"tools/demo", "tools/test", "tools/format"}) {
+  for (const std::string script : {"tools/demo", "tools/test", "tools/build", "tools/progress",
+                                   "tools/fresh", "tools/format"}) {
     const Outcome outcome = shell.Run(script, "--fast");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err,
               script + ": error: unknown argument --fast; see " + script + " --help\n");
   }
+}
+
+TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
+  const Outcome outcome = RunCommand(
+      {"bash", "-c",
+       "printf '@1 40 a.cc\\n@20 40 b.cc\\nb.cc:1: error\\n@40 40\\n' | tools/progress building"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "b.cc:1: error\n");
+  EXPECT_EQ(outcome.err, "building: 1 of 40\nbuilding: 20 of 40\nbuilding: 40 of 40\n");
 }
 
 }  // namespace

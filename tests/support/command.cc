@@ -153,4 +153,12 @@ pid_t PidOf(const std::string& err, const std::string& role) {
   return at == std::string::npos ? 0 : std::atoi(err.c_str() + at + role.size() + 2);
 }
 
+std::vector<std::string> WithoutMake(const ScratchFolder& folder) {
+  const std::filesystem::path programs = folder.path() / "without-make";
+  std::filesystem::create_directories(programs);
+  std::ofstream(programs / "make") << "#!/bin/sh\necho 'there is no make' >&2\nexit 127\n";
+  std::filesystem::permissions(programs / "make", std::filesystem::perms::owner_all);
+  return {"env", "PATH=" + programs.string() + ":" + std::getenv("PATH")};
+}
+
 }  // namespace fogline::test

@@ -85,4 +85,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+/// The beginning of a command line on a machine on which make fails, as a fresh Debian system has
+/// none.
+std::vector<std::string> WithoutMake(const ScratchFolder& folder);
+
 }  // namespace fogline::test

@@ -205,9 +205,13 @@ ReportCurves ComputeCurves(const ReportArguments& arguments) {
 
 nlohmann::ordered_json ToJson(const ReportArguments& arguments, std::span<const LoggedRun> runs) {
   nlohmann::ordered_json json{{"report", arguments.output.string()},
-                              {"figures", nullptr},
                               {"runs", nlohmann::ordered_json::array()}};
-  if (!arguments.png.empty()) json["figures"] = arguments.png.string();
+  for (const FigureOption& option : kFigureOptions) {
+    const std::filesystem::path& folder = arguments.*option.folder;
+    const std::string key = option.name + 2;  // without "--"
+    json[key] = nullptr;
+    if (!folder.empty()) json[key] = folder.string();
+  }
   for (const LoggedRun& run : runs) {
     json["runs"].push_back(
         {{"log", run.result.log.string()}, {"seed", run.result.seed}, {"complete", run.complete}});

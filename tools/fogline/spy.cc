@@ -32,8 +32,7 @@ constexpr const char* kExplanation =
     R"(A window with a table of every channel: type, rate, jitter, undecodable messages. A double click
 shows a channel's fields; a click on a number's sparkline, its chart. lcm-spy cannot change its
 network: without --lcm-url it starts as soon as a run is announced, on the network of the newest, or
-there is traffic where runs are announced. Uses JAVA_HOME if it is set. Exit codes: 0 window closed,
-2 bad input, 3 something is missing or no run came.
+there is traffic where runs are announced. Uses JAVA_HOME if it is set.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline spy
@@ -48,6 +47,7 @@ struct SpyArguments {
     verb.add_option("--jars", jars,
                     "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
                     "/usr/local/share/java)");
+    ShowExitCodes(verb, {.done = "window closed"});
     verb.footer(kExplanation);
   }
 
