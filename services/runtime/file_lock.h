@@ -8,7 +8,7 @@ namespace fogline {
 
 /// A lock on a file or folder (flock(2)). The kernel takes it away when the process ends, however
 /// it ends, and nothing is left on the disk. It binds only those that ask for it. On a file system
-/// without locks everybody gets it.
+/// without locks every process gets it.
 class FileLock {
  public:
   enum class Kind {

@@ -92,7 +92,7 @@ std::string NetworkUrl(const std::string& given) {
 }
 
 bool IsLcmUrl(std::string_view url) {
-  constexpr std::array<std::string_view, 4> kProviders{kUdpm, "mpudpm://", kTcpq, "memq:"};
+  constexpr std::array<std::string_view, 4> kProviders{kUdpm, "mpudpm://", kTcpq, "memq://"};
   return std::ranges::any_of(
       kProviders, [url](std::string_view provider) { return url.starts_with(provider); });
 }

@@ -1,8 +1,10 @@
 #include "services/runtime/service.h"
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/core.h>
@@ -47,6 +49,9 @@ struct Arguments {
     app.add_option("--run-id", run_id, "Join only the run with this id");
     app.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
         ->check(CLI::Range(0.0, 1e6))
+        ->check([](const std::string& text) {  // CLI::Range lets it pass
+          return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
+        })
         ->capture_default_str();
     AddTrafficOptions(app, traffic);
   }

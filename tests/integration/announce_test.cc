@@ -95,7 +95,7 @@ TEST(AnnounceTest, TopShowsARunOnAPortOfItsOwnWithoutBeingToldWhereItIs) {
   EXPECT_TRUE(seen["others"].empty()) << "a beacon is no traffic";
   // AND the head of the table says what it is
   const Outcome table =
-      RunCommand(meeting.Command("fogline", {"top", "--once", "--interval", "0.5"}));
+      RunCommand(meeting.Command("fogline", {"top", "--once", "--interval", "5"}));
   EXPECT_THAT(table.out,
               HasSubstr("\nrun " + std::to_string(place.run_id) + " at " + place.url +
                         ", scenario Traded control in fog: the experiment of Sourav & Cheng 2024, "
@@ -284,7 +284,7 @@ TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedOnItsOwnMachineOnly) {
   ASSERT_TRUE(run.WaitForErr("processes: ", kPatience)) << run.Err();
   const auto announced = [&lab](std::size_t place) {
     const Outcome top = RunCommand(
-        lab[place].On({Program("fogline"), "top", "--once", "--json", "--interval", "0.2"}));
+        lab[place].On({Program("fogline"), "top", "--once", "--json", "--interval", "5"}));
     return json::parse(top.out)["announced"].size();
   };
   EXPECT_EQ(announced(0), 1U);

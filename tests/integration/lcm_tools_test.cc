@@ -222,7 +222,7 @@ class DriverThatWaits {
   [[nodiscard]] bool TakePart(std::int64_t steps) {
     constexpr std::int64_t kStepsOfSpy = 10;
     std::int64_t waited = 0;
-    const auto end = Clock::now() + kPatience;
+    auto end = Clock::now() + kPatience;  // of the next step
     while (!node_->left() && Clock::now() < end) {
       const TimePoint now = Clock::now();
       bus_.Wait(std::min(node_->Poll(now) - now, Duration(milliseconds(100))));
@@ -231,6 +231,7 @@ class DriverThatWaits {
       const std::string step = std::to_string(waited);
       if (!logger_.CatchUp("LOGGED_" + step)) return false;
       if (waited % kStepsOfSpy == 0 && !spy_.CatchUp("SHOWN_" + step)) return false;
+      end = Clock::now() + kPatience;
     }
     return node_->left() && node_->error().empty();
   }

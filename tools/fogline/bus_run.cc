@@ -25,6 +25,7 @@
 #include "services/runtime/beacon.h"
 #include "services/runtime/conductor.h"
 #include "services/runtime/fallback_log.h"
+#include "services/runtime/lcm_url.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
 #include "tools/fogline/external_roles.h"
@@ -82,7 +83,7 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
     const TimePoint now = Clock::now();
     TimePoint next = conductor.Poll(now);
     for (const auto& node : nodes) next = std::min(next, node->Poll(now));
-    // Messages first: while there are any, nobody needs to look at the clock.
+    // Messages first: while there are any, nothing is due by the clock.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(conductor.step());
     if (WasInterrupted()) break;
@@ -179,9 +180,7 @@ std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
   if (transport == "udpm") return FreshMulticastUrl();
-  for (const char* provider : {"udpm://", "mpudpm://", "tcpq://", "memq://"}) {
-    if (transport.starts_with(provider)) return transport;
-  }
+  if (IsLcmUrl(transport)) return transport;
   throw InputError(
       fmt::format("error: --transport {}: neither direct, memq, udpm, tcpq nor an LCM URL such as "
                   "\"udpm://239.255.76.67:7667?ttl=0\"",

@@ -47,7 +47,7 @@ struct SpyArguments {
     verb.add_option("--jars", jars,
                     "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
                     "/usr/local/share/java)");
-    ShowExitCodes(verb, {.done = "window closed"});
+    ShowExitCodes(verb, {.done = "window closed", .interruptible = true});
     verb.footer(kExplanation);
   }
 

@@ -55,16 +55,20 @@ std::string TransportArguments::Unsaid() const {
 }
 
 void TransportArguments::Apply(ExperimentOptions& options) const {
+  if (!url_.empty() && !IsLcmUrl(url_)) {
+    throw InputError(
+        fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_, kLcmDefaultUrl));
+  }
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
   if (options.transport == "udpm" && !WhyNoMulticast(kLcmDefaultUrl).empty()) {
     options.transport = "tcpq";
     options.remark =
         "this machine has no route for multicast: messages go over TCP on loopback, as with "
-        "--transport tcpq";
+        "--transport tcpq, and other programs need --lcm-url";
   }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
-  // Wrong is wrong, also for a run without messages to sign.
+  // A wrong key is refused, also for a run without messages to sign.
   KeyOf(traffic_);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
@@ -77,9 +81,10 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
   }
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
-    throw InputError(fmt::format(
-        "error: --external {}: nobody can join a run with --transport {}, which is one process",
-        external_.front(), options.transport));
+    throw InputError(
+        fmt::format("error: --external {}: no process can join a run with --transport {}, which is "
+                    "one process itself",
+                    external_.front(), options.transport));
   }
   if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
     throw InputError("error: --external recorder: the run's result is read from its own log");

@@ -86,6 +86,7 @@ int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs) {
 }
 
 int RunOneVerb(int argc, char** argv, AddVerb verb) {
+  if (argc == 2 && std::string_view(argv[1]) == "--version") return RunVerbs(argc, argv, {verb});
   CLI::App probe;
   Action ignored;
   verb(probe, ignored);
