@@ -169,7 +169,8 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsOverTcpAndSaysSo) {
   const Outcome run = RunCommand(machine.On(Run({})));
   const auto result = Result(run);
   EXPECT_THAT(run.err, HasSubstr("this machine has no route for multicast: messages go over TCP on "
-                                 "loopback, as with --transport tcpq\n"));
+                                 "loopback, as with --transport tcpq, and other programs need "
+                                 "--lcm-url\n"));
   EXPECT_EQ(result["transport"], "tcpq");
   EXPECT_EQ(result["digest"], Undisturbed());
   // AND so does a table, which says it once

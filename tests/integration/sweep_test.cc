@@ -121,6 +121,18 @@ TEST_F(SweepTest, DoesNotReplaceTheFileOfAnotherSweepUnlessForced) {
   EXPECT_EQ(Content(File("file.csv.json")), Content(File("fresh.csv.json")));
 }
 
+TEST_F(SweepTest, ReplacesNoFileThatIsNoSweepWhateverIsForced) {
+  std::ofstream(File("scenario.json")) << "{}";
+  for (const Words& force : {Words{}, Words{"--force"}}) {
+    const Outcome refused = Sweep("scenario.json", kShort + force);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(refused.err, File("scenario.json") +
+                               ": error: --out: the file is no sweep and stays as "
+                               "it is, --force or not\n");
+    EXPECT_EQ(Content(File("scenario.json")), "{}");
+  }
+}
+
 TEST_F(SweepTest, RefusesAFileThatIsBeingWritten) {
   const Words sweep = kThresholds + Words{"--seeds", "1:100000"};
   Background writer(Command("file.csv", sweep));

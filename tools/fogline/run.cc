@@ -47,8 +47,8 @@ struct RunArguments {
         ->capture_default_str();
     CLI::Option* realtime = verb.add_flag(
         "--realtime", options.realtime,
-        "Tick on the wall clock and wait for nobody: inputs that fail are noticed by their "
-        "age, and somebody else drives or the car stops");
+        "Tick on the wall clock and wait for no process: inputs that fail are noticed by their "
+        "age, and another driver takes over or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
         ->check(NumberIn(kMinPace, 1000))
         ->needs(realtime)

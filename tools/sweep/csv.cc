@@ -57,11 +57,12 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
 }
 
 /// Whether a file is that of this shard, by its description.
-bool IsOf(const std::filesystem::path& file, const Description& description) {
+/// What the sweep in a file is; nothing if there is none in it.
+std::optional<Description> SweepIn(const std::filesystem::path& file) {
   try {
-    return ReadDescription(file) == description;
+    return ReadDescription(file);
   } catch (const InputError&) {
-    return false;
+    return std::nullopt;
   }
 }
 
@@ -77,7 +78,13 @@ SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, c
   RequireFolderOf(path_, "--out");
   Open();
   const bool empty = lseek(file_.fd, 0, SEEK_END) == 0;
-  if (!empty && !force && !IsOf(path_, Describe(plan, shard))) {
+  const std::optional<Description> there = SweepIn(path_);
+  if (!empty && !there) {
+    throw InputError(
+        fmt::format("{}: error: --out: the file is no sweep and stays as it is, --force or not",
+                    path_.string()));
+  }
+  if (!empty && !force && there != Describe(plan, shard)) {
     throw InputError(
         fmt::format("{}: error: --out: the file is there and is not of this sweep; "
                     "--force replaces it",
