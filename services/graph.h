@@ -222,7 +222,7 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
 /// Simulated time in messages (header_t, utime) is in microseconds.
 inline constexpr double kMicrosPerSecond = 1e6;
 
-/// The place in kChannels of the channel with this name, kNumChannels if there is none.
+/// The place in kChannels of the channel with this name, kNumChannels if no channel has it.
 constexpr std::size_t ChannelNamed(std::string_view name) {
   std::size_t place = 0;
   while (place < kNumChannels && kChannels[place].name != name) ++place;

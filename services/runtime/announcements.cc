@@ -16,7 +16,7 @@ namespace {
 // Runner and listener share a clock; it may be set between two looks at it.
 constexpr std::int64_t kClockSlack_us = 1'000'000;
 
-/// The roles with these names; nothing if one is none, or is named twice.
+/// The roles with these names. Nothing if a name is unknown or occurs twice.
 std::optional<std::vector<Role>> RolesOf(const std::vector<std::string>& names) {
   std::vector<Role> roles;
   for (const RoleInfo& info : kRoles) {

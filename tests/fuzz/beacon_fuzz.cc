@@ -1,4 +1,4 @@
-// What a program that looks for runs makes of beacons from anybody. Input: datagrams.
+// How a program that looks for runs reads beacons from an unknown sender. Input: datagrams.
 #include <nlohmann/json.hpp>
 
 #include "scenario/wording.h"

@@ -30,7 +30,8 @@ class Top {
   explicit Top(const Meeting& meeting)
       : process_(meeting.Command("fogline", {"top", "--json", "--interval", "0.1"})) {}
 
-  /// Waits for a document that is as it should be. @return it, or the last one
+  /// Waits for a document that is as it should be, and looks at the file of its output every few
+  /// milliseconds: no event tells that the file has grown. @return it, or the last one
   json WaitFor(const std::function<bool(const json&)>& good) {
     const TimePoint end = Clock::now() + kPatience;
     json document;

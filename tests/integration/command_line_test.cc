@@ -110,7 +110,7 @@ TEST(CommandLineTest, SaysHowAFieldIsSetThatIsTakenForAnOption) {
   EXPECT_EQ(ErrorOf({"sweep", "scenario/paper.json", "--policy=none"}),
             "fogline sweep: error: no option \"--policy\"" + set +
                 "/arbitrator/policy=none (see fogline sweep --help)\n");
-  // Several sections have the name; a value that is none of the field's is not repeated.
+  // Several sections have the name; a value that the field does not allow is not repeated.
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--end-on-collision", "scenario/x.json"}),
             "fogline run: error: no option \"--end-on-collision\"" + set +
                 "/world/end_on_collision=VALUE (see fogline run --help)\n");
