@@ -73,14 +73,24 @@ bool Mark(Bus& bus, const std::string& channel, const std::function<bool()>& see
   return true;
 }
 
+/// The command, run before all other work if that is permitted. lcm-logger keeps 30 messages that
+/// it has no time for, and loses the next ones: on a busy machine those of a few ms.
+std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
+  const std::vector<std::string> first{"chrt", "--rr", "1"};
+  std::vector<std::string> probe = first;
+  probe.emplace_back("true");
+  if (RunCommand(probe).code == 0) command.insert(command.begin(), first.begin(), first.end());
+  return command;
+}
+
 /// Debian's lcm-logger.
 class Logger {
  public:
   Logger(Bus& bus, std::string file)
       : bus_(bus),
         file_(std::move(file)),
-        process_(
-            {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), file_}) {}
+        process_(BeforeOtherWork(
+            {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), file_})) {}
 
   /// Waits until it has logged everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
@@ -206,6 +216,10 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
+// After so many steps the driver waits for lcm-spy. What is sent next finds it ready; of the rest
+// it may lose what comes while it has no processor.
+constexpr std::int64_t kStepsOfSpy = 10;
+
 /// The driver of a run, which answers for a step only when lcm-logger has written what was sent
 /// before it. lcm-logger queues 30 messages and lcm-spy as many as its socket holds: neither can
 /// promise more on a busy machine, and a run that waits for its driver sends fewer at a time.
@@ -220,7 +234,6 @@ class DriverThatWaits {
 
   /// Takes part in one run of `steps` steps. False if it takes too long.
   [[nodiscard]] bool TakePart(std::int64_t steps) {
-    constexpr std::int64_t kStepsOfSpy = 10;
     std::int64_t waited = 0;
     auto end = Clock::now() + kPatience;  // of the next step
     while (!node_->left() && Clock::now() < end) {
@@ -247,7 +260,7 @@ class DriverThatWaits {
 enum class Signing { kNone, kKey };
 class LoggerAndSpyTest : public testing::TestWithParam<Signing> {};
 
-TEST_P(LoggerAndSpyTest, GetAndDecodeEveryMessageOfARunThatLeavesThemTheTime) {
+TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   // GIVEN lcm-logger and lcm-spy, which listen
   const ScratchFolder folder;
   const std::string key = GetParam() == Signing::kKey ? folder.File("key") : "";
@@ -320,7 +333,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeEveryMessageOfARunThatLeavesThemTheTime) {
     ASSERT_NE(row, rows.end());
     EXPECT_EQ(row->second.type, types[i]);
     EXPECT_EQ(row->second.undecodable, 0);
-    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? kSteps : 1);
+    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? kSteps / kStepsOfSpy : 1);
   }
   // AND what lcm-logger has logged of signed traffic is signed when lcm-logplayer plays it
   if (!key.empty()) {
