@@ -200,6 +200,7 @@ void Node::OnRun(Bytes bytes) {
     return Refuse(&status_t::foreign);
   }
   if (run.progress > steps_) return Refuse(&status_t::out_of_window);
+  if (run.realtime && !IsSpeed(run.pace)) return Refuse(&status_t::malformed);
   const TimePoint now = Clock::now();
   if (!IsFresh(run, now)) return;
   if (status_.state == status_t::WAITING && run.phase != run_t::STOP && !parts_.Add(run)) {
@@ -281,7 +282,7 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
   if (ReadInt64(bytes, 0) != inputs_[index].fingerprint) return Refuse(&status_t::wrong_type);
   if (ReadInt64(bytes, kRunIdOffset) != *run_id_) return Refuse(&status_t::foreign);
   const std::int64_t step = ReadInt64(bytes, kStepOffset);
-  if (step < 0) return Refuse(&status_t::out_of_window);
+  if (step < 0 || step >= steps_) return Refuse(&status_t::out_of_window);
   switch (rule_->Classify(index, step, bytes)) {
     case StepRing::Verdict::kDuplicate:
       ++status_.duplicates;
