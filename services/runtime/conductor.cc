@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "scenario/wording.h"
+#include "services/runtime/node.h"
 #include "services/runtime/possible_status.h"
 #include "services/runtime/this_process.h"
 
@@ -25,6 +26,9 @@ constexpr Duration kSilent = milliseconds(1000);
 constexpr Duration kAway = milliseconds(500);
 // A STATUS may be so long on its way; later than that its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
+// In real time a tick may be early by what another one was late, which is less than a period; and
+// the world begins with the first one.
+constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
   for (const RoleInfo& info : kRoles) {
@@ -40,6 +44,8 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       options_(std::move(options)),
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
+      signs_of_life_(Node::kHeartbeat),
+      deaf_(options_.realtime ? options_.period : Duration::zero()),
       host_(HostName()),
       began_(Clock::now()),
       looked_(began_) {
@@ -79,6 +85,7 @@ TimePoint Conductor::Poll(TimePoint now) {
   if (phase_ == Phase::kJoining && ready) {
     phase_ = Phase::kRunning;
     progressed_ = now;
+    going_since_ = now;
   }
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       HeldAgainst(began_, now) > options_.join_limit) {
@@ -174,7 +181,8 @@ void Conductor::OnStatus(const status_t& heard) {
     strangers_.Hear(heard);
     return Refuse(&status_t::foreign);
   }
-  if (!IsPossible(heard) || heard.header.step > options_.steps)
+  const TimePoint now = Clock::now();
+  if (!IsPossible(heard) || heard.header.step > NewestPossible(now))
     return Refuse(&status_t::out_of_window);
   status_t status = heard;  // with texts as they may be printed
   status.host = EscapeControls(heard.host);
@@ -182,7 +190,6 @@ void Conductor::OnStatus(const status_t& heard) {
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
   if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;
-  const TimePoint now = Clock::now();
   Attend(now);
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
@@ -199,6 +206,9 @@ void Conductor::OnStatus(const status_t& heard) {
   // A role that catches up makes progress, too. It starts below what its predecessor had done.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
+  signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
+                       now);
+  deaf_.Heard(*role, status, now);
   member.status = status;
   member.heard = now;
   const bool decides = *role == Role::kWorld || *role == Role::kArbitrator;
@@ -209,7 +219,24 @@ void Conductor::OnStatus(const status_t& heard) {
   }
   if (on_status_) on_status_(status);
   if (member.status->state == status_t::FAILED) return OnFailure(*role, status);
-  if (*role == Role::kWorld && member.status->state == status_t::DONE) phase_ = Phase::kDone;
+  if (*role == Role::kWorld && member.status->state == status_t::DONE) OnDone();
+}
+
+std::int64_t Conductor::NewestPossible(TimePoint now) const {
+  if (!options_.realtime || options_.period == Duration::zero()) return options_.steps;
+  const Duration going = phase_ == Phase::kJoining ? Duration::zero() : now - going_since_;
+  return std::min(options_.steps, going / options_.period + kEarly);
+}
+
+void Conductor::OnDone() {
+  for (const RoleInfo& info : kRoles) {
+    const auto deaf = deaf_.AtTheEnd(info.role);
+    if (!deaf) continue;
+    const status_t& status = *member(info.role).status;
+    return Fail(fmt::format("{} (pid {} on {}) is deaf at the end of the run: it {}", info.name,
+                            status.pid, status.host, Text(*deaf)));
+  }
+  phase_ = Phase::kDone;
 }
 
 void Conductor::OnFailure(Role role, const status_t& status) {
@@ -257,6 +284,7 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
   member.dead.push_back(std::move(*member.status));
   member.status.reset();
   member.rival.reset();
+  deaf_.Forget(role);
   member.replaced_at = now;
   return true;
 }
@@ -267,6 +295,7 @@ void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
   if (member.status && member.status->pid == pid && member.status->host == host_) {
     member.dead.push_back(std::move(*member.status));
     member.status.reset();
+    deaf_.Forget(role);
   }
   member.rival.reset();
   progressed_ = now;  // somebody is at work to get the run going again
@@ -274,6 +303,7 @@ void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
 
 void Conductor::Launched(Role role, std::int32_t pid, TimePoint now) {
   std::erase(members_[static_cast<std::size_t>(role)].pids, pid);
+  signs_of_life_.Since(role, now);
   progressed_ = now;
 }
 

@@ -14,8 +14,10 @@
 #include "services/graph.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/deaf_roles.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
+#include "services/runtime/signs_of_life.h"
 #include "services/runtime/step_ring.h"
 #include "services/runtime/strangers.h"
 
@@ -27,6 +29,7 @@ struct ConductorOptions {
   std::int64_t steps = kMaxStep;              // of it
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
   bool realtime = false;                      // at that pace, whoever keeps up
+  Duration period{};                          // of a step then, on the wall clock
   Duration join_limit{};                      // for the roles to be ready; 0: no limit
   Duration stall_limit = milliseconds(4000);  // without a completed step of any role
   std::vector<Role> external;                 // roles that somebody else starts, and starts again
@@ -48,6 +51,13 @@ class Conductor {
   void Attend(TimePoint now);
   /// Time since then in which something could have been heard.
   Duration HeldAgainst(TimePoint since, TimePoint now) const;
+  /// How likely it is that a role that has been silent for so long speaks, and the network loses
+  /// what it says.
+  double ChanceOfLife(Role role, Duration silence) const {
+    return signs_of_life_.ChanceOfLife(role, silence);
+  }
+  /// In real time: what a role does not hear although others publish it, if that has lasted.
+  std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
   /// The longest time that the runner was held up since the last call, 0 if it was not.
   Duration TakeAway() { return std::exchange(away_, Duration::zero()); }
 
@@ -109,6 +119,10 @@ class Conductor {
  private:
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
+  /// The newest step that a role can have computed.
+  std::int64_t NewestPossible(TimePoint now) const;
+  /// The world has said that the last step is over.
+  void OnDone();
   /// The role has failed and said so.
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
@@ -129,10 +143,13 @@ class Conductor {
   std::vector<std::string> parts_;
   std::string hash_;
   std::array<Member, kRoles.size()> members_;
+  SignsOfLife signs_of_life_;
+  DeafRoles deaf_;
   Strangers strangers_;
   status_t own_{};  // what the runner itself has refused
   std::string host_;
   Phase phase_ = Phase::kJoining;
+  TimePoint going_since_{};       // the first GO
   bool ready_ = false;            // every role, when last looked at
   std::int8_t minimal_risk_ = 0;  // cars, as in status_t
   std::function<void(const status_t&)> on_status_;

@@ -27,6 +27,9 @@ class FireRule;
 
 class Node {
  public:
+  /// It says how it is at least so often.
+  static constexpr Duration kHeartbeat = milliseconds(200);
+
   /// @param run_id take part in this run only; without it, in the first that is announced
   Node(Bus& bus, Role role, std::optional<std::int64_t> run_id);
   virtual ~Node();
@@ -128,8 +131,6 @@ class Node {
   /// What a node answers of steps that are over. Repairs on a network that loses a third take a few
   /// hundred a second.
   AnswerBudget budget_{2000, 500};
-
-  static constexpr Duration kHeartbeat = milliseconds(200);
 
  private:
   void Read(std::size_t channel, bool on_demand);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,14 @@ class Machine {
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
   /// From now on the kernel loses so many of 100 UDP datagrams that arrive here, its own included.
   void LoseUdp(int per_cent) const;
+  /// From now on it loses those of one LCM channel.
+  void LoseChannel(const std::string& channel) const;
   /// How many it has lost.
   std::int64_t LostUdp() const;
+  /// From now on it loses none.
+  void LoseNothing() const { Do("nft delete table inet loss"); }
+  /// Calls a function whose sockets are to be on this machine.
+  void Enter(const std::function<void()>& function) const;
 
  private:
   std::string name_;

@@ -55,6 +55,7 @@ ConductorOptions MakeConductorOptions(const Scenario& scenario, const Experiment
           .steps = scenario.steps,
           .pace = options.pace,
           .realtime = options.realtime,
+          .period = duration_cast<Duration>(step),
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,

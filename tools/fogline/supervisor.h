@@ -1,9 +1,10 @@
 // The roles of a run as processes on this machine: started, watched, and started again when they
-// are killed or hang. A process that ends by itself has said why, and ends the run.
+// are killed, hang or are deaf. A process that ends by itself has said why, and ends the run.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,20 +48,27 @@ class Supervisor {
     RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::string hung{};   // how long it was silent when it was killed for that
-    std::string death{};  // the last one, in words
+    std::optional<std::int64_t> activity{};  // in the middle of its silence
+    std::string killed_for{};                // what it was killed for here
+    bool deaf = false;                       // that was deafness
+    std::string death{};                     // the last one, in words
     std::optional<TimePoint> start_at{};
     bool gone = false;  // for good, and the run goes on
   };
   void Start(Child& child, TimePoint now);
   void OnExit(const ProcessGroup::Exit& exit, TimePoint now);
   void KillIfItHangs(Child& child, TimePoint now);
+  void KillIfItIsDeaf(Child& child);
+  void Kill(Child& child, std::string why);
+  /// Says of roles that are not started here that they are deaf, once each time.
+  void NameTheDeaf();
 
   Bus& bus_;
   Conductor& conductor_;
   Options options_;
   ProcessGroup group_;
   std::vector<Child> children_;
+  std::set<Role> deaf_;  // those that this was said of
 };
 
 }  // namespace fogline

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "services/runtime/digest.h"
 #include "services/runtime/this_process.h"
@@ -240,6 +241,27 @@ TEST_F(ConductorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
   EXPECT_THAT(
       hasty.error(),
       HasSubstr("step 7: driver waits for HOST_COMMAND from arbitrator (last heard: step 5"));
+}
+
+TEST_F(ConductorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .steps = 500,
+                                      .pace = 1,
+                                      .realtime = true,
+                                      .period = std::chrono::hours(1)});
+  const auto say = [&](std::int64_t step) {
+    role(Role::kRadar).header.step = step;
+    SayStatus(Role::kRadar);
+    conductor.Poll(Clock::now());
+  };
+  BeAtStep(-1);
+  say(400);
+  EXPECT_EQ(conductor.step(), -1);
+  say(std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(conductor.step(), -1);
+  say(1);
+  EXPECT_EQ(conductor.step(), 1);
 }
 
 TEST_F(ConductorTest, CountsWhatItRefusesItself) {
