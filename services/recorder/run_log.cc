@@ -65,12 +65,16 @@ class RunLogReader::Assembler {
   /// Messages of the next step. In real time there may be none at all.
   StepMessages TakeStep() {
     const auto next = pending_.begin();
-    const bool there = next->first == run_.steps;
-    const std::size_t count = there ? next->second.count : 0;
-    if (realtime_) realtime_->AddMissed(static_cast<std::int64_t>(ChannelsPerStep() - count));
-    if (!there) return {};
-    const StepMessages messages = next->second.messages;
-    pending_.erase(next);
+    StepMessages messages{};
+    if (next->first == run_.steps) {
+      messages = next->second.messages;
+      pending_.erase(next);
+    }
+    if (realtime_) {
+      ChannelSet there;
+      for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
+      realtime_->AddStep(there);
+    }
     return messages;
   }
 

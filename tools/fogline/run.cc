@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/scenario_parts.h"
+#include "services/runtime/step_ring.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
@@ -32,8 +34,6 @@ Examples:
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// A step of 0.1 s then takes 100 s.
-constexpr double kMinPace = 1e-3;
 // Nine processes must pass on a step in this time, and their signs of life be heard in 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
@@ -43,14 +43,14 @@ struct RunArguments {
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
-        ->check(NumberIn(0, 1000))
+        ->check(NumberIn(0, kMaxSpeed))
         ->capture_default_str();
     CLI::Option* realtime = verb.add_flag(
         "--realtime", options.realtime,
         "Tick on the wall clock and wait for no process: inputs that fail are noticed by their "
         "age, and another driver takes over or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
-        ->check(NumberIn(kMinPace, 1000))
+        ->check(NumberIn(kMinSpeed, kMaxSpeed))
         ->needs(realtime)
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
@@ -125,13 +125,22 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
+/// @throws std::runtime_error if the log of a run in real time is not whole
+int Ended(const ExperimentResult& result) {
+  if (!result.realtime || result.realtime->unlogged_messages == 0) return kDone;
+  throw std::runtime_error(
+      fmt::format("the log is not complete: at least {} messages that were published are not in "
+                  "it: the recorder can have the last {} steps again, and did not hear for longer",
+                  result.realtime->unlogged_messages, kMaxAhead));
+}
+
 int Run(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
-  if (!(options.pace == 0 || options.pace >= kMinPace)) {
-    throw InputError(
-        fmt::format("error: --pace {}: neither 0 nor from {} to 1000", options.pace, kMinPace));
+  if (!(options.pace == 0 || IsSpeed(options.pace))) {
+    throw InputError(fmt::format("error: --pace {}: neither 0 nor from {} to {}", options.pace,
+                                 kMinSpeed, kMaxSpeed));
   }
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
@@ -157,7 +166,7 @@ int Run(RunArguments& arguments) {
   const ExperimentResult result = RunExperiment(scenario, options);
   if (arguments.json) {
     PrintJson(ToJson(arguments.scenario.file(), result));
-    return kDone;
+    return Ended(result);
   }
   fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
              result.steps, result.wall_s, result.transport, result.repairs);
@@ -176,7 +185,7 @@ int Run(RunArguments& arguments) {
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result));
-  return kDone;
+  return Ended(result);
 }
 
 }  // namespace
