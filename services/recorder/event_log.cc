@@ -18,6 +18,7 @@
 
 #include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 
 namespace fogline {
 namespace {
@@ -56,7 +57,7 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file)
     : file_(file), out_(std::fopen(file.c_str(), "wb")) {
   if (out_ == nullptr) {
     throw InputError(
-        fmt::format("{}: error: cannot write the log: {}", file.string(), std::strerror(errno)));
+        fmt::format("{}: error: cannot write the log: {}", PathText(file), std::strerror(errno)));
   }
   std::setvbuf(out_, nullptr, _IONBF, 0);
   pending_.reserve(2 * kWorthWriting);
@@ -68,7 +69,7 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file, const LogHead&
       std::fseek(out_, head.bytes, SEEK_SET) != 0) {
     const std::string why = std::strerror(errno);
     if (out_ != nullptr) std::fclose(out_);
-    throw InputError(fmt::format("{}: error: cannot go on with the log: {}", file.string(), why));
+    throw InputError(fmt::format("{}: error: cannot go on with the log: {}", PathText(file), why));
   }
   std::setvbuf(out_, nullptr, _IONBF, 0);
   pending_.reserve(2 * kWorthWriting);
@@ -106,30 +107,32 @@ bool EventLogWriter::WriteOut() {
 
 void EventLogWriter::FailToWrite() const {
   throw std::runtime_error(
-      fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
+      fmt::format("cannot write to {}: {}", PathText(file_), std::strerror(errno)));
 }
 
 EventLogReader::EventLogReader(const std::filesystem::path& file) {
-  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (fd < 0) ThrowIfExhausted(errno, PathText(file));
   struct stat info {};
   if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
-    std::string why = fd >= 0 ? "not a regular file" : std::strerror(errno);
+    std::string why = fd < 0 ? std::strerror(errno) : WhyNoRegularFile(file);
     if (fd < 0 && errno == ENOENT) why += DidYouMeanFile(file);
+    if (S_ISDIR(info.st_mode)) why += fmt::format("; its logs are {}", PathText(file / "*.lcm"));
     if (fd >= 0) close(fd);
-    throw InputError(fmt::format("{}: error: cannot read the log: {}", file.string(), why));
+    throw InputError(fmt::format("{}: error: cannot read the log: {}", PathText(file), why));
   }
   const auto size = static_cast<std::size_t>(info.st_size);
   void* mapped = size == 0 ? nullptr : mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
   close(fd);
   if (mapped == MAP_FAILED) {
     throw InputError(
-        fmt::format("{}: error: cannot map the log: {}", file.string(), std::strerror(errno)));
+        fmt::format("{}: error: cannot map the log: {}", PathText(file), std::strerror(errno)));
   }
   if (mapped != nullptr) madvise(mapped, size, MADV_SEQUENTIAL);
   content_ = {static_cast<const std::uint8_t*>(mapped), size};
   if (size > 0 && (size < 4 || ReadUint32(content_, 0) != kSyncWord)) {
     munmap(mapped, size);
-    throw InputError(fmt::format("{}: error: not an LCM event log", file.string()));
+    throw InputError(fmt::format("{}: error: not an LCM event log", PathText(file)));
   }
 }
 

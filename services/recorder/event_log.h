@@ -86,6 +86,8 @@ class EventLogReader {
   std::optional<Event> Next();
   /// What is wrong with the end of the file, "" if nothing: known once Next() has come to it.
   const std::string& torn() const { return torn_; }
+  /// Whether there is not one byte in the file.
+  bool empty() const { return content_.empty(); }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
 

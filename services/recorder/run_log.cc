@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/seal.h"
 
@@ -101,13 +102,17 @@ class RunLogReader::Assembler {
 
   void Finish() {
     finished_ = true;
+    if (reader_.empty()) {
+      throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
+                                   PathText(file_)));
+    }
     if (!parts_.Complete()) {
       throw InputError(
-          fmt::format("{}: error: the log has no complete scenario of a run", file_.string()));
+          fmt::format("{}: error: the log has no complete scenario of a run", PathText(file_)));
     }
     if (!parts_.HashHolds()) {
       throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
-                                   file_.string()));
+                                   PathText(file_)));
     }
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();
