@@ -14,8 +14,10 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
 #include "services/runtime/channel_filter.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/multicast_route.h"
 #include "services/runtime/tcpq_client.h"
 
@@ -72,7 +74,10 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     // mpudpm, which tells its ports on a channel of its own.
     std::optional<FilterFromTheStart> filter;
     if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({{"LCM_SELF_TEST"}}));
+    errno = 0;
     lcm_ = lcm_create(url_.c_str());
+    // LCM says in no other way why it cannot open a network.
+    if (lcm_ == nullptr) ThrowIfExhausted(errno, url_);
     if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
     if (filter) {
       sockets_ = filter->sockets();
@@ -88,10 +93,10 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   Filter(ChannelFilter({}));
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
-    fmt::print(stderr,
-               "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
-               "parser (`fogline doctor` says more)\n",
-               url_);
+    Notice(fmt::format(
+        "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
+        "parser (`fogline doctor` says more)",
+        url_));
   }
 }
 

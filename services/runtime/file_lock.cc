@@ -16,7 +16,9 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 
 namespace fogline {
 namespace {
@@ -30,8 +32,9 @@ int Open(const std::filesystem::path& path, std::string_view option) {
   const bool is_folder = std::filesystem::is_directory(path, ignored);
   const int fd = open(path.c_str(), (is_folder ? O_RDONLY : O_RDWR | O_CREAT) | O_CLOEXEC, 0666);
   if (fd >= 0) return fd;
+  ThrowIfExhausted(errno, PathText(path));
   throw InputError(
-      fmt::format("{}: error: {}: cannot write: {}", path.string(), option, std::strerror(errno)));
+      fmt::format("{}: error: {}: cannot write: {}", PathText(path), option, std::strerror(errno)));
 }
 
 /// Whether a file still has the name by which it was opened.
@@ -79,8 +82,9 @@ FileLock::FileLock(const std::filesystem::path& path, Kind kind, std::string_vie
     if (!Lock(fd_, kind)) {
       const std::optional<pid_t> holder = HolderOf(fd_);
       close(fd_);
-      throw InputError(fmt::format("{}: error: {}: is being written by another {}{}", path.string(),
-                                   option, owner, holder ? fmt::format(" (pid {})", *holder) : ""));
+      throw InputError(fmt::format("{}: error: {}: is being written by another {}{}",
+                                   PathText(path), option, owner,
+                                   holder ? fmt::format(" (pid {})", *holder) : ""));
     }
     if (IsFileOf(path, fd_) || tries == kTries) return;
     close(fd_);

@@ -12,6 +12,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
+
 namespace fogline {
 namespace {
 
@@ -60,7 +62,10 @@ std::string RouteError(const std::string& address) {
   to.sin_port = htons(kAnyPort);
   to.sin_addr = *numeric;
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return std::strerror(errno);
+  if (probe < 0) {
+    ThrowIfExhausted(errno, "cannot look for a route");
+    return std::strerror(errno);
+  }
   const int result = connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
   const std::string error = result == 0 ? "" : std::strerror(errno);
   close(probe);

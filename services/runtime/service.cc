@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
@@ -11,6 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/lcm_url.h"
 #include "services/runtime/run_seeker.h"
 #include "services/runtime/this_process.h"
@@ -21,16 +21,6 @@ namespace fogline {
 namespace {
 
 enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void WatchSignals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
-}
 
 // In real time the clock of the run comes first, then everybody else, then the rest of the machine.
 constexpr int kWorldPriority = 2;
@@ -72,7 +62,7 @@ class Service {
   /// Takes part in one run. @return the exit code
   int Run() {
     while (!node_->left()) {
-      if (interrupted != 0) {
+      if (WasInterrupted()) {
         node_->Leave();
         return kInterrupted;
       }
@@ -86,12 +76,12 @@ class Service {
       TakePart();
     }
     if (node_->error().empty()) return kStopped;
-    Say("error: " + node_->error());
+    Complain(fmt::format("{}: error: {}", arguments_.name, node_->error()));
     return kFailed;
   }
 
  private:
-  void Say(const std::string& what) const { fmt::print(stderr, "{}: {}\n", arguments_.name, what); }
+  void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
     node_.reset();
@@ -179,6 +169,7 @@ std::string_view PurposeOf(Role role) {
 
 int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                const std::function<void(CLI::App&)>& extend) {
+  TakeStandardDescriptors();
   Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
   const std::string& name = arguments.name;
   CLI::App app{
@@ -207,17 +198,17 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{0}: error: {1} (see {0} --help)\n", name, error.what());
+    Complain(fmt::format("{0}: error: {1} (see {0} --help)", name, error.what()));
     return kBadUsage;
   }
-  WatchSignals();
+  WatchInterrupts();
   try {
     return Service(arguments, make).Run();
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
+    Complain(fmt::format("{}: {}", name, error.what()));
     return kBadUsage;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    Complain(fmt::format("{}: error: {}", name, error.what()));
     return kFailed;
   }
 }

@@ -14,6 +14,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
+
 namespace fogline::tcpq {
 namespace {
 
@@ -49,7 +51,10 @@ Client::~Client() {
 
 void Client::Connect() {
   fd_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd_ < 0) throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
+  if (fd_ < 0) {
+    ThrowIfExhausted(errno, endpoint_.ToString());
+    throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
+  }
   const int on = 1;  // a message is a packet at once, not when the one before is acknowledged
   setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   sockaddr_in address{};
