@@ -227,6 +227,17 @@ TEST(RunTest, FailsWhereItsResultCannotBeWritten) {
   }
 }
 
+TEST(RunTest, SaysInItsFirstLineThatItEndedInACollision) {
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                  "--set", "/world/host_speed_mps=40", "--set", "/world/host_gap_m=5"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  const std::string headline = run.out.substr(0, run.out.find('\n'));
+  EXPECT_NE(headline.find(": 4 of 500 steps in "), std::string::npos) << headline;
+  EXPECT_NE(headline.find(" repairs: the host hit the preceding car at 0.2"), std::string::npos)
+      << headline;
+}
+
 TEST(RunTest, HangingUpEndsARunAsCtrlCDoes) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");

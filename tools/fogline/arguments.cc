@@ -11,7 +11,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/file.h"
+#include "scenario/wording.h"
 #include "services/recorder/event_log.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/lcm_url.h"
 #include "tools/report/measure_text.h"
 #include "tools/sweep/whole_file.h"
@@ -24,9 +27,10 @@ namespace {
 bool Reserve(const std::filesystem::path& log) {
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST) return false;
+  if (file < 0) ThrowIfExhausted(errno, PathText(log));
   if (file < 0) {
     throw InputError(
-        fmt::format("{}: error: --log: cannot write: {}", log.string(), std::strerror(errno)));
+        fmt::format("{}: error: --log: cannot write: {}", PathText(log), std::strerror(errno)));
   }
   close(file);
   return true;
@@ -46,18 +50,18 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
   if (Reserve(log)) return;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(log, ignored)) {
-    throw InputError(fmt::format("{}: error: --log: not a file", log.string()));
+    throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
   // Where another run is writing it, --force is of no use.
   const FileLock unused(log, FileLock::Kind::kOwn, "--log", "run");
   if (!force) {
     throw InputError(
-        fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
+        fmt::format("{}: error: --log: the file exists; --force replaces it", PathText(log)));
   }
   if (!IsEventLogOrEmpty(log)) {
     throw InputError(
         fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
-                    log.string()));
+                    PathText(log)));
   }
 }
 
@@ -84,13 +88,17 @@ std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
 SeedRange ReadSeeds(const std::string& text) {
   const SeedRange seeds = ParseSeeds(text);
   if (seeds.count() == 1 && seeds.first > 1 && text.find(':') == std::string::npos) {
-    fmt::print(stderr, "--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}\n",
-               seeds.first);
+    Notice(fmt::format("--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}",
+                       seeds.first));
   }
   return seeds;
 }
 
-void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
+void PrintJson(const nlohmann::ordered_json& json, int indent) {
+  PrintJson(json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text)); }
 
 NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
   verb.add_option("--lcm-url", url_,

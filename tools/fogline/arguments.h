@@ -1,7 +1,6 @@
 // Arguments that several verbs share.
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/file_lock.h"
 #include "tools/fogline/experiment.h"
 #include "tools/sweep/plan.h"
@@ -83,7 +83,7 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
     try {
       work(log);
     } catch (const InputError& error) {
-      fmt::print(stderr, "{}\n", error.what());
+      Complain(error.what());
       readable = false;
     }
   }
@@ -95,7 +95,9 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
 /// @throws InputError
 SeedRange ReadSeeds(const std::string& text);
 
-/// --json output: `text` and a newline on stdout.
+/// --json output: a document and a newline on stdout. Names that are no UTF-8, which JSON cannot
+/// carry, have U+FFFD there; what a terminal would obey is escaped.
+void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
 /// --lcm-url of a verb that looks at a network from outside.

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/acc/acc.h"
 #include "services/arbitrator/arbitrator.h"
 #include "services/driver/driver.h"
@@ -24,12 +25,13 @@
 #include "services/recorder/recorder.h"
 #include "services/runtime/beacon.h"
 #include "services/runtime/conductor.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/fallback_log.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/lcm_url.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
 #include "tools/fogline/external_roles.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/relay_process.h"
 #include "tools/fogline/supervisor.h"
@@ -96,9 +98,9 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
 
 void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
                        const std::string& external) {
-  fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
-  if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
-  fmt::print(stderr, "{}", external);
+  Notice(fmt::format("run {} on {}", run_id, bus.url()));
+  if (!group.empty()) Notice(fmt::format("processes: {}", group.Describe()));
+  if (!external.empty()) Notice(external);
 }
 
 std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id,
@@ -173,7 +175,7 @@ bool IsLogOf(std::int64_t run_id, const std::filesystem::path& file) {
 /// What a run that ends early has left; "" if it was to leave no log.
 std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
   if (log.empty()) return "";
-  return IsLogOf(run_id, log) ? fmt::format("the log so far: {}", log.string())
+  return IsLogOf(run_id, log) ? fmt::format("the log so far: {}", PathText(log))
                               : "no log was written";
 }
 
@@ -214,7 +216,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const std::string kept = KeptLog(conducting.run_id, options.log);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
   const std::string strangers = conductor.strangers().Text();
-  if (options.announce && !strangers.empty()) fmt::print(stderr, "{}\n", strangers);
+  if (options.announce && !strangers.empty()) Notice(strangers);
   if (conductor.phase() == Conductor::Phase::kFailed) {
     throw std::runtime_error(conductor.error() + (kept.empty() ? "" : "\n  " + kept));
   }

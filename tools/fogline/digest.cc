@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
 #include "services/recorder/run_log.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/digest.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
@@ -31,14 +33,14 @@ int RunDigest(const DigestArguments& arguments) {
     }
     const RunLog& run = reader.run();
     complete = complete && run.complete;
-    if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", log.string(), run.note);
+    if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(log), run.note));
     rows.push_back({{"log", log.string()},
                     {"digest", digest.Hex()},
                     {"steps", run.steps},
                     {"complete", run.complete}});
-    if (!arguments.json) fmt::print("{}  {}\n", digest.Hex(), log.string());
+    if (!arguments.json) fmt::print("{}  {}\n", digest.Hex(), PathText(log));
   });
-  if (arguments.json) PrintJson(rows.dump(2));
+  if (arguments.json) PrintJson(rows);
   if (!readable) return kBadInput;
   return complete ? kDone : kCheckFailed;
 }

@@ -10,13 +10,14 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/measures/sample_decoder.h"
 #include "services/recorder/run_log.h"
 #include "services/runtime/digest.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/scenario_parts.h"
 #include "tools/fogline/bus_run.h"
-#include "tools/fogline/interrupt.h"
 
 namespace fogline {
 namespace {
@@ -120,11 +121,11 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   if (logged.run_id != run.run_id) {
     throw std::runtime_error(
         fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
-                    log.string(), logged.run_id, run.run_id));
+                    PathText(log), logged.run_id, run.run_id));
   }
   if (!logged.complete) {
     throw std::runtime_error(
-        fmt::format("{}: the log is not complete: {}", log.string(), logged.note));
+        fmt::format("{}: the log is not complete: {}", PathText(log), logged.note));
   }
   ExperimentResult result = std::move(logged.result);
   result.wall_s = run.wall_s;
@@ -146,7 +147,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
     const std::string what = error.what();
     const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
     const bool field = colon != std::string::npos;
-    throw ScenarioError(fmt::format("{}: error: {}", file.string(), what),
+    throw ScenarioError(fmt::format("{}: error: {}", PathText(file), what),
                         {{.file = file.string(),
                           .pointer = field ? what.substr(0, colon) : "",
                           .rule = "impossible",
@@ -182,7 +183,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
       throw InputError(
           fmt::format("{}: error: step {} does not decode: was it recorded with other "
                       "message types?",
-                      log.string(), reader.run().steps - 1));
+                      PathText(log), reader.run().steps - 1));
     }
     samples.push_back(*sample);
     followers.Add(decoder.truth(), decoder.follower());

@@ -13,6 +13,7 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "tools/fogline/child.h"
 
 namespace fogline {
@@ -51,6 +52,7 @@ pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
   std::signal(SIGCHLD, SIG_DFL);
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    ThrowIfExhausted(errno, "cannot make a pipe");
     throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   }
   fcntl(ends[0], F_SETFL, O_NONBLOCK);

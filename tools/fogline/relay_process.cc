@@ -13,6 +13,7 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "services/runtime/clock.h"
 #include "tools/fogline/child.h"
 
@@ -51,6 +52,7 @@ RelayProcess::RelayProcess() {
   const std::string program = ProgramBeside("fogline-relay").string();
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    ThrowIfExhausted(errno, "cannot make a pipe");
     throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   }
   const pid_t parent = getpid();

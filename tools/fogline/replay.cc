@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/role_replay.h"
@@ -34,7 +35,7 @@ struct Replayed {
 };
 
 [[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
-  throw InputError(fmt::format("{}: error: {}", log.string(), why));
+  throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
 /// The run that a log holds, without its steps. @throws InputError for a run in real time
@@ -125,11 +126,11 @@ int RunReplay(const ReplayArguments& arguments) {
                                 {"same", same},
                                 {"roles", nlohmann::ordered_json::array()}};
     for (const Replayed& one : roles) json["roles"].push_back(ToJson(one));
-    PrintJson(json.dump(2));
+    PrintJson(json);
   } else {
     for (const Replayed& one : roles) PrintText(one, run.steps);
   }
-  if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
+  if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
   return same && run.complete ? kDone : kCheckFailed;
 }
 

@@ -1,16 +1,18 @@
 // fogline run: one run of a scenario.
-#include <cstdio>
 #include <memory>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
+#include "tools/report/measure_text.h"
 
 namespace fogline {
 namespace {
@@ -80,7 +82,8 @@ struct RunArguments {
   bool quiet = false;
 };
 
-std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult& result) {
+nlohmann::ordered_json ToJson(const std::filesystem::path& scenario,
+                              const ExperimentResult& result) {
   nlohmann::ordered_json json;
   json["scenario"] = scenario.string();
   json["seed"] = result.seed;
@@ -108,7 +111,7 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   }
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
-  return json.dump(2);
+  return json;
 }
 
 /// @throws InputError if real time cannot go together with the other options
@@ -139,7 +142,7 @@ int Run(RunArguments& arguments) {
   if (options.realtime) ApplyRealtime(arguments);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
-  if (options.announce && !options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
+  if (options.announce && !options.remark.empty()) Notice(options.remark);
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
@@ -159,8 +162,12 @@ int Run(RunArguments& arguments) {
     PrintJson(ToJson(arguments.scenario.file(), result));
     return kDone;
   }
-  fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
-             result.steps, result.wall_s, result.transport, result.repairs);
+  fmt::print("{}: {}{} steps in {:.2f} s over {}, {} repairs", PathText(arguments.scenario.file()),
+             result.steps,
+             result.steps < scenario.steps ? fmt::format(" of {}", scenario.steps) : "",
+             result.wall_s, result.transport, result.repairs);
+  const std::string collision = CollisionText(result.measures);
+  fmt::print("{}{}\n", collision.empty() ? "" : ": ", collision);
   std::string refused;
   for (std::size_t i = 0; i < kRefusals.size(); ++i) {
     if (result.refused[i] == 0) continue;
@@ -174,7 +181,7 @@ int Run(RunArguments& arguments) {
   }
   if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
   fmt::print("digest {}\n", result.digest);
-  if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
+  if (!result.log.empty()) fmt::print("log    {}\n", PathText(result.log));
   fmt::print("{}", MeasuresText(result));
   return kDone;
 }

@@ -30,9 +30,10 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
                       "one process per role on a multicast port of its own; tcpq: the same over "
                       "TCP, through a fogline-relay of its own; or an LCM URL")
           ->capture_default_str();
-  verb.add_option(
-          "--lcm-url", url_,
-          "The same as --transport URL (without either, processes go to $LCM_DEFAULT_URL, if set)")
+  verb.add_option("--lcm-url", url_,
+                  fmt::format("The same as --transport URL (without either, processes{} go to "
+                              "$LCM_DEFAULT_URL, if set)",
+                              transport_ == "direct" ? " for --external" : ""))
       ->excludes(said_);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
