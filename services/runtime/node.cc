@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/build_id.h"
 #include "services/runtime/lockstep_rule.h"
 #include "services/runtime/this_process.h"
 
@@ -69,6 +70,7 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   status_.pid = getpid();
   randombytes_buf(&status_.instance, sizeof(status_.instance));
   status_.version = FOGLINE_VERSION;
+  status_.build_id = OwnBuildId();
   status_.type_fingerprint = TypeFingerprint();
   status_.header.step = -1;
   status_.last_heard_step = -1;
