@@ -23,6 +23,8 @@ constexpr Duration kSilent = milliseconds(1000);
 // If the runner itself has not looked for so long (the machine was suspended, its disk held it up,
 // Ctrl-Z), what it has not heard in that time means nothing.
 constexpr Duration kAway = milliseconds(500);
+// A recorder is asked so often what it has written of the last step, when its word was lost.
+constexpr Duration kAskRecorderEvery = milliseconds(5);
 // A STATUS may be so long on its way; later than that its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
 
@@ -88,7 +90,29 @@ TimePoint Conductor::Poll(TimePoint now) {
     Fail(Culprit(now));
   }
   if (phase_ == Phase::kJoining || phase_ == Phase::kRunning) AnnounceWhenDue(now);
-  return std::min(announce_at_, now + kAnnounceEvery);
+  FinishWhenRecorded(now);
+  return std::min(announce_at_, ask_recorder_at_.value_or(now + kAnnounceEvery));
+}
+
+void Conductor::FinishWhenRecorded(TimePoint now) {
+  const auto& world = member(Role::kWorld).status;
+  const auto& recorder = member(Role::kRecorder).status;
+  const bool under_way = phase_ == Phase::kJoining || phase_ == Phase::kRunning;
+  if (!under_way || !world || world->state != status_t::DONE) return;
+  if (options_.realtime || (recorder && recorder->header.step >= world->header.step)) {
+    phase_ = Phase::kDone;
+    return;
+  }
+  if (ask_recorder_at_ && now >= *ask_recorder_at_) {
+    resend_t question{};
+    question.header = {.run_id = options_.run_id, .step = world->header.step, .utime = 0};
+    question.channel = ChannelOf<status_t>().name;
+    question.count = 1;
+    question.requester = NameOf(Role::kRunner);
+    Encode(question, buffer_);
+    bus_.Publish(ChannelOf<resend_t>().name, buffer_);
+  }
+  if (!ask_recorder_at_ || now >= *ask_recorder_at_) ask_recorder_at_ = now + kAskRecorderEvery;
 }
 
 void Conductor::AnnounceWhenDue(TimePoint now) {
@@ -181,7 +205,9 @@ void Conductor::OnStatus(const status_t& heard) {
   status.error = EscapeControls(heard.error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
-  if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;
+  // After the end only the recorder has something to say: what it has written in the end.
+  const bool over = phase_ != Phase::kJoining && phase_ != Phase::kRunning;
+  if (over && role != Role::kRecorder) return;
   const TimePoint now = Clock::now();
   Attend(now);
   if (!Admit(*role, status, now)) return;
@@ -209,7 +235,7 @@ void Conductor::OnStatus(const status_t& heard) {
   }
   if (on_status_) on_status_(status);
   if (member.status->state == status_t::FAILED) return OnFailure(*role, status);
-  if (*role == Role::kWorld && member.status->state == status_t::DONE) phase_ = Phase::kDone;
+  FinishWhenRecorded(now);
 }
 
 void Conductor::OnFailure(Role role, const status_t& status) {

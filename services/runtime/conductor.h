@@ -14,6 +14,7 @@
 #include "services/graph.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/other_build.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/step_ring.h"
@@ -31,6 +32,8 @@ struct ConductorOptions {
   Duration stall_limit = milliseconds(4000);  // without a completed step of any role
   std::vector<Role> external;                 // roles that somebody else starts, and starts again
   int restarts = 0;                           // how often, at most, each of these
+  RoleBuilds builds{};                        // that the roles should be of
+  bool same_build = false;                    // whether another one ends the run
 };
 
 class Conductor {
@@ -71,6 +74,8 @@ class Conductor {
   std::string KeyTrouble() const;
   /// Who is of another run and speaks on this network.
   const Strangers& strangers() const { return strangers_; }
+  /// The builds that the roles should be of.
+  const RoleBuilds& builds() const { return options_.builds; }
   /// Whether the run goes on when this role is gone for good. In real time it does, unless the road
   /// or the log is gone.
   bool GoesOnWithout(Role role) const {
@@ -109,6 +114,9 @@ class Conductor {
  private:
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
+  /// Ends the run when the world is done and, in lockstep, the recorder has told what it has
+  /// written of the last step. The log is compared with that.
+  void FinishWhenRecorded(TimePoint now);
   /// The role has failed and said so.
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
@@ -147,7 +155,8 @@ class Conductor {
   Duration away_{};
   TimePoint announce_at_{};
   TimePoint parts_at_{};
-  std::int64_t sequence_ = 0;  // of what it has said
+  std::optional<TimePoint> ask_recorder_at_;  // since the world is done
+  std::int64_t sequence_ = 0;                 // of what it has said
   std::int64_t progress_ = -1;
   TimePoint progressed_{};
   std::vector<std::uint8_t> buffer_;

@@ -275,5 +275,61 @@ TEST_F(ConductorTest, SaysWithItsErrorWhatIsWrongWithTheKeys) {
             "the same key?");
 }
 
+TEST_F(ConductorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLastStep) {
+  std::vector<resend_t>& requests = script_.Listen<resend_t>();
+  BeAtStep(-1);
+  BeAtStep(40);
+  role(Role::kWorld).header.step = 48;
+  role(Role::kWorld).state = status_t::DONE;
+  SayStatus(Role::kWorld);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
+  // WHEN the word of the recorder was lost, THEN it is asked for
+  PollUntil(conductor_, Clock::now() + milliseconds(40));
+  script_.bus().Drain();
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.front().channel, "STATUS");
+  EXPECT_EQ(requests.front().header.step, 48);
+  role(Role::kRecorder).header.step = 48;
+  role(Role::kRecorder).log_bytes = 4711;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kDone);
+  // AND what it says when it leaves counts
+  role(Role::kRecorder).log_bytes = 4712;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(conductor_.member(Role::kRecorder).status->log_bytes, 4712);
+}
+
+TEST_F(ConductorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  for (const bool wanted : {false, true}) {
+    Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                        .scenario_text = script_.text(),
+                                        .builds = builds,
+                                        .same_build = wanted});
+    role(Role::kAcc).build_id = 4711;
+    SayStatus(Role::kAcc);
+    EXPECT_EQ(conductor.phase(), Conductor::Phase::kJoining) << conductor.error();
+    role(Role::kDriver).build_id = 17;
+    SayStatus(Role::kDriver);
+    EXPECT_EQ(conductor.phase() == Conductor::Phase::kFailed, wanted) << conductor.error();
+    if (!wanted) continue;
+    EXPECT_THAT(conductor.error(), HasSubstr("driver (pid "));
+    EXPECT_THAT(conductor.error(), HasSubstr(" is of build 0000000000000011, that of the runner is "
+                                             "0000000000001267 (--same-build)"));
+  }
+}
+
+TEST_F(ConductorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .builds = builds,
+                                      .same_build = true});
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(conductor.error(), HasSubstr("does not say of which build it is (--same-build)"));
+}
+
 }  // namespace
 }  // namespace fogline
