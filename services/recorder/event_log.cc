@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -34,13 +35,11 @@ std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
   return value;
 }
 
-using EventHeader = std::array<std::uint8_t, kEventHeader>;
-
 template <class Unsigned>
-void PutBigEndian(Unsigned value, std::size_t offset, EventHeader& header) {
+void PutBigEndian(Unsigned value, std::uint8_t* to) {
   auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(value)>>(value);
   if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(bytes);
-  std::memcpy(header.data() + offset, bytes.data(), sizeof(value));
+  std::memcpy(to, bytes.data(), sizeof(value));
 }
 
 }  // namespace
@@ -64,13 +63,13 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file)
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& file, const LogHead& head)
     : file_(file), out_(std::fopen(file.c_str(), "r+b")), events_(head.events), size_(head.bytes) {
-  if (out_ == nullptr || ftruncate(fileno(out_), head.bytes) != 0 ||
+  if (out_ != nullptr) std::setvbuf(out_, nullptr, _IONBF, 0);
+  if (out_ == nullptr || ftruncate(fileno(out_), head.bytes) != 0 || !ReadHead(head.bytes) ||
       std::fseek(out_, head.bytes, SEEK_SET) != 0) {
     const std::string why = std::strerror(errno);
     if (out_ != nullptr) std::fclose(out_);
     throw InputError(fmt::format("{}: error: cannot go on with the log: {}", file.string(), why));
   }
-  std::setvbuf(out_, nullptr, _IONBF, 0);
   pending_.reserve(2 * kWorthWriting);
 }
 
@@ -79,17 +78,35 @@ EventLogWriter::~EventLogWriter() {
   std::fclose(out_);
 }
 
+bool EventLogWriter::ReadHead(std::int64_t bytes) {
+  std::vector<std::uint8_t> chunk(kWorthWriting);
+  while (written_.bytes < bytes) {
+    const auto wanted = std::min<std::int64_t>(std::ssize(chunk), bytes - written_.bytes);
+    const std::size_t size = std::fread(chunk.data(), 1, static_cast<std::size_t>(wanted), out_);
+    if (size == 0) return false;
+    CountWritten(Bytes(chunk).first(size));
+  }
+  return true;
+}
+
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
+                 std::vector<std::uint8_t>& bytes) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + kEventHeader + channel.size() + data.size());
+  std::uint8_t* const event = bytes.data() + begin;
+  PutBigEndian(kSyncWord, event);
+  PutBigEndian(static_cast<std::uint64_t>(number), event + 4);
+  PutBigEndian(static_cast<std::uint64_t>(utime), event + 12);
+  PutBigEndian(static_cast<std::uint32_t>(channel.size()), event + 20);
+  PutBigEndian(static_cast<std::uint32_t>(data.size()), event + 24);
+  std::ranges::copy(channel, event + kEventHeader);
+  std::ranges::copy(data, event + kEventHeader + channel.size());
+}
+
 void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes data) {
-  EventHeader header;
-  PutBigEndian(kSyncWord, 0, header);
-  PutBigEndian(static_cast<std::uint64_t>(events_++), 4, header);
-  PutBigEndian(static_cast<std::uint64_t>(utime), 12, header);
-  PutBigEndian(static_cast<std::uint32_t>(channel.size()), 20, header);
-  PutBigEndian(static_cast<std::uint32_t>(data.size()), 24, header);
-  pending_.insert(pending_.end(), header.begin(), header.end());
-  pending_.insert(pending_.end(), channel.begin(), channel.end());
-  pending_.insert(pending_.end(), data.begin(), data.end());
-  size_ += static_cast<std::int64_t>(header.size() + channel.size() + data.size());
+  const std::size_t before = pending_.size();
+  AppendEvent(events_++, channel, utime, data, pending_);
+  size_ += static_cast<std::int64_t>(pending_.size() - before);
   if (pending_.size() >= kWorthWriting) Flush();
 }
 
@@ -100,8 +117,16 @@ void EventLogWriter::Flush() {
 bool EventLogWriter::WriteOut() {
   const std::size_t written = std::fwrite(pending_.data(), 1, pending_.size(), out_);
   const bool all = written == pending_.size();
+  CountWritten(Bytes(pending_).first(written));
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
   return all;
+}
+
+void EventLogWriter::CountWritten(Bytes bytes) {
+  if (bytes.empty()) return;  // zlib takes a missing buffer for the beginning
+  written_.bytes += std::ssize(bytes);
+  written_.checksum =
+      static_cast<std::uint32_t>(crc32_z(written_.checksum, bytes.data(), bytes.size()));
 }
 
 void EventLogWriter::FailToWrite() const {

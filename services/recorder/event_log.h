@@ -24,6 +24,12 @@ struct LogHead {
   std::int64_t events = 0;
 };
 
+/// What is in a log by the word of its writer: its first bytes, and their CRC-32 (that of zlib).
+struct WrittenLog {
+  std::int64_t bytes = 0;
+  std::uint32_t checksum = 0;
+};
+
 /// Appends events to a new file, or to the head of an old one.
 class EventLogWriter {
  public:
@@ -43,17 +49,30 @@ class EventLogWriter {
   void Flush();
   /// Bytes of all events so far, whether written already or not.
   std::int64_t size() const { return size_; }
+  /// The same, and how many events.
+  LogHead head() const { return {.bytes = size_, .events = events_}; }
+  /// What the operating system has of it. The head of an old file counts as it was found.
+  const WrittenLog& written() const { return written_; }
 
  private:
   bool WriteOut();
+  /// Adds what the operating system has now.
+  void CountWritten(Bytes bytes);
+  /// @return false and errno if it cannot be read
+  bool ReadHead(std::int64_t bytes);
   [[noreturn]] void FailToWrite() const;
 
   std::filesystem::path file_;
   std::FILE* out_;  // without a buffer of its own
   std::int64_t events_ = 0;
   std::int64_t size_ = 0;
+  WrittenLog written_;
   std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
+
+/// Adds an event to bytes that are to be a log.
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
+                 std::vector<std::uint8_t>& bytes);
 
 /// A file that may be replaced by a log: an event log by its first bytes, or empty.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
@@ -88,6 +107,10 @@ class EventLogReader {
   const std::string& torn() const { return torn_; }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
+  /// The events read so far.
+  LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
+  /// All bytes of the file.
+  Bytes content() const { return content_; }
 
  private:
   Bytes content_;

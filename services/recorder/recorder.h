@@ -41,6 +41,8 @@ class Recorder final : public Node {
   void WriteScenario();
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
+  /// Puts into STATUS how much of the log the operating system has, and its checksum.
+  void TellWritten();
   void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
   /// Hands out one step of a channel again, unless it was handed out just now. An answer is
   /// everybody's.

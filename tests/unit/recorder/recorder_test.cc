@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <fstream>
 
@@ -164,6 +165,38 @@ TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
   script_.SayRun(run_t::GO, -1);
   EXPECT_THAT(recorder.error(), HasSubstr("cannot write to /dev/full: No space left on device"));
   EXPECT_EQ(status_.back().state, status_t::FAILED);
+}
+
+/// CRC-32 of the first bytes of a text.
+std::int64_t ChecksumOf(const std::string& text, std::int64_t bytes) {
+  return static_cast<std::int64_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()),
+                                           static_cast<std::size_t>(bytes)));
+}
+
+TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
+  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
+  const status_t acknowledged = status_.back();
+  EXPECT_EQ(acknowledged.header.step, 95);
+  const std::string content = Content(folder_.File("log"));
+  EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
+  EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
+  // WHEN it leaves with a step that is not complete, THEN it tells that, too
+  truth_t truth = Script::Of<truth_t>(100);
+  script_.Say(truth);
+  recorder->Leave();
+  script_.bus().Drain();
+  const std::string whole = Content(folder_.File("log"));
+  EXPECT_GT(whole.size(), content.size());
+  EXPECT_EQ(status_.back().log_bytes, std::ssize(whole));
+  EXPECT_EQ(status_.back().log_checksum, ChecksumOf(whole, std::ssize(whole)));
+}
+
+TEST_F(RecorderTest, TellsOfALogThatItGoesOnWithWhatItHasFound) {
+  const std::string whole = WholeLog();
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  EXPECT_EQ(status_.back().log_bytes, std::ssize(whole));
+  EXPECT_EQ(status_.back().log_checksum, ChecksumOf(whole, std::ssize(whole)));
 }
 
 }  // namespace
