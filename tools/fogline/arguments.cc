@@ -92,6 +92,11 @@ SeedRange ReadSeeds(const std::string& text) {
 
 void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
 
+nlohmann::ordered_json BuildJson(BuildId build) {
+  if (build == kUnknownBuild) return nullptr;
+  return BuildText(build);
+}
+
 NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
   verb.add_option("--lcm-url", url_,
                   fmt::format("LCM network {} (default: $LCM_DEFAULT_URL, else {}, and the runs "

@@ -14,6 +14,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/build_id.h"
 #include "services/runtime/file_lock.h"
 #include "tools/fogline/experiment.h"
 #include "tools/sweep/plan.h"
@@ -97,6 +98,9 @@ SeedRange ReadSeeds(const std::string& text);
 
 /// --json output: `text` and a newline on stdout.
 void PrintJson(const std::string& text);
+
+/// 16 hexadecimal digits, or null for a build that is not known.
+nlohmann::ordered_json BuildJson(BuildId build);
 
 /// --lcm-url of a verb that looks at a network from outside.
 class NetworkArguments {

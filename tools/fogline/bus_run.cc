@@ -28,6 +28,7 @@
 #include "services/runtime/lcm_url.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
+#include "tools/fogline/child.h"
 #include "tools/fogline/external_roles.h"
 #include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
@@ -47,7 +48,18 @@ constexpr Duration kHangLimit = milliseconds(2000);
 // life that is lost is no repair's business.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
-ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
+/// The builds of the programs that take part if none comes from elsewhere.
+RoleBuilds OwnBuilds(bool in_memory) {
+  RoleBuilds builds{};
+  for (const RoleInfo& info : kRoles) {
+    builds[static_cast<std::size_t>(info.role)] =
+        in_memory ? OwnBuildId() : BuildIdOf(ProgramOf(info.role));
+  }
+  return builds;
+}
+
+ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options,
+                                      bool in_memory) {
   // A slow pace is no stall: a step is expected to take its time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   return {.run_id = DrawRunId(),
@@ -58,7 +70,9 @@ ConductorOptions MakeConductorOptions(const Scenario& scenario, const Experiment
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,
-          .restarts = options.restarts};
+          .restarts = options.restarts,
+          .builds = OwnBuilds(in_memory),
+          .same_build = options.same_build};
 }
 
 // ---- memq --------------------------------------------------------------------------------------
@@ -90,6 +104,26 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
   }
   conductor.Stop();
   bus.Drain();
+}
+
+/// What each process of a role has said last.
+std::vector<status_t> LastWords(const Conductor& conductor, Role role) {
+  const Conductor::Member& member = conductor.member(role);
+  std::vector<status_t> words = member.dead;
+  if (member.status) words.push_back(*member.status);
+  return words;
+}
+
+/// The processes that are, or were, of another build than the runner's.
+std::vector<OtherBuild> OtherBuilds(const Conductor& conductor) {
+  std::vector<OtherBuild> others;
+  for (const RoleInfo& info : kRoles) {
+    for (const status_t& status : LastWords(conductor, info.role)) {
+      auto other = OtherBuildOf(info.role, status, conductor.builds());
+      if (other) others.push_back(std::move(*other));
+    }
+  }
+  return others;
 }
 
 // ---- processes ---------------------------------------------------------------------------------
@@ -124,6 +158,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
   std::string trouble;
+  bool compared = false;  // the builds
   FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     conductor.OnEveryStatus([&](const status_t& status) {
@@ -144,6 +179,12 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       external.Check(conductor, now);
       if (beacon.Due(now)) beacon.Send(now, conductor.Awaited(now));
       progress.Show(conductor.step());
+      if (options.announce && !compared && conductor.phase() == Conductor::Phase::kRunning) {
+        compared = true;
+        for (const OtherBuild& other : OtherBuilds(conductor)) {
+          progress.Say("warning: " + other.Text());
+        }
+      }
       if (options.announce && trouble.empty()) {
         trouble = conductor.KeyTrouble();
         if (!trouble.empty()) progress.Say(fmt::format("warning: {}", trouble));
@@ -177,6 +218,18 @@ std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
                               : "no log was written";
 }
 
+/// What the recorders of a run, of which all but the last are dead, have told of the log. In real
+/// time a recorder leaves out what its predecessor had begun.
+std::vector<WrittenLog> WrittenBy(const Conductor& conductor, bool realtime) {
+  std::vector<WrittenLog> written;
+  for (const status_t& status : LastWords(conductor, Role::kRecorder)) {
+    if (realtime) written.clear();
+    written.push_back(
+        {.bytes = status.log_bytes, .checksum = static_cast<std::uint32_t>(status.log_checksum)});
+  }
+  return written;
+}
+
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
   if (transport == "udpm") return FreshMulticastUrl();
@@ -196,13 +249,13 @@ std::int64_t DrawRunId() {
 }
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
-                const std::filesystem::path& log) {
+                const std::filesystem::path& log, const LogKeeper& keeper) {
   std::optional<RelayProcess> relay;
   if (options.transport == "tcpq") relay.emplace();
   Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const bool in_memory = bus.url().starts_with("memq");
   Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
-  const ConductorOptions conducting = MakeConductorOptions(scenario, options);
+  const ConductorOptions conducting = MakeConductorOptions(scenario, options, in_memory);
   Conductor conductor(bus, conducting);
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
@@ -210,6 +263,22 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     RunInMemory(bus, conductor, conducting.run_id, scenario, log);
   } else {
     restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
+  }
+  BusRun run{.run_id = conducting.run_id,
+             .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
+             .repairs = conductor.Total(&status_t::repairs_asked),
+             .refused = conductor.Refused(),
+             .strangers = conductor.strangers().known(),
+             .restarts = std::move(restarts)};
+  for (const RoleInfo& info : kRoles) {
+    const auto& status = conductor.member(info.role).status;
+    if (status) run.builds[static_cast<std::size_t>(info.role)] = status->build_id;
+  }
+  run.other_builds = OtherBuilds(conductor);
+  run.written = WrittenBy(conductor, options.realtime);
+  if (conductor.phase() != Conductor::Phase::kDone && !options.log.empty()) {
+    const auto key = KeyOf(options.traffic);
+    keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options.log);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
@@ -224,12 +293,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                                   : conductor.Where();
     throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
   }
-  return {.run_id = conducting.run_id,
-          .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
-          .repairs = conductor.Total(&status_t::repairs_asked),
-          .refused = conductor.Refused(),
-          .strangers = conductor.strangers().known(),
-          .restarts = std::move(restarts)};
+  return run;
 }
 
 }  // namespace fogline

@@ -7,6 +7,8 @@
 
 #include <csignal>
 
+#include <fmt/core.h>
+
 namespace fogline {
 
 void BecomeChild(pid_t parent, int output) {
@@ -21,6 +23,10 @@ void BecomeChild(pid_t parent, int output) {
 
 std::filesystem::path ProgramBeside(std::string_view name) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
+}
+
+std::filesystem::path ProgramOf(Role role) {
+  return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
 }
 
 }  // namespace fogline

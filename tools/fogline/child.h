@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "services/graph.h"
+
 namespace fogline {
 
 /// To be called in the child, between fork and exec: only async-signal-safe calls. The child dies
@@ -17,5 +19,7 @@ void BecomeChild(pid_t parent, int output);
 
 /// The program of this name in the folder of the running one.
 std::filesystem::path ProgramBeside(std::string_view name);
+/// The program of a role there.
+std::filesystem::path ProgramOf(Role role);
 
 }  // namespace fogline

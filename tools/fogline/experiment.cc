@@ -12,11 +12,11 @@
 #include "scenario/loader.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/measures/sample_decoder.h"
-#include "services/recorder/run_log.h"
 #include "services/runtime/digest.h"
 #include "services/runtime/scenario_parts.h"
 #include "tools/fogline/bus_run.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/log_keeper.h"
 
 namespace fogline {
 namespace {
@@ -78,16 +78,51 @@ void WriteScenarioParts(EventLogWriter& log, std::int64_t run_id, const std::str
   }
 }
 
+/// The log of a run in this process, written and sealed by it alone.
+class DirectLog {
+ public:
+  DirectLog(const std::filesystem::path& file, const TrafficOptions& traffic, std::int64_t run_id,
+            const Scenario& scenario)
+      : writer_(file), keeper_(file), key_(KeyOf(traffic)) {
+    run_.run_id = run_id;
+    run_.scenario = scenario;
+    const std::string text = PrintScenario(scenario);
+    run_.scenario_hash = HashOf(text);
+    WriteScenarioParts(writer_, run_id, text);
+    builds_.fill(OwnBuildId());
+  }
+
+  EventLogWriter& writer() { return writer_; }
+
+  void End(const ExperimentResult& result) {
+    run_.steps = result.steps;
+    run_.digest = result.digest;
+    run_.complete = true;
+    run_.events = writer_.head();
+    keeper_.Seal(run_, {writer_.written()}, builds_, key());
+  }
+  void CutOff() {
+    writer_.Flush();
+    keeper_.SealCutOff({writer_.written()}, builds_, key());
+  }
+
+ private:
+  const SealKey* key() const { return key_ ? &*key_ : nullptr; }
+
+  EventLogWriter writer_;
+  LogKeeper keeper_;
+  std::optional<SealKey> key_;
+  RoleBuilds builds_{};
+  RunLog run_;
+};
+
 ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
   const std::int64_t run_id = DrawRunId();
-  std::optional<EventLogWriter> log;
-  if (!options.log.empty()) {
-    log.emplace(options.log);
-    WriteScenarioParts(*log, run_id, PrintScenario(scenario));
-  }
+  std::optional<DirectLog> log;
+  if (!options.log.empty()) log.emplace(options.log, options.traffic, run_id, scenario);
   ExperimentResult result;
   Digest digest;
-  StepWriter writer(digest, log ? &*log : nullptr);
+  StepWriter writer(digest, log ? &log->writer() : nullptr);
   MeasureAccumulator measures(scenario);
   FollowerAccumulator followers;
   result.samples.reserve(static_cast<std::size_t>(scenario.steps));
@@ -98,9 +133,11 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
     result.samples.push_back(step.ToSample());
     measures.Add(result.samples.back());
     followers.Add(step.truth, step.follower);
-    if (WasInterrupted()) throw Interrupted("interrupted");
+    if (!WasInterrupted()) return;
+    if (log) log->CutOff();
+    throw Interrupted("interrupted");
   });
-  if (log) log->Flush();
+  if (log) log->writer().Flush();
   result.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   result.seed = scenario.seed;
   result.steps = static_cast<std::int64_t>(result.samples.size());
@@ -108,30 +145,56 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   result.measures = measures.Result();
   result.followers = followers.Result();
   result.log = options.log;
+  if (log) log->End(result);
   return result;
+}
+
+/// Compares the log with what the recorder has told, and reads it.
+LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run) {
+  const auto read = [&] {
+    LoggedRun logged = ReadLoggedRun(log);
+    if (logged.run_id == run.run_id) return logged;
+    throw std::runtime_error(
+        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
+                    log.string(), logged.run_id, run.run_id));
+  };
+  try {
+    keeper.Check(run.written);
+  } catch (const std::runtime_error&) {
+    read();  // if it is that of another run, this says more
+    throw;
+  }
+  LoggedRun logged = read();
+  if (logged.complete) return logged;
+  throw std::runtime_error(
+      fmt::format("{}: the log is not complete: {}", log.string(), logged.note));
 }
 
 ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
-  BusRun run = RunOnBus(scenario, options, log);
-  LoggedRun logged = ReadLoggedRun(log);
-  if (logged.run_id != run.run_id) {
-    throw std::runtime_error(
-        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
-                    log.string(), logged.run_id, run.run_id));
-  }
-  if (!logged.complete) {
-    throw std::runtime_error(
-        fmt::format("{}: the log is not complete: {}", log.string(), logged.note));
+  const LogKeeper keeper(log);
+  BusRun run = RunOnBus(scenario, options, log, keeper);
+  LoggedRun logged = ReadOwnLog(keeper, log, run);
+  const bool checked = keeper.HasAllTold(run.written);
+  if (!checked && !options.realtime) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log on disk is not what the recorder wrote: it is longer", log.string()));
   }
   ExperimentResult result = std::move(logged.result);
+  if (options.verify) result.verification = VerifyRun(log, logged, run.other_builds);
+  if (checked && !options.log.empty()) {
+    const auto key = KeyOf(options.traffic);
+    keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
+  }
+  result.checked = checked;
   result.wall_s = run.wall_s;
   result.repairs = run.repairs;
   result.refused = run.refused;
   result.strangers = run.strangers;
   result.restarts = std::move(run.restarts);
+  result.other_builds = std::move(run.other_builds);
   result.log = options.log;
   return result;
 }
@@ -163,15 +226,11 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 
 LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
   LoggedRun logged;
-  Digest digest;
   FollowerAccumulator followers;
   std::vector<Sample>& samples = logged.result.samples;
   SampleDecoder decoder;
   RunLogReader reader(log);
   while (const StepMessages* messages = reader.Next()) {
-    for (const Bytes message : *messages) {
-      if (!message.empty()) digest.Add(message);
-    }
     const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
       return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
     });
@@ -187,19 +246,14 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
     samples.push_back(*sample);
     followers.Add(decoder.truth(), decoder.follower());
   }
-  const RunLog& run = reader.run();
-  logged.run_id = run.run_id;
-  logged.result.seed = run.scenario.seed;
-  logged.result.steps = run.steps;
-  logged.result.digest = digest.Hex();
+  static_cast<RunLog&>(logged) = reader.run();
+  logged.result.seed = logged.scenario.seed;
+  logged.result.steps = logged.steps;
+  logged.result.digest = logged.digest;
   logged.result.log = log;
-  logged.result.measures = Measure(samples, run.scenario);
+  logged.result.measures = Measure(samples, logged.scenario);
   logged.result.followers = followers.Result();
-  logged.scenario = run.scenario;
-  logged.scenario_text = run.scenario_text;
-  logged.result.realtime = run.realtime;
-  logged.complete = run.complete;
-  logged.note = run.note;
+  logged.result.realtime = logged.realtime;
   return logged;
 }
 

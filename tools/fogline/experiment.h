@@ -12,11 +12,13 @@
 #include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
-#include "services/recorder/realtime_figures.h"
+#include "services/recorder/run_log.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/other_build.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/strangers.h"
 #include "services/runtime/traffic_options.h"
+#include "tools/fogline/role_check.h"
 
 namespace fogline {
 
@@ -32,7 +34,9 @@ struct ExperimentOptions {
   std::vector<Role> external;            // roles that somebody else starts
   Duration wait = milliseconds(60'000);  // for these to be ready; 0: for ever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  int restarts = 10;        // of each role that is killed or hangs; 0: that ends the run
+  bool verify = false;      // compute the roles' steps again from the log, and compare
+  bool same_build = false;  // end the run if a role is of another build than the runner's
   TrafficOptions traffic;
   std::string remark;     // for the user: where the run does not go where it was asked to go
   bool announce = false;  // say on stderr where the run is and which processes take part
@@ -55,6 +59,9 @@ struct ExperimentResult {
   Refusals refused{};
   std::vector<Stranger> strangers;  // of other runs, on the same network
   std::vector<Restarts> restarts;
+  std::vector<OtherBuild> other_builds;  // roles that are not of the runner's build
+  std::optional<Verification> verification;
+  bool checked = true;        // the log is in all its bytes what the recorder has told
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<FollowerMeasures> followers;  // nearest to the host first
@@ -75,13 +82,8 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
 
 /// A run as its log tells it. @throws InputError
-struct LoggedRun {
-  std::int64_t run_id = 0;
+struct LoggedRun : RunLog {
   ExperimentResult result;
-  Scenario scenario;
-  std::string scenario_text;
-  bool complete = false;
-  std::string note;
 };
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
 

@@ -66,7 +66,8 @@ struct RunArguments {
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
-    ShowExitCodes(verb, {.interruptible = true});
+    ShowExitCodes(verb, {.check_failed = "--verify: a role has computed something else",
+                         .interruptible = true});
     verb.footer(kExamples);
   }
 
@@ -79,6 +80,39 @@ struct RunArguments {
   bool json = false;
   bool quiet = false;
 };
+
+nlohmann::ordered_json VerificationJson(const Verification& verification) {
+  nlohmann::ordered_json json{{"same", verification.Holds()},
+                              {"roles", nlohmann::ordered_json::array()},
+                              {"left_out", nlohmann::ordered_json::array()},
+                              {"trouble", nullptr}};
+  for (const Role role : verification.roles) json["roles"].push_back(NameOf(role));
+  for (const Verification::LeftOut& one : verification.left_out) {
+    json["left_out"].push_back({{"role", NameOf(one.role)}, {"why", one.why}});
+  }
+  if (verification.Holds()) return json;
+  json["trouble"] = verification.Trouble();
+  if (!verification.failure) return json;
+  const Difference& first = verification.failure->first;
+  json["first"] = {{"role", NameOf(verification.failure->role)},
+                   {"step", first.step},
+                   {"channel", first.channel},
+                   {"field", first.field},
+                   {"log", first.a},
+                   {"replay", first.b}};
+  return json;
+}
+
+/// What was computed again, and what was not.
+std::string VerificationText(const Verification& verification) {
+  std::string text;
+  for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));
+  text = fmt::format("verified:{}\n", text.empty() ? " nothing" : text);
+  for (const Verification::LeftOut& one : verification.left_out) {
+    text += fmt::format("not verified: {} ({})\n", NameOf(one.role), one.why);
+  }
+  return text;
+}
 
 std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult& result) {
   nlohmann::ordered_json json;
@@ -106,9 +140,40 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
     json["restarts"].push_back(
         {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
   }
+  json["log_checked"] = result.checked;
+  json["other_builds"] = nlohmann::ordered_json::array();
+  for (const OtherBuild& other : result.other_builds) {
+    json["other_builds"].push_back({{"role", NameOf(other.role)},
+                                    {"pid", other.pid},
+                                    {"host", other.host},
+                                    {"build", BuildJson(other.build)},
+                                    {"expected", BuildJson(other.ours)}});
+  }
+  json["verified"] = nullptr;
+  if (result.verification) json["verified"] = VerificationJson(*result.verification);
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
   return json.dump(2);
+}
+
+/// What of a run is not as it should be or was not looked at; "" if nothing.
+std::string RemarksText(const ExperimentResult& result) {
+  std::string text;
+  for (const OtherBuild& other : result.other_builds) {
+    text += fmt::format("another build: {}\n", other.Text());
+  }
+  if (result.verification) text += VerificationText(*result.verification);
+  if (!result.checked) {
+    text += "the end of the log is not checked: what the recorder told of it was lost\n";
+  }
+  return text;
+}
+
+/// The exit code of a run that has ended; says on stderr why it is not kDone.
+int Verdict(const ExperimentResult& result) {
+  if (!result.verification || result.verification->Holds()) return kDone;
+  fmt::print(stderr, "fogline run: error: {}\n", result.verification->Trouble());
+  return kCheckFailed;
 }
 
 /// @throws InputError if real time cannot go together with the other options
@@ -157,7 +222,7 @@ int Run(RunArguments& arguments) {
   const ExperimentResult result = RunExperiment(scenario, options);
   if (arguments.json) {
     PrintJson(ToJson(arguments.scenario.file(), result));
-    return kDone;
+    return Verdict(result);
   }
   fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
              result.steps, result.wall_s, result.transport, result.repairs);
@@ -172,11 +237,12 @@ int Run(RunArguments& arguments) {
     fmt::print("{} was started again {}: {}\n", NameOf(role.role),
                role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
   }
+  fmt::print("{}", RemarksText(result));
   if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
   fmt::print("digest {}\n", result.digest);
   if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
   fmt::print("{}", MeasuresText(result));
-  return kDone;
+  return Verdict(result);
 }
 
 }  // namespace

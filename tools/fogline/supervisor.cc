@@ -19,10 +19,6 @@ constexpr int kStopRepeats = 5;
 // A process that is not heard of for so long after its start hangs.
 constexpr Duration kStartLimit = milliseconds(5000);
 
-std::filesystem::path ProgramOf(Role role) {
-  return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
-}
-
 }  // namespace
 
 Supervisor::Supervisor(Bus& bus, Conductor& conductor, Options options)
@@ -121,6 +117,7 @@ void Supervisor::End() {
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }
+  bus_.Drain();  // what the last of them has said
 }
 
 std::vector<Restarts> Supervisor::restarts() const {

@@ -31,7 +31,8 @@ struct TableArguments {
         ->excludes("--seed");
     verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
-    ShowExitCodes(verb, {.interruptible = true});
+    ShowExitCodes(verb, {.check_failed = "--verify: a role has computed something else",
+                         .interruptible = true});
     verb.footer(
         "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
         "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
@@ -74,7 +75,12 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
                                                scenario.seed, name);
   }
   const LogOfRun log(options.log);
-  return RunExperiment(scenario, options);
+  ExperimentResult result = RunExperiment(scenario, options);
+  if (result.verification && !result.verification->Holds()) {
+    throw CheckFailed(
+        fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
+  }
+  return result;
 }
 
 /// Runs every pair on a transport, with logs if wanted.

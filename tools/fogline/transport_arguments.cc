@@ -40,6 +40,14 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   verb.add_option("--wait", wait_s_, "Wait so long for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();
+  verb.add_flag(
+      "--same-build", same_build_,
+      "End the run if a role is of another build than this one, or does not say of which");
+  CLI::Option* verify = verb.add_flag(
+      "--verify", verify_,
+      "Compute every role's steps again from the log and compare (default with --external); roles "
+      "of another build and runs in real time are left out");
+  verb.add_flag("--no-verify", no_verify_, "Do not, with --external either")->excludes(verify);
   AddTrafficOptions(verb, traffic_);
 }
 
@@ -79,6 +87,8 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
       options.external.push_back(info.role);
     }
   }
+  options.verify = verify_ || (!external_.empty() && !no_verify_);
+  options.same_build = same_build_;
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(

@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// --transport, --lcm-url, --external, --wait, --key and --faults.
+/// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
 class TransportArguments {
  public:
   /// @param transport where runs go unless something else is said. A run whose roles are
@@ -31,6 +31,9 @@ class TransportArguments {
   std::string url_;
   std::vector<std::string> external_;
   double wait_s_ = 60;
+  bool same_build_ = false;
+  bool verify_ = false;
+  bool no_verify_ = false;
   TrafficOptions traffic_;
 };
 

@@ -36,6 +36,9 @@ int Run(const CLI::App& app, const Action& action) {
   } catch (const Interrupted& interrupted) {
     fmt::print(stderr, "{}: {}\n", name, interrupted.what());
     return kInterrupted;
+  } catch (const CheckFailed& error) {
+    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    return kCheckFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: error: {}\n", name, error.what());
     return kRunFailed;
