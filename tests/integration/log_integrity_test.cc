@@ -230,7 +230,7 @@ TEST_F(LogIntegrityTest, EveryReaderNamesALogThatWasChangedSinceItWasSealed) {
   FlipLowestBit(log, radar.at + radar.size - 17);
   for (const Words& verb :
        {Words{"digest"}, Words{"metrics"}, Words{"events"}, Words{"replay", "--role", "world"},
-        Words{"diff", log}, Words{"report", "--out", folder_.File("report.html")},
+        Words{"diff", log}, Words{"report", "-o", folder_.File("report.html")},
         Words{"export", "--out", folder_.File("run.mat")}}) {
     const Outcome outcome = RunCommand(With(With({Program("fogline")}, verb), {log}));
     EXPECT_EQ(outcome.code, 1) << verb.front() << ": " << outcome.out;
