@@ -211,6 +211,7 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
     return kBadUsage;
   }
   WatchSignals();
+  FailWritesBeyondTheSizeLimit();
   try {
     return Service(arguments, make).Run();
   } catch (const InputError& error) {

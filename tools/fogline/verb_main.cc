@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/this_process.h"
 #include "services/runtime/version.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
@@ -44,6 +45,7 @@ int Run(const CLI::App& app, const Action& action) {
 
 /// @param arguments without the program's name, the last one first
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
+  FailWritesBeyondTheSizeLimit();
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
   app.set_version_flag("--version", VersionText());
   app.require_subcommand(0, 1);
