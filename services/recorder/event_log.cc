@@ -18,6 +18,7 @@
 
 #include "scenario/file.h"
 #include "scenario/loader.h"
+#include "services/runtime/this_process.h"
 
 namespace fogline {
 namespace {
@@ -27,6 +28,8 @@ constexpr std::size_t kEventHeader = 28;
 constexpr std::size_t kMaxChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 // Bytes that are worth a call of the operating system, which costs as much as copying thousands.
 constexpr std::size_t kWorthWriting = 1 << 16;
+// Of a mapped log so much stays in memory: little for a process, and many pages for each call.
+constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -106,7 +109,7 @@ bool EventLogWriter::WriteOut() {
 
 void EventLogWriter::FailToWrite() const {
   throw std::runtime_error(
-      fmt::format("cannot write to {}: {}", file_.string(), std::strerror(errno)));
+      fmt::format("cannot write to {}: {}", file_.string(), WhyWriteFailed(errno)));
 }
 
 EventLogReader::EventLogReader(const std::filesystem::path& file) {
@@ -162,7 +165,42 @@ std::size_t SizeInFile(const Event& event) {
   return kEventHeader + event.channel.size() + event.data.size();
 }
 
+std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+                                     const std::function<bool(const Event&)>& accept) {
+  std::array<std::uint8_t, sizeof(kSyncWord)> sync{};
+  for (std::size_t i = 0; i < sync.size(); ++i) {
+    sync[i] = static_cast<std::uint8_t>(kSyncWord >> (8 * (sync.size() - 1 - i)));
+  }
+  std::string_view why;
+  while (offset < bytes.size()) {
+    const void* at = memmem(bytes.data() + offset, bytes.size() - offset, sync.data(), sync.size());
+    if (at == nullptr) return std::nullopt;
+    offset = static_cast<std::size_t>(static_cast<const std::uint8_t*>(at) - bytes.data());
+    if (const auto event = ParseEvent(bytes.subspan(offset), why); event && accept(*event)) {
+      return offset;
+    }
+    ++offset;
+  }
+  return std::nullopt;
+}
+
+void EventLogReader::GoTo(const LogHead& head) {
+  offset_ = static_cast<std::size_t>(head.bytes);
+  events_ = head.events;
+  torn_.clear();
+}
+
+void EventLogReader::Release() {
+  static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t end = offset_ / page * page;
+  if (end > released_) {
+    madvise(const_cast<std::uint8_t*>(content_.data()) + released_, end - released_, MADV_DONTNEED);
+  }
+  released_ = end;
+}
+
 std::optional<Event> EventLogReader::Next() {
+  if (offset_ >= released_ + kMostMapped) Release();
   const Bytes rest = content_.subspan(offset_);
   if (rest.empty() || !torn_.empty()) return std::nullopt;
   std::string_view why;

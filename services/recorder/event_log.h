@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,9 @@
 #include "services/runtime/wire.h"
 
 namespace fogline {
+
+/// The most that an event takes besides its data: its header, and LCM's longest channel name.
+inline constexpr std::size_t kMostEventOverhead = 28 + 63;
 
 /// The part of a log that is kept when writing goes on: its first bytes, that many whole events.
 struct LogHead {
@@ -72,6 +76,11 @@ std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
 /// Bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
+/// Where the first event in `bytes` begins, from `offset` on, that `accept` recognises: there may
+/// be something else before it, such as the end of another event. Nothing if there is none.
+std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+                                     const std::function<bool(const Event&)>& accept);
+
 /// Reads a log from front to back without copying. A torn tail (a last event that is incomplete, as
 /// a kill or a full disk leaves it) ends the log and is named by torn().
 class EventLogReader {
@@ -84,13 +93,22 @@ class EventLogReader {
 
   /// The next event, or nothing at the end or at a torn tail.
   std::optional<Event> Next();
+  /// Reads on behind these bytes, which hold that many events.
+  void GoTo(const LogHead& head);
   /// What is wrong with the end of the file, "" if nothing: known once Next() has come to it.
   const std::string& torn() const { return torn_; }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
+  /// The whole file, mapped.
+  Bytes content() const { return content_; }
 
  private:
+  /// Gives the memory of what is read back to the operating system: it maps the file, and would
+  /// keep all of it otherwise.
+  void Release();
+
   Bytes content_;
+  std::size_t released_ = 0;  // up to here
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;
   std::string torn_;

@@ -26,12 +26,11 @@ Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::file
                    Existing existing)
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
   budget_ = AnswerBudget(kAnswersPerSecond, kAnswersAtOnce);
-  if (existing_ == Existing::kReplace) log_.emplace(file);
+  if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
 void Recorder::Configure(const Scenario& scenario) {
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
-  history_->Reserve(scenario.steps);
   step_us_ = std::llround(scenario.step_s * 1e6);
 }
 
@@ -43,27 +42,55 @@ std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
 }
 
 bool Recorder::Resume() {
-  const std::optional<Remains> remains = ReadRemains(file_, run_id(), parts().hash());
-  const auto steps = remains ? static_cast<std::int64_t>(remains->ends.size()) : 0;
-  // The world has begun a step only after the one kMaxAhead before it was on disk.
-  // In real time it waits for nobody, and what is missing is a hole.
-  if (!realtime() && steps <= progress() - kMaxAhead) {
-    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
-                                 steps, progress() - kMaxAhead + 1));
+  std::error_code missing;
+  const bool is_there = std::filesystem::file_size(file_, missing) > 0 && !missing;
+  const LogFront front = is_there ? ReadFront(file_) : LogFront();
+  if (!front.parts.empty() && front.run_id != run_id()) {
+    throw InputError(fmt::format("{}: the log is that of run {}, not of {}", file_.string(),
+                                 front.run_id, run_id()));
   }
-  if (!remains) {
-    log_.emplace(file_);
-    return false;
+  if (!front.parts.empty() && front.parts.hash() != parts().hash()) {
+    throw InputError(fmt::format("{}: the log is that of another scenario", file_.string()));
   }
-  log_.emplace(file_, remains->head);
-  history_.emplace(file_, remains->begin);
-  for (const std::int64_t end : remains->ends) history_->Add(end);
-  if (remains->final) final_ = steps - 1;
-  StartAt(steps);
+  const Remains remains = ReadOwnRemains(front);
+  if (!front.parts.Complete()) return false;
+  log_.emplace(file_, remains.head);
+  history_.emplace(file_, front, remains);
+  if (remains.final) final_ = remains.steps - 1;
+  first_ = remains.steps;
+  StartAt(first_);
+  if (!realtime()) RememberLastSteps();
   return true;
 }
 
+Remains Recorder::ReadOwnRemains(const LogFront& front) {
+  const auto say_so_far = [this](std::int64_t steps) {
+    status().header.step = steps - 1;
+    PublishStatus();
+  };
+  Remains remains;
+  if (front.parts.Complete()) remains = ReadRemains(file_, front, say_so_far);
+  // The world has begun a step only after the one kMaxAhead before it was on disk.
+  // In real time it waits for nobody, and what is missing is a hole.
+  if (!realtime() && remains.steps <= progress() - kMaxAhead) {
+    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
+                                 remains.steps, progress() - kMaxAhead + 1));
+  }
+  return remains;
+}
+
+void Recorder::RememberLastSteps() {
+  const std::int64_t steps = history_->steps();
+  for (std::int64_t step = std::max<std::int64_t>(0, steps - kRingSteps); step < steps; ++step) {
+    auto input = inputs().begin();  // they stand in the order of the log, too
+    history_->ForEachMessage(step, [&](std::string_view /*channel*/, Bytes bytes) {
+      (input++)->ring.Store(step, bytes);
+    });
+  }
+}
+
 void Recorder::WriteScenario() {
+  if (!log_) log_.emplace(file_);
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
     run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
@@ -75,7 +102,10 @@ void Recorder::WriteScenario() {
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
   log_->Flush();
-  history_.emplace(file_, log_->size());
+  const LogHead head{.bytes = log_->size(), .events = std::ssize(parts().parts())};
+  history_.emplace(file_,
+                   LogFront{.run_id = run_id(), .parts = {}, .realtime = realtime(), .head = head},
+                   Remains{.head = head, .last = head.bytes});
 }
 
 RefusalCounter Recorder::Wrong(std::size_t input, Arrival& arrival) {
@@ -150,8 +180,9 @@ void Recorder::AnswerStep(std::string_view channel, std::int64_t step, TimePoint
   Answered& last = answered_[input->channel][RingSlot(step)];
   if (last.step == step && now - last.at < kAnswerHolds) return;
   last = {.step = step, .at = now};
-  history_->ForEach(channel, {.first = step, .count = 1},
-                    [&](Bytes bytes) { Answer(channel, bytes, now); });
+  history_->ForEachMessage(step, [&](std::string_view of, Bytes bytes) {
+    if (of == channel) Answer(channel, bytes, now);
+  });
 }
 
 // In real time nobody computes old steps again. A world that has been started again wants to know
@@ -169,6 +200,14 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
   if (answered || history_->steps() == 0) return;
   log_->Flush();
   AnswerStep(channel, history_->steps() - 1, now);
+}
+
+std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
+  if (step >= first_) return Node::Contradiction(step, channel);
+  return fmt::format(
+      "step {}: {} is not what the log has: {} is another program, or another "
+      "version, than the one that was recorded",
+      step, channel.name, NameOf(channel.from));
 }
 
 void Recorder::BeforeStatus() {

@@ -21,6 +21,7 @@ class Recorder final : public Node {
   /// What becomes of a file that exists.
   enum class Existing { kReplace, kResume };
 
+  /// With a run id an existing file is replaced at once, without one when a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
@@ -33,11 +34,16 @@ class Recorder final : public Node {
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
   void OnAsked(std::string_view channel, StepRange steps, TimePoint now) override;
+  std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const override;
   void BeforeStatus() override;
   void OnLeave() override;
 
   /// Goes on with what is in the file; false if that is nothing.
   bool Resume();
+  /// What the file has of this run. @throws InputError if that is less than what was acknowledged
+  Remains ReadOwnRemains(const LogFront& front);
+  /// Has the last steps of the log come in again: who computes them again must come to the same.
+  void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
@@ -50,6 +56,7 @@ class Recorder final : public Node {
   const Existing existing_;
   std::optional<EventLogWriter> log_;
   std::optional<History> history_;
+  std::int64_t first_ = 0;   // step that it records first; those before it were in the log
   std::int64_t final_ = -1;  // step after which the run ends, once known
   std::int64_t step_us_ = 0;
   RecordRule* recording_ = nullptr;  // the rule, in real time

@@ -87,6 +87,11 @@ void Node::Read(std::size_t channel, bool on_demand) {
   bus_.Subscribe(info.name, [this, index](Arrival& arrival) { OnInput(index, arrival); });
 }
 
+std::string Node::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
+  return fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
+                     channel.name, NameOf(channel.from));
+}
+
 std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
   return std::make_unique<LockstepRule>(*this);
 }
@@ -293,10 +298,7 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
       return;
     case StepRing::Verdict::kConflict: {
       if (const RefusalCounter wrong = Wrong(index, arrival)) return Refuse(wrong);
-      const ChannelInfo& channel = kChannels[inputs_[index].channel];
-      return Fail(
-          fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
-                      channel.name, NameOf(channel.from)));
+      return Fail(Contradiction(step, kChannels[inputs_[index].channel]));
     }
     case StepRing::Verdict::kNew:
       return TakeInput(index, step, arrival);

@@ -85,6 +85,8 @@ class Node {
   virtual void BeforeStatus() {}
   /// Called once when the node leaves.
   virtual void OnLeave() {}
+  /// A message of a step that is not what is known of it already.
+  virtual std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const;
   /// Someone asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/, TimePoint /*now*/) {}
   /// Someone asks for these steps of a channel, whoever its producer is.

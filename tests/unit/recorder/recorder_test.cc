@@ -159,6 +159,54 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 369 were in it"));
 }
 
+TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
+  // GIVEN a log of 30 MB that does not end as a recorder leaves it
+  constexpr std::int64_t kMany = 20'000;
+  const std::string file = folder_.File("long");
+  {
+    EventLogWriter log(file);
+    const std::vector<std::string> parts = SplitScenario(script_.text());
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Encode(MakeRunPart(Script::kRunId, run_t::GO, 0, HashOf(script_.text()), parts, i), bytes);
+      log.Write(ChannelOf<run_t>().name, 0, bytes);
+    }
+    for (std::int64_t step = 0; step < kMany; ++step) {
+      ForEachStepChannel([&]<class M>(std::size_t channel) {
+        Encode(Script::Of<M>(step), bytes);
+        log.Write(kChannels[channel].name, step * 100'000, bytes);
+      });
+    }
+  }
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * kTailBytes);
+  // WHEN a recorder goes on with it
+  const auto recorder = Record(script_, "long", Recorder::Existing::kResume);
+  EXPECT_EQ(recorder->error(), "");
+  // THEN it has said meanwhile how far it was, and then that it is ready
+  std::vector<std::int64_t> steps;
+  for (const status_t& status : status_) {
+    if (status.state == status_t::WAITING) steps.push_back(status.header.step);
+  }
+  ASSERT_GE(steps.size(), 2U);
+  EXPECT_TRUE(std::ranges::is_sorted(steps));
+  EXPECT_GT(steps.front(), 0);
+  EXPECT_EQ(status_.back().state, status_t::READY);
+  EXPECT_EQ(status_.back().header.step, kMany - 1);
+}
+
+TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
+  WholeLog();
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  SayStep(script_, kSteps - 2);
+  EXPECT_EQ(recorder->error(), "");
+  auto command = Script::Of<driver_command_t>(kSteps - 2);
+  command.acceleration_mps2 = 1;
+  script_.Say(command);
+  EXPECT_EQ(recorder->error(),
+            "step 148: DRIVER_COMMAND is not what the log has: driver is another program, or "
+            "another version, than the one that was recorded");
+}
+
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
   Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
   script_.SayRun(run_t::GO, -1);
