@@ -42,7 +42,9 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       hash_(HashOf(options_.scenario_text)),
       host_(HostName()),
       began_(Clock::now()),
-      looked_(began_) {
+      looked_(began_),
+      sequence_(options_.sequence),
+      progress_(options_.progress) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
     OnStatus(*arrival.As<status_t>());
@@ -80,8 +82,9 @@ TimePoint Conductor::Poll(TimePoint now) {
     phase_ = Phase::kRunning;
     progressed_ = now;
   }
+  // A recorder that reads a long log says how far it is.
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
-      HeldAgainst(began_, now) > options_.join_limit) {
+      HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
   }
   if (phase_ == Phase::kRunning && HeldAgainst(progressed_, now) > options_.stall_limit) {

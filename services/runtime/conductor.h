@@ -23,8 +23,11 @@ namespace fogline {
 
 struct ConductorOptions {
   std::int64_t run_id = 0;
-  std::string scenario_text;                  // the effective scenario
-  std::int64_t steps = kMaxStep;              // of it
+  std::string scenario_text;      // the effective scenario
+  std::int64_t steps = kMaxStep;  // of it
+  std::int64_t progress = -1;     // last step that is known to have begun
+  // What it says is newer than this: what another runner of the same run has said.
+  std::int64_t sequence = 0;
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
   bool realtime = false;                      // at that pace, whoever keeps up
   Duration join_limit{};                      // for the roles to be ready; 0: no limit
@@ -147,8 +150,8 @@ class Conductor {
   Duration away_{};
   TimePoint announce_at_{};
   TimePoint parts_at_{};
-  std::int64_t sequence_ = 0;  // of what it has said
-  std::int64_t progress_ = -1;
+  std::int64_t sequence_;  // of what it has said
+  std::int64_t progress_;
   TimePoint progressed_{};
   std::vector<std::uint8_t> buffer_;
 };

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include <fmt/core.h>
 
@@ -23,6 +24,8 @@ namespace {
 
 // A file that is removed or replaced between opening and locking it is opened again.
 constexpr int kTries = 10;
+// A lock that others have is tried again this often.
+constexpr Duration kTryEvery = milliseconds(10);
 
 /// @throws InputError
 int Open(const std::filesystem::path& path, std::string_view option) {
@@ -73,10 +76,15 @@ std::optional<pid_t> HolderOf(int fd) {
 }  // namespace
 
 FileLock::FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
-                   std::string_view owner) {
+                   std::string_view owner, Duration patience) {
+  const TimePoint end = Clock::now() + patience;
   for (int tries = 1;; ++tries) {
     fd_ = Open(path, option);
-    if (!Lock(fd_, kind)) {
+    while (!Lock(fd_, kind)) {
+      if (Clock::now() < end) {
+        std::this_thread::sleep_for(kTryEvery);
+        continue;
+      }
       const std::optional<pid_t> holder = HolderOf(fd_);
       close(fd_);
       throw InputError(fmt::format("{}: error: {}: is being written by another {}{}", path.string(),
