@@ -324,6 +324,30 @@ TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
   EXPECT_THAT(outcome.out, testing::MatchesRegex("[0-9a-f]+ .*run.lcm\n"));
 }
 
+TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgain) {
+  for (const char* transport : {"udpm", "memq", "direct"}) {
+    SCOPED_TRACE(transport);
+    const ScratchFolder folder;
+    const std::string log = folder.File("run.lcm");
+    // GIVEN a shell that allows files of 64 KiB, about fifty steps
+    const Outcome outcome =
+        RunCommand({"bash", "-c", "ulimit -f 64; exec \"$0\" run scenario/paper.json --log \"$@\"",
+                    Program("fogline"), log, "--transport", transport});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("cannot write to " + log +
+                                       ": the file size limit of 65536 bytes is reached; "
+                                       "ulimit -f unlimited lifts it\n  the log so far: " +
+                                       log + "\n  to go on: fogline run --resume " + log));
+    EXPECT_EQ(outcome.err.find("started again"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::filesystem::file_size(log), 65'536U);
+    // WHEN the limit is lifted, THEN the run goes on
+    const Outcome rest =
+        RunCommand({Program("fogline"), "run", "--resume", log, "--transport", transport});
+    EXPECT_EQ(rest.code, 0) << rest.err;
+    EXPECT_THAT(rest.out, HasSubstr("digest dc509616fb13af4c"));
+  }
+}
+
 /// How many processes are to be killed: a few, unless the campaign wants more.
 int KillsWanted() {
   const char* kills = std::getenv("FOGLINE_TEST_KILLS");

@@ -5,8 +5,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -41,15 +43,16 @@ void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_v
   }
 }
 
-void PrepareLog(const std::filesystem::path& log, bool force) {
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   RequireFolderOf(log, "--log");
-  if (Reserve(log)) return;
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(log, ignored)) {
+  if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", log.string()));
   }
-  // Where another run is writing it, --force is of no use.
-  const FileLock unused(log, FileLock::Kind::kOwn, "--log", "run");
+  // Makes the file if it is missing. Of two runs that begin at once one has it, whichever made it;
+  // where another run is writing it, --force is of no use.
+  auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
+  if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {
     throw InputError(
         fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
@@ -59,25 +62,17 @@ void PrepareLog(const std::filesystem::path& log, bool force) {
         fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
                     log.string()));
   }
+  return {log, std::move(lock)};
 }
 
-LogOfRun::LogOfRun(const std::filesystem::path& log) : log_(log) {
-  if (!log_.empty()) lock_.emplace(log_, FileLock::Kind::kOwn, "--log", "run");
-}
-
-LogOfRun::~LogOfRun() {
-  std::error_code ignored;
-  if (std::filesystem::is_empty(log_, ignored) && !ignored) std::filesystem::remove(log_, ignored);
-}
-
-std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
+LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
   std::error_code ignored;  // Reserve() says what is wrong
   std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {
     std::filesystem::path log =
         folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
-    if (Reserve(log)) return log;
+    if (Reserve(log)) return LogOfRun(log);
   }
 }
 

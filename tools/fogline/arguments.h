@@ -14,7 +14,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
-#include "services/runtime/file_lock.h"
+#include "services/recorder/log_of_run.h"
 #include "tools/fogline/experiment.h"
 #include "tools/sweep/plan.h"
 
@@ -50,29 +50,14 @@ class ScenarioArguments {
   std::string seed_;  // checked where all fields are
 };
 
-/// A log file to write: refuses one that another run is writing, one that exists unless `force`,
-/// and with it whatever is no event log; requires its folder as RequireFolderOf() does.
+/// A log file to write: refuses one that another run is writing, one that has something in it
+/// unless `force`, and with it whatever is no event log; requires its folder as RequireFolderOf()
+/// does.
 /// @throws InputError
-void PrepareLog(const std::filesystem::path& log, bool force);
-
-/// The log of a run, which no other run can have until the end of this object. Removed then if the
-/// run has left it empty, because it never began.
-class LogOfRun {
- public:
-  /// @param log that PrepareLog() or FreshLog() has made; "" for a run without one
-  /// @throws InputError if another run is writing it
-  explicit LogOfRun(const std::filesystem::path& log);
-  ~LogOfRun();
-  LogOfRun(const LogOfRun&) = delete;
-  LogOfRun& operator=(const LogOfRun&) = delete;
-
- private:
-  std::filesystem::path log_;
-  std::optional<FileLock> lock_;
-};
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
 /// "logs/STEM-1.lcm", or the first number that is free.
-std::filesystem::path FreshLog(const std::filesystem::path& scenario_file);
+LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each; one that is no log is named on stderr and left out, and the others
 /// are worked on all the same. Returns whether there was none of that kind.

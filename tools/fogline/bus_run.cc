@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -20,7 +21,6 @@
 #include "services/fusion/fusion.h"
 #include "services/lidar/lidar.h"
 #include "services/radar/radar.h"
-#include "services/recorder/event_log.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/beacon.h"
 #include "services/runtime/conductor.h"
@@ -30,6 +30,7 @@
 #include "services/world/world.h"
 #include "tools/fogline/external_roles.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/kept_log.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/relay_process.h"
 #include "tools/fogline/supervisor.h"
@@ -47,12 +48,23 @@ constexpr Duration kHangLimit = milliseconds(2000);
 // life that is lost is no repair's business.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
+/// What a runner counts from that takes the place of another one, whose roles may still be there:
+/// they believe the newest. A runner says less than a thing in a microsecond.
+std::int64_t NewerThanEveryRunner() {
+  using std::chrono::microseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<microseconds>(now).count();
+}
+
 ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
   // A slow pace is no stall: a step is expected to take its time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
-  return {.run_id = DrawRunId(),
-          .scenario_text = PrintScenario(scenario),
+  const auto& resume = options.resume;
+  return {.run_id = resume ? resume->front.run_id : DrawRunId(),
+          .scenario_text = resume ? resume->front.parts.Text() : PrintScenario(scenario),
           .steps = scenario.steps,
+          .progress = resume ? resume->remains.steps - 1 : -1,
+          .sequence = resume ? NewerThanEveryRunner() : 0,
           .pace = options.pace,
           .realtime = options.realtime,
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
@@ -69,14 +81,14 @@ std::unique_ptr<Node> MakeNode(Bus& bus, std::int64_t run_id) {
 }
 
 void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scenario& scenario,
-                 const std::filesystem::path& log) {
+                 const std::filesystem::path& log, Recorder::Existing existing) {
   std::vector<std::unique_ptr<Node>> nodes;
   for (const auto make :
        {MakeNode<World>, MakeNode<Radar>, MakeNode<Lidar>, MakeNode<Fusion>, MakeNode<Acc>,
         MakeNode<Driver>, MakeNode<Arbitrator>, MakeNode<Follower>}) {
     nodes.push_back(make(bus, run_id));
   }
-  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log));
+  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log, existing));
   Progress progress("step", scenario.steps);
   while (conductor.phase() == Conductor::Phase::kJoining ||
          conductor.phase() == Conductor::Phase::kRunning) {
@@ -111,6 +123,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                         {.url = bus.url(),
                          .run_id = run_id,
                          .log = log,
+                         .resume = options.resume.has_value(),
                          .arguments = ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,
@@ -157,26 +170,6 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
   return supervisor.restarts();
 }
 
-/// Whether a file is the log of a run, which begins with its scenario. A run that is to replace an
-/// older log may end before it has begun to.
-bool IsLogOf(std::int64_t run_id, const std::filesystem::path& file) {
-  try {
-    EventLogReader reader(file);
-    const std::optional<Event> first = reader.Next();
-    return first && first->data.size() >= kHeaderEnd &&
-           ReadInt64(first->data, kRunIdOffset) == run_id;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-/// What a run that ends early has left; "" if it was to leave no log.
-std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
-  if (log.empty()) return "";
-  return IsLogOf(run_id, log) ? fmt::format("the log so far: {}", log.string())
-                              : "no log was written";
-}
-
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
   if (transport == "udpm") return FreshMulticastUrl();
@@ -207,11 +200,12 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
   if (in_memory) {
-    RunInMemory(bus, conductor, conducting.run_id, scenario, log);
+    RunInMemory(bus, conductor, conducting.run_id, scenario, log,
+                options.resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
   } else {
     restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
   }
-  const std::string kept = KeptLog(conducting.run_id, options.log);
+  const std::string kept = KeptLog(conducting.run_id, options);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
   const std::string strangers = conductor.strangers().Text();
   if (options.announce && !strangers.empty()) fmt::print(stderr, "{}\n", strangers);

@@ -14,9 +14,10 @@
 #include "services/measures/sample_decoder.h"
 #include "services/recorder/run_log.h"
 #include "services/runtime/digest.h"
-#include "services/runtime/scenario_parts.h"
 #include "tools/fogline/bus_run.h"
+#include "tools/fogline/direct_log.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/kept_log.h"
 
 namespace fogline {
 namespace {
@@ -43,14 +44,10 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-std::size_t PlaceOf(const ChannelInfo& channel) {
-  return static_cast<std::size_t>(&channel - kChannels.data());
-}
-
 /// Adds the messages of a step to a digest and a log, in the order of the graph table.
 class StepWriter {
  public:
-  StepWriter(Digest& digest, EventLogWriter* log) : digest_(digest), log_(log) {}
+  StepWriter(Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
 
   void Add(const StepView& step) {
     step.ForEachMessage([this](const auto& message) { AddOne(message); });
@@ -61,49 +58,38 @@ class StepWriter {
   void AddOne(const M& message) {
     Encode(message, buffer_);
     digest_.Add(buffer_);
-    if (log_ != nullptr) log_->Write(ChannelOf<M>().name, message.header.utime, buffer_);
+    if (log_ == nullptr) return;
+    log_->Add(message.header.step, ChannelOf<M>(), message.header.utime, buffer_);
   }
 
   Digest& digest_;
-  EventLogWriter* log_;
+  DirectLog* log_;
   std::vector<std::uint8_t> buffer_;
 };
 
-void WriteScenarioParts(EventLogWriter& log, std::int64_t run_id, const std::string& text) {
-  const std::vector<std::string> parts = SplitScenario(text);
-  std::vector<std::uint8_t> buffer;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    Encode(MakeRunPart(run_id, run_t::PREPARE, 0, HashOf(text), parts, i), buffer);
-    log.Write(ChannelOf<run_t>().name, 0, buffer);
-  }
-}
-
-ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
-  const std::int64_t run_id = DrawRunId();
-  std::optional<EventLogWriter> log;
-  if (!options.log.empty()) {
-    log.emplace(options.log);
-    WriteScenarioParts(*log, run_id, PrintScenario(scenario));
-  }
+ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& options,
+                         std::int64_t run_id) {
+  std::optional<DirectLog> log;
+  if (!options.log.empty()) log.emplace(options, run_id, PrintScenario(scenario));
   ExperimentResult result;
   Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
   MeasureAccumulator measures(scenario);
   FollowerAccumulator followers;
-  result.samples.reserve(static_cast<std::size_t>(scenario.steps));
   const TimePoint began = Clock::now();
   ClosedLoop loop(scenario);
   loop.Run(run_id, [&](const StepView& step) {
     writer.Add(step);
-    result.samples.push_back(step.ToSample());
-    measures.Add(result.samples.back());
+    const Sample sample = step.ToSample();
+    measures.Add(sample);
     followers.Add(step.truth, step.follower);
-    if (WasInterrupted()) throw Interrupted("interrupted");
+    if (options.samples) result.samples.push_back(sample);
+    ++result.steps;
+    if (WasInterrupted()) throw Interrupted(fmt::format("interrupted at step {}", sample.step));
   });
   if (log) log->Flush();
   result.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   result.seed = scenario.seed;
-  result.steps = static_cast<std::int64_t>(result.samples.size());
   result.digest = digest.Hex();
   result.measures = measures.Result();
   result.followers = followers.Result();
@@ -111,12 +97,74 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   return result;
 }
 
+ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
+  const std::int64_t run_id = options.resume ? options.resume->front.run_id : DrawRunId();
+  try {
+    return Compute(scenario, options, run_id);
+  } catch (const Interrupted& interrupted) {
+    const std::string kept = KeptLog(run_id, options);
+    throw Interrupted(fmt::format("{}{}{}", interrupted.what(), kept.empty() ? "" : "; ", kept));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    const std::string kept = KeptLog(run_id, options);
+    throw std::runtime_error(fmt::format("{}{}{}", error.what(), kept.empty() ? "" : "\n  ", kept));
+  }
+}
+
+std::size_t PlaceOf(const ChannelInfo& channel) {
+  return static_cast<std::size_t>(&channel - kChannels.data());
+}
+
+/// A run as its log tells it, but for its measures.
+/// @param use is called with the sample of each step
+template <class Use>
+LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
+  LoggedRun logged;
+  Digest digest;
+  FollowerAccumulator followers;
+  SampleDecoder decoder;
+  RunLogReader reader(log);
+  while (const StepMessages* messages = reader.Next()) {
+    for (const Bytes message : *messages) {
+      if (!message.empty()) digest.Add(message);
+    }
+    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
+      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
+    });
+    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
+    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
+    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
+    if (sample == nullptr) {
+      throw InputError(
+          fmt::format("{}: error: step {} does not decode: was it recorded with other "
+                      "message types?",
+                      log.string(), reader.run().steps - 1));
+    }
+    use(*sample);
+    followers.Add(decoder.truth(), decoder.follower());
+  }
+  const RunLog& run = reader.run();
+  logged.run_id = run.run_id;
+  logged.result.seed = run.scenario.seed;
+  logged.result.steps = run.steps;
+  logged.result.digest = digest.Hex();
+  logged.result.log = log;
+  logged.result.followers = followers.Result();
+  logged.scenario = run.scenario;
+  logged.scenario_text = run.scenario_text;
+  logged.result.realtime = run.realtime;
+  logged.complete = run.complete;
+  logged.note = run.note;
+  return logged;
+}
+
 ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
   BusRun run = RunOnBus(scenario, options, log);
-  LoggedRun logged = ReadLoggedRun(log);
+  LoggedRun logged = options.samples ? ReadLoggedRun(log) : MeasureLoggedRun(log, scenario);
   if (logged.run_id != run.run_id) {
     throw std::runtime_error(
         fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
@@ -162,44 +210,17 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 }
 
 LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
-  LoggedRun logged;
-  Digest digest;
-  FollowerAccumulator followers;
-  std::vector<Sample>& samples = logged.result.samples;
-  SampleDecoder decoder;
-  RunLogReader reader(log);
-  while (const StepMessages* messages = reader.Next()) {
-    for (const Bytes message : *messages) {
-      if (!message.empty()) digest.Add(message);
-    }
-    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
-      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
-    });
-    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
-    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
-    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
-    if (sample == nullptr) {
-      throw InputError(
-          fmt::format("{}: error: step {} does not decode: was it recorded with other "
-                      "message types?",
-                      log.string(), reader.run().steps - 1));
-    }
-    samples.push_back(*sample);
-    followers.Add(decoder.truth(), decoder.follower());
-  }
-  const RunLog& run = reader.run();
-  logged.run_id = run.run_id;
-  logged.result.seed = run.scenario.seed;
-  logged.result.steps = run.steps;
-  logged.result.digest = digest.Hex();
-  logged.result.log = log;
-  logged.result.measures = Measure(samples, run.scenario);
-  logged.result.followers = followers.Result();
-  logged.scenario = run.scenario;
-  logged.scenario_text = run.scenario_text;
-  logged.result.realtime = run.realtime;
-  logged.complete = run.complete;
-  logged.note = run.note;
+  std::vector<Sample> samples;
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { samples.push_back(sample); });
+  logged.result.measures = Measure(samples, logged.scenario);
+  logged.result.samples = std::move(samples);
+  return logged;
+}
+
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
+  MeasureAccumulator measures(scenario);
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { measures.Add(sample); });
+  logged.result.measures = measures.Result();
   return logged;
 }
 

@@ -13,12 +13,19 @@
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
 #include "services/recorder/realtime_figures.h"
+#include "services/recorder/remains.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/strangers.h"
 #include "services/runtime/traffic_options.h"
 
 namespace fogline {
+
+/// The run that a log has a part of.
+struct Resumption {
+  LogFront front;
+  Remains remains;
+};
 
 struct ExperimentOptions {
   /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
@@ -27,6 +34,8 @@ struct ExperimentOptions {
   std::string transport = "udpm";
   /// Event log to write. Empty: a temporary one, or with direct none at all.
   std::filesystem::path log;
+  /// What is in the log already, if the run is to go on with it.
+  std::optional<Resumption> resume;
   double pace = 0;                       // simulated seconds per second; 0: as fast as it goes
   bool realtime = false;                 // at that pace by the wall clock, whoever keeps up
   std::vector<Role> external;            // roles that somebody else starts
@@ -34,8 +43,10 @@ struct ExperimentOptions {
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
   TrafficOptions traffic;
-  std::string remark;     // for the user: where the run does not go where it was asked to go
-  bool announce = false;  // say on stderr where the run is and which processes take part
+  std::string remark;            // for the user: where the run does not go where it was asked to go
+  bool announce = false;         // say on stderr where the run is and which processes take part
+  bool samples = false;          // keep those of every step in the result
+  std::string command_to_go_on;  // for the user, if the run ends early
 };
 
 /// How often a role was started again.
@@ -58,7 +69,7 @@ struct ExperimentResult {
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<FollowerMeasures> followers;  // nearest to the host first
-  std::vector<Sample> samples;
+  std::vector<Sample> samples;              // if they were wanted
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
@@ -74,7 +85,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 ///     readable
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
 
-/// A run as its log tells it. @throws InputError
+/// A run as its log tells it.
 struct LoggedRun {
   std::int64_t run_id = 0;
   ExperimentResult result;
@@ -83,6 +94,11 @@ struct LoggedRun {
   bool complete = false;
   std::string note;
 };
+/// With the samples of all its steps. @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
+/// Without them, in memory that does not grow with the run.
+/// @param scenario that is in the log
+/// @throws InputError
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
 
 }  // namespace fogline

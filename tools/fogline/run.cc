@@ -1,6 +1,8 @@
 // fogline run: one run of a scenario.
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,8 @@
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/interrupt.h"
+#include "tools/fogline/kept_log.h"
+#include "tools/fogline/resumed_log.h"
 #include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 
@@ -19,15 +23,19 @@ constexpr const char* kExamples =
     R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
 otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
 its log, and gives exit code 130. A process that is killed or hangs is started
-again and catches up, and the result is the same. A run has a port of its own
-unless LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without
---lcm-url find it on this machine.
+again and catches up, and the result is the same. So is that of a run that has
+ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
+are those of the log; transport, pace, key and the roles that are started
+elsewhere are chosen anew. A run has a port of its own unless LCM_DEFAULT_URL
+names another; fogline top, spy, doctor and roles without --lcm-url find it on
+this machine.
 
 Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
   fogline run scenario/paper.json --pace 1       in real speed, for fogline top or spy
   fogline run scenario/paper.json --transport memq --json
+  fogline run --resume logs/paper-1.lcm          goes on with a run that has ended early
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
@@ -39,6 +47,8 @@ constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
+    verb.get_option("SCENARIO")->required(false);  // unless a log has it
+    verb.add_option("--resume", resume, "Go on with the run in this log, which has its scenario");
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
@@ -73,6 +83,7 @@ struct RunArguments {
   ScenarioArguments scenario;
   TransportArguments transport;
   ExperimentOptions options;
+  std::filesystem::path resume;
   double speed = 1.0;
   double stall_s = 4.0;
   bool force = false;
@@ -80,12 +91,24 @@ struct RunArguments {
   bool quiet = false;
 };
 
-std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult& result) {
+/// What a run has come to, for who has asked for it.
+struct Outcome {
+  std::filesystem::path file;  // that has the scenario
+  ExperimentResult result;
+  std::optional<std::int64_t> resumed;  // steps that were in the log before
+  bool computed = true;                 // the rest of them, here
+};
+
+std::string ToJson(const Outcome& outcome) {
+  const ExperimentResult& result = outcome.result;
   nlohmann::ordered_json json;
-  json["scenario"] = scenario.string();
+  json["scenario"] = outcome.file.string();
   json["seed"] = result.seed;
-  json["transport"] = result.transport;
+  json["transport"] = nullptr;
+  if (outcome.computed) json["transport"] = result.transport;
   json["steps"] = result.steps;
+  json["resumed_steps"] = nullptr;
+  if (outcome.resumed) json["resumed_steps"] = *outcome.resumed;
   json["digest"] = result.digest;
   json["wall_s"] = result.wall_s;
   json["log"] = nullptr;
@@ -111,6 +134,41 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   return json.dump(2);
 }
 
+std::string ToText(const Outcome& outcome) {
+  const ExperimentResult& result = outcome.result;
+  std::string text = fmt::format("{}: {} steps", outcome.file.string(), result.steps);
+  if (outcome.resumed) text += fmt::format(", {} of them from the log", *outcome.resumed);
+  if (outcome.computed) {
+    text += fmt::format(" in {:.2f} s over {}, {} repairs", result.wall_s, result.transport,
+                        result.repairs);
+  }
+  std::string refused;
+  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+    if (result.refused[i] == 0) continue;
+    refused +=
+        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
+  }
+  if (!refused.empty()) text += "\nrefused messages: " + refused;
+  for (const Restarts& role : result.restarts) {
+    text += fmt::format("\n{} was started again {}: {}", NameOf(role.role),
+                        role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
+  }
+  text += '\n';
+  if (result.realtime) text += RealtimeText(*result.realtime);
+  text += fmt::format("digest {}\n", result.digest);
+  if (!result.log.empty()) text += fmt::format("log    {}\n", result.log.string());
+  return text + MeasuresText(result);
+}
+
+int Print(const RunArguments& arguments, const Outcome& outcome) {
+  if (arguments.json) {
+    PrintJson(ToJson(outcome));
+  } else {
+    fmt::print("{}", ToText(outcome));
+  }
+  return kDone;
+}
+
 /// @throws InputError if real time cannot go together with the other options
 void ApplyRealtime(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
@@ -125,7 +183,8 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
-int Run(RunArguments& arguments) {
+/// What is the same for a new run and one that goes on. @throws InputError
+void ApplyOptions(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
@@ -140,6 +199,10 @@ int Run(RunArguments& arguments) {
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
   if (options.announce && !options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
+}
+
+int RunAnew(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
@@ -147,36 +210,57 @@ int Run(RunArguments& arguments) {
         "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock, at least {:g}",
         arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
   }
-  if (!options.log.empty()) {
-    PrepareLog(options.log, arguments.force);
-  } else if (!direct) {
-    options.log = FreshLog(arguments.scenario.file());
-  }
-  const LogOfRun log(options.log);
+  const bool has_log = !options.log.empty() || options.transport != "direct";
+  const LogOfRun log = !has_log              ? LogOfRun()
+                       : options.log.empty() ? FreshLog(arguments.scenario.file())
+                                             : PrepareLog(options.log, arguments.force);
+  options.log = log.path();
+  options.command_to_go_on = CommandToGoOn(options);
   WatchInterrupts();
-  const ExperimentResult result = RunExperiment(scenario, options);
-  if (arguments.json) {
-    PrintJson(ToJson(arguments.scenario.file(), result));
-    return kDone;
+  return Print(arguments, {.file = arguments.scenario.file(),
+                           .result = RunExperiment(scenario, options),
+                           .resumed = std::nullopt});
+}
+
+/// The run in a log to its end. A log that has it is not computed again: what is done once is done.
+int Resume(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
+  const ResumedLog log(arguments.resume);
+  options.log = arguments.resume;
+  options.resume = log.resumption();
+  options.command_to_go_on = CommandToGoOn(options);
+  WatchInterrupts();
+  Outcome outcome{.file = arguments.resume,
+                  .result = {},
+                  .resumed = log.resumption().remains.steps,
+                  .computed = !log.complete()};
+  if (outcome.computed) {
+    outcome.result = RunExperiment(log.scenario(), options);
+    return Print(arguments, outcome);
   }
-  fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
-             result.steps, result.wall_s, result.transport, result.repairs);
-  std::string refused;
-  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
-    if (result.refused[i] == 0) continue;
-    refused +=
-        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
+  if (options.announce) fmt::print(stderr, "{}: the run is complete\n", options.log.string());
+  LoggedRun run = MeasureLoggedRun(options.log, log.scenario());
+  if (!run.complete) {
+    throw InputError(fmt::format("{}: error: --resume: {}", options.log.string(), run.note));
   }
-  if (!refused.empty()) fmt::print("refused messages: {}\n", refused);
-  for (const Restarts& role : result.restarts) {
-    fmt::print("{} was started again {}: {}\n", NameOf(role.role),
-               role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
+  outcome.result = std::move(run.result);
+  return Print(arguments, outcome);
+}
+
+/// @throws CLI::ParseError for what cannot go together with --resume, or is missing without it
+void CheckResume(const CLI::App& verb) {
+  if (verb.get_option("--resume")->count() == 0) {
+    if (verb.get_option("SCENARIO")->count() == 0) throw CLI::RequiredError("SCENARIO");
+    return;
   }
-  if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
-  fmt::print("digest {}\n", result.digest);
-  if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
-  fmt::print("{}", MeasuresText(result));
-  return kDone;
+  for (const char* of_the_log : {"SCENARIO", "--seed", "--set", "--log", "--force"}) {
+    if (verb.get_option(of_the_log)->count() == 0) continue;
+    throw CLI::ValidationError(
+        fmt::format("{}: --resume goes on with the scenario and the log of its run", of_the_log));
+  }
+  if (verb.get_option("--realtime")->count() > 0) {
+    throw CLI::ValidationError("--realtime: a run in real time does not go on, see --resume");
+  }
 }
 
 }  // namespace
@@ -184,7 +268,13 @@ int Run(RunArguments& arguments) {
 void AddRun(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("run", "Run a scenario, one process for each role");
   const auto arguments = std::make_shared<RunArguments>(*verb);
-  verb->callback([&action, arguments] { action = [arguments] { return Run(*arguments); }; });
+  verb->callback([&action, arguments, verb] {
+    CheckResume(*verb);
+    action = [arguments] {
+      ApplyOptions(*arguments);
+      return arguments->resume.empty() ? RunAnew(*arguments) : Resume(*arguments);
+    };
+  });
 }
 
 }  // namespace fogline

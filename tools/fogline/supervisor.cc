@@ -42,7 +42,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
     // Only if it is the log of this run: before that it may be an old one that is to be replaced.
-    if (conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
+    if (options_.resume || conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
   child.started = now;

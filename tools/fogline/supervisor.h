@@ -20,6 +20,7 @@ class Supervisor {
     std::string url;
     std::int64_t run_id = 0;
     std::filesystem::path log;
+    bool resume = false;                 // the log is that of this run already
     std::vector<std::string> arguments;  // of every process besides
     std::vector<Role> external;          // roles that are not its business
     int restarts = 0;                    // of each role; 0: the first death ends the run

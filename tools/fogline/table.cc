@@ -55,6 +55,7 @@ struct TableArguments {
 /// @throws InputError
 ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
+  options.samples = true;
   arguments.transport.Apply(options);
   if (!options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
   const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
@@ -73,7 +74,7 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
                                                arguments.scenario.file().stem().string(),
                                                scenario.seed, name);
   }
-  const LogOfRun log(options.log);
+  const LogOfRun log = options.log.empty() ? LogOfRun() : LogOfRun(options.log);
   return RunExperiment(scenario, options);
 }
 
