@@ -7,6 +7,7 @@
 
 #include "scenario/loader.h"
 #include "services/recorder/record_rule.h"
+#include "services/runtime/lockstep_rule.h"
 
 namespace fogline {
 namespace {
@@ -17,15 +18,35 @@ constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
 // starts again asks for its inputs of 63 steps at a time, one that has six for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
+constexpr double kNoLimit = 1e9;
 // Who asks within this time after an answer has it.
 constexpr Duration kAnswerHolds = milliseconds(2);
+// Old steps that are handed out between two looks at what has come, which may be asked for, too.
+constexpr int kStepsAtOnce = 4;
+// In this time it may send another 30 answers.
+constexpr Duration kBudgetPatience = milliseconds(1);
 
 }  // namespace
+
+/// Lockstep, and answers for old steps besides.
+class Recorder::AnsweringRule final : public LockstepRule {
+ public:
+  explicit AnsweringRule(Recorder& recorder) : LockstepRule(recorder), recorder_(recorder) {}
+
+  TimePoint Poll(TimePoint now) override {
+    return std::min(LockstepRule::Poll(now), recorder_.AnswerSome(now));
+  }
+
+ private:
+  Recorder& recorder_;
+};
 
 Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
                    Existing existing)
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
-  budget_ = AnswerBudget(kAnswersPerSecond, kAnswersAtOnce);
+  // In memory there is nobody from outside who could ask too much.
+  const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
+  budget_ = AnswerBudget(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
@@ -35,7 +56,7 @@ void Recorder::Configure(const Scenario& scenario) {
 }
 
 std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
-  if (!realtime()) return Node::MakeRule(scenario);
+  if (!realtime()) return std::make_unique<AnsweringRule>(*this);
   auto rule = std::make_unique<RecordRule>(*this, scenario, pace(), run_id());
   recording_ = rule.get();
   return rule;
@@ -167,21 +188,34 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
   // can be read.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
   steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
+  const std::size_t place = ChannelNamed(channel);
+  if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
-    AnswerStep(channel, k, now);
+    // An answer is everybody's.
+    const Answered& last = answered_[place][RingSlot(k)];
+    if (last.step == k && now - last.at < kAnswerHolds) continue;
+    asked_.Add(k, AskedSteps::Channels{1} << place);
   }
 }
 
-void Recorder::AnswerStep(std::string_view channel, std::int64_t step, TimePoint now) {
-  const auto input = std::ranges::find_if(
-      inputs(), [channel](const Input& one) { return kChannels[one.channel].name == channel; });
-  // Reading is work, too: none of it for nothing.
-  if (input == inputs().end() || !budget_.Has(now)) return;
-  Answered& last = answered_[input->channel][RingSlot(step)];
-  if (last.step == step && now - last.at < kAnswerHolds) return;
-  last = {.step = step, .at = now};
-  history_->ForEachMessage(step, [&](std::string_view of, Bytes bytes) {
-    if (of == channel) Answer(channel, bytes, now);
+TimePoint Recorder::AnswerSome(TimePoint now) {
+  for (int i = 0; i < kStepsAtOnce && budget_.Has(now); ++i) {
+    const auto asked = asked_.Take();
+    if (!asked) return TimePoint::max();
+    AnswerStep(*asked, now);
+  }
+  // Then the others are listened to, and it goes on when it may.
+  return asked_.empty() ? TimePoint::max() : budget_.Has(now) ? now : now + kBudgetPatience;
+}
+
+void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
+  history_->ForEachMessage(asked.step, [&](std::string_view name, Bytes bytes) {
+    const std::size_t channel = ChannelNamed(name);
+    const AskedSteps::Channels bit = AskedSteps::Channels{1} << channel;
+    if ((asked.channels & bit) == 0) return;
+    if (!budget_.Has(now)) return asked_.Add(asked.step, bit);
+    answered_[channel][RingSlot(asked.step)] = {.step = asked.step, .at = now};
+    Answer(name, bytes, now);
   });
 }
 
@@ -199,7 +233,9 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
   // It may have been started again itself.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
-  AnswerStep(channel, history_->steps() - 1, now);
+  AnswerStep(
+      {.step = history_->steps() - 1, .channels = AskedSteps::Channels{1} << IndexOf<truth_t>()},
+      now);
 }
 
 std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channel) const {

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "services/recorder/asked_steps.h"
 #include "services/recorder/event_log.h"
 #include "services/recorder/history.h"
 #include "services/runtime/node.h"
@@ -27,6 +28,8 @@ class Recorder final : public Node {
            Existing existing = Existing::kReplace);
 
  private:
+  class AnsweringRule;
+
   void Configure(const Scenario& scenario) override;
   std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override;
   RefusalCounter Wrong(std::size_t input, Arrival& arrival) override;
@@ -48,9 +51,9 @@ class Recorder final : public Node {
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
   void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
-  /// Hands out one step of a channel again, unless it was handed out just now. An answer is
-  /// everybody's.
-  void AnswerStep(std::string_view channel, std::int64_t step, TimePoint now);
+  /// Hands out some of what was asked for. @return when to go on with it
+  TimePoint AnswerSome(TimePoint now);
+  void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
 
   const std::filesystem::path file_;
   const Existing existing_;
@@ -59,6 +62,7 @@ class Recorder final : public Node {
   std::int64_t first_ = 0;   // step that it records first; those before it were in the log
   std::int64_t final_ = -1;  // step after which the run ends, once known
   std::int64_t step_us_ = 0;
+  AskedSteps asked_;
   RecordRule* recording_ = nullptr;  // the rule, in real time
   struct Answered {
     std::int64_t step = -1;
