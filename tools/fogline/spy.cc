@@ -137,6 +137,15 @@ std::string FindNetwork(const SpyArguments& arguments) {
   throw Interrupted("interrupted before a run came");
 }
 
+/// lcm-spy is to hear what stays on this machine.
+void PreloadHearLoopback() {
+  const fs::path library = HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
+  if (library.empty()) return;  // it hears what goes over other interfaces
+  std::string preload = library.string();
+  if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
+  setenv("LD_PRELOAD", preload.c_str(), 1);
+}
+
 int Spy(const SpyArguments& arguments) {
   std::string url = arguments.network.Url();
   std::vector<std::string> command = SpyCommand(arguments);
@@ -148,6 +157,7 @@ int Spy(const SpyArguments& arguments) {
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());
   argv.push_back(nullptr);
+  PreloadHearLoopback();
   execv(argv.front(), argv.data());
   throw std::runtime_error(
       fmt::format("{} cannot be started: {}", command.front(), std::strerror(errno)));
