@@ -8,6 +8,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <thread>
 
@@ -162,6 +163,35 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
   }
   bus.Publish("A", Payload(1));
   EXPECT_FALSE(bus.Wait(milliseconds(1)));
+}
+
+TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
+  const auto relay = std::make_unique<Relay>();
+  const std::string url = relay->url();
+  Bus bus(url);
+  Bus other(url);
+  int heard = 0;
+  bus.Subscribe("A", [&heard](Bytes) { ++heard; });
+  ASSERT_TRUE(RoundTrip(bus));
+  // GIVEN a relay that is killed: what is sent is lost, and counted
+  relay->process().Signal(SIGKILL);
+  relay->process().Wait();
+  const TimePoint end = Clock::now() + kPatience;
+  while (other.failed_sends().count == 0 && Clock::now() < end) other.Publish("A", Payload(1));
+  EXPECT_THAT(other.failed_sends().error, HasSubstr("lost the relay " + url + ": "));
+  EXPECT_TRUE(other.failed_sends().since);
+  // WHEN another one is there
+  Background next({Program("fogline-relay"), "--listen", url.substr(7)});
+  // THEN messages go as before
+  heard = 0;
+  while (heard == 0 && Clock::now() < end) {
+    other.Publish("A", Payload(1));
+    other.Wait(milliseconds(1));
+    bus.Wait(milliseconds(1));
+  }
+  EXPECT_GT(heard, 0);
+  EXPECT_FALSE(other.failed_sends().since);
+  EXPECT_TRUE(RoundTrip(other));
 }
 
 // ---- runs --------------------------------------------------------------------------------------

@@ -62,15 +62,25 @@ void Supervisor::Look(TimePoint now) {
   for (const ProcessGroup::Exit& exit : exits) OnExit(exit, now);
   for (Child& child : children_) {
     if (child.start_at && now >= *child.start_at) {
-      const pid_t before = child.pid;
-      Start(child, now);
-      options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})",
-                               NameOf(child.role), before, child.death, child.pid,
-                               child.policy.restarts(), child.policy.limit()));
+      StartAgain(child, now);
     } else if (!child.start_at && !child.gone && options_.restarts > 0) {
       KillIfItHangs(child, now);
     }
   }
+}
+
+void Supervisor::StartAgain(Child& child, TimePoint now) {
+  const pid_t before = child.pid;
+  try {
+    Start(child, now);
+  } catch (const std::runtime_error& error) {  // for now, perhaps: the stall timeout decides
+    child.start_at = now + child.policy.OnFailedStart();
+    conductor_.Hinder(child.role, error.what());
+    return;
+  }
+  options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})", NameOf(child.role),
+                           before, child.death, child.pid, child.policy.restarts(),
+                           child.policy.limit()));
 }
 
 void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
@@ -130,12 +140,13 @@ std::vector<Restarts> Supervisor::restarts() const {
     const Conductor::Member& member = conductor_.member(info.role);
     if (child != children_.end()) {
       if (child->policy.restarts() == 0) continue;
-      restarts.push_back(
-          {.role = info.role, .count = child->policy.restarts(), .last = child->death});
+      restarts.push_back({.role = std::string(info.name),
+                          .count = child->policy.restarts(),
+                          .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
       // The last one may have come too late in the run to be sure that the one before it is dead.
       const status_t& dead = member.rival ? *member.status : member.dead.back();
-      restarts.push_back({.role = info.role,
+      restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,
                           .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,
                                               dead.host, dead.header.step)});

@@ -31,7 +31,7 @@ class Supervisor {
   Supervisor(Bus& bus, Conductor& conductor, Options options);
 
   /// Sees who has died or hangs, and starts again whose time has come. Call it every few tens of
-  /// milliseconds. @throws std::runtime_error if a process cannot be started
+  /// milliseconds.
   void Look(TimePoint now);
 
   /// Says STOP until every process has left; those that do not are killed.
@@ -53,6 +53,8 @@ class Supervisor {
     bool gone = false;  // for good, and the run goes on
   };
   void Start(Child& child, TimePoint now);
+  /// If that is not possible, it is tried again later.
+  void StartAgain(Child& child, TimePoint now);
   void OnExit(const ProcessGroup::Exit& exit, TimePoint now);
   void KillIfItHangs(Child& child, TimePoint now);
 
