@@ -14,8 +14,10 @@
 #include "services/graph.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/own_pauses.h"
 #include "services/runtime/refusals.h"
 #include "services/runtime/scenario_parts.h"
+#include "services/runtime/send_trouble.h"
 #include "services/runtime/step_ring.h"
 #include "services/runtime/strangers.h"
 
@@ -45,11 +47,13 @@ class Conductor {
 
   /// Notes that the runner looks at the clock. Between two looks far apart it was held up itself
   /// (a suspended machine, a disk, Ctrl-Z), which is held against nobody.
-  void Attend(TimePoint now);
+  void Attend(TimePoint now) { pauses_.Attend(now); }
   /// Time since then in which something could have been heard.
-  Duration HeldAgainst(TimePoint since, TimePoint now) const;
+  Duration HeldAgainst(TimePoint since, TimePoint now) const {
+    return pauses_.HeldAgainst(since, now);
+  }
   /// The longest time that the runner was held up since the last call, 0 if it was not.
-  Duration TakeAway() { return std::exchange(away_, Duration::zero()); }
+  Duration TakeAway() { return pauses_.TakeLongest(); }
 
   Phase phase() const { return phase_; }
   /// What went wrong, one line. Empty unless phase() is kFailed.
@@ -67,6 +71,8 @@ class Conductor {
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
+  /// What could not be sent, by the roles and the runner; those that could send all are left out.
+  std::vector<SendTrouble> SendTroubles() const;
   /// What is wrong with keys and signatures, "" if nothing is known to be.
   std::string KeyTrouble() const;
   /// Who is of another run and speaks on this network.
@@ -84,6 +90,8 @@ class Conductor {
   /// The role's process on this machine is dead and will be started again: what is still on its way
   /// from it is ignored, another instance may take its place.
   void Bury(Role role, std::int32_t pid, TimePoint now);
+  /// Why the role cannot be started again for now, for the message if that does not change.
+  void Hinder(Role role, std::string why);
   /// The role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
   /// Calls `handler` for every STATUS that counts, in the order of its sender.
@@ -99,14 +107,20 @@ class Conductor {
     TimePoint heard{};
     std::vector<status_t> dead;      // the last ones of instances that are dead
     std::vector<std::int32_t> pids;  // of processes on this machine that are dead
-    std::optional<status_t> rival;   // another instance that says that it is this role, and since
+    std::optional<status_t> rival;   // another instance that says that it is this role, and when
     TimePoint rival_since{};
+    TimePoint rival_heard{};
+    std::optional<TimePoint> undead;  // one that is dead speaks, since then
+    std::string hindrance;            // why it cannot be started again for now
     int replaced = 0;  // times that an external role was started again, and when last
     TimePoint replaced_at{};
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
  private:
+  // A role without a STATUS for this long (five heartbeats) counts as silent.
+  static constexpr Duration kSilent = milliseconds(1000);
+
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
   /// The role has failed and said so.
@@ -118,9 +132,19 @@ class Conductor {
   bool IsExternal(Role role) const;
   /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
   bool Admit(Role role, const status_t& status, TimePoint now);
+  /// The same for one that the role's present process has not sent.
+  bool AdmitOther(Role role, const status_t& status, TimePoint now);
+  /// A process that is believed to be dead speaks.
+  void OnUndead(Role role, const status_t& status, TimePoint now);
+  void FailForTwo(const status_t& one, const status_t& other);
+  bool HasRival(Role role, TimePoint now) const;
+  /// The process that has the place of an external role, 0 while there is none.
+  std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);
   void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
+  /// Why the role is not there, to be added to a message; "" if nothing is known.
+  std::string HindranceOf(Role role) const;
   /// The one line that says who holds up the run.
   std::string Culprit(TimePoint now) const;
 
@@ -138,13 +162,7 @@ class Conductor {
   std::function<void(const status_t&)> on_status_;
   std::string error_;
   TimePoint began_;
-  TimePoint looked_;  // at the clock, last
-  struct Pause {
-    TimePoint from;
-    TimePoint to;
-  };
-  std::vector<Pause> pauses_;  // in which it did not look, in order
-  Duration away_{};
+  OwnPauses pauses_;
   TimePoint announce_at_{};
   TimePoint parts_at_{};
   std::int64_t sequence_ = 0;  // of what it has said

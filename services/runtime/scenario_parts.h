@@ -13,7 +13,7 @@ namespace fogline {
 
 /// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for its other
 /// fields.
-inline constexpr std::size_t kPartBytes = 1200;
+inline constexpr std::size_t kPartBytes = 1000;
 
 /// The parts of a text, in order; at least one.
 inline std::vector<std::string> SplitScenario(std::string_view text) {

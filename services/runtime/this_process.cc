@@ -2,9 +2,11 @@
 
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -34,6 +36,11 @@ bool RunBeforeOthers(int priority) {
   // A page that the kernel has taken back comes again from the disk, when that has time.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
+}
+
+bool EndsWithItsParent() {
+  int signal = 0;
+  return prctl(PR_GET_PDEATHSIG, &signal) == 0 && signal == SIGKILL;
 }
 
 std::string HostName() {

@@ -17,6 +17,9 @@ ProcessUse MeasureThisProcess();
 /// @return whether it was granted to all threads
 bool RunBeforeOthers(int priority);
 
+/// Whether the kernel kills this process when its parent ends.
+bool EndsWithItsParent();
+
 /// The name of this machine.
 std::string HostName();
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@
 #include "services/runtime/conductor.h"
 #include "services/runtime/fallback_log.h"
 #include "services/runtime/lcm_url.h"
+#include "services/runtime/runner_watch.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
 #include "tools/fogline/external_roles.h"
@@ -41,6 +44,8 @@ namespace {
 constexpr Duration kJoinLimit = milliseconds(10'000);
 // How often the runner looks after its processes while no message comes.
 constexpr Duration kLookEvery = milliseconds(20);
+// How often it looks whether roles that it waits for are in other runs.
+constexpr Duration kLookForExternal = milliseconds(100);
 // A process that is silent for so long hangs: ten of its signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
 // In real time half of that: whoever needs the process has done without it for long, and a sign of
@@ -101,12 +106,45 @@ void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& 
   fmt::print(stderr, "{}", external);
 }
 
-std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id,
-                                     const Scenario& scenario, const ExperimentOptions& options,
+/// Names once each process that has a role for which the run waits, but is in another run.
+class BusyElsewhere {
+ public:
+  explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+
+  void Look(const Conductor& conductor, TimePoint now) {
+    if (now < look_at_) return;
+    look_at_ = now + kLookForExternal;
+    const std::vector<Role> awaited = conductor.Awaited(now);
+    if (awaited.empty()) return;
+    for (const Stranger& stranger : conductor.strangers().known()) {
+      const std::string who = Describe(stranger);
+      const bool is_awaited = std::ranges::any_of(
+          awaited, [&stranger](Role role) { return NameOf(role) == stranger.role; });
+      if (!is_awaited || !told_.insert(who).second) continue;
+      say_(
+          fmt::format("{} is not free: it comes when that run is over, or when its runner has "
+                      "been silent for {:g} s",
+                      who, Seconds(RunnerWatch::kSilent)));
+    }
+  }
+
+ private:
+  std::function<void(const std::string&)> say_;
+  std::set<std::string> told_;
+  TimePoint look_at_{};
+};
+
+std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProcess* relay,
+                                     std::int64_t run_id, const Scenario& scenario,
+                                     const ExperimentOptions& options,
                                      const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
   Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
   const ExternalRoles external(bus.url(), options.traffic, options.wait);
+  const auto say = [&](const std::string& line) {
+    if (options.announce) progress.Say(line);
+  };
+  BusyElsewhere elsewhere(say);
   Supervisor supervisor(bus, conductor,
                         {.url = bus.url(),
                          .run_id = run_id,
@@ -117,9 +155,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
                          // Whoever hangs is found before the run counts as stalled.
                          .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
                                              options.stall_limit / 2),
-                         .say = [&](const std::string& line) {
-                           if (options.announce) progress.Say(line);
-                         }});
+                         .say = say});
   if (options.announce) {
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
@@ -141,6 +177,10 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       }
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
+      if (relay != nullptr) {
+        if (const std::string news = relay->Look(conductor, now); !news.empty()) say(news);
+      }
+      elsewhere.Look(conductor, now);
       external.Check(conductor, now);
       if (beacon.Due(now)) beacon.Send(now, conductor.Awaited(now));
       progress.Show(conductor.step());
@@ -198,7 +238,7 @@ std::int64_t DrawRunId() {
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log) {
   std::optional<RelayProcess> relay;
-  if (options.transport == "tcpq") relay.emplace();
+  if (options.transport == "tcpq") relay.emplace(options.restarts);
   Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const bool in_memory = bus.url().starts_with("memq");
   Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
@@ -209,7 +249,11 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   if (in_memory) {
     RunInMemory(bus, conductor, conducting.run_id, scenario, log);
   } else {
-    restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
+    restarts = RunAsProcesses(bus, conductor, relay ? &*relay : nullptr, conducting.run_id,
+                              scenario, options, log);
+    if (relay && relay->restarts() > 0) {
+      restarts.push_back({.role = "relay", .count = relay->restarts(), .last = relay->death()});
+    }
   }
   const std::string kept = KeptLog(conducting.run_id, options.log);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
@@ -228,6 +272,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
           .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
           .repairs = conductor.Total(&status_t::repairs_asked),
           .refused = conductor.Refused(),
+          .send_troubles = conductor.SendTroubles(),
           .strangers = conductor.strangers().known(),
           .restarts = std::move(restarts)};
 }

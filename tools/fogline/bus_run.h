@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "services/runtime/refusals.h"
+#include "services/runtime/send_trouble.h"
 #include "services/runtime/strangers.h"
 #include "tools/fogline/experiment.h"
 
@@ -15,6 +16,7 @@ struct BusRun {
   double wall_s = 0;
   std::int64_t repairs = 0;
   Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;
   std::vector<Restarts> restarts;
 };

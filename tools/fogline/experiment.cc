@@ -130,6 +130,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   result.wall_s = run.wall_s;
   result.repairs = run.repairs;
   result.refused = run.refused;
+  result.send_troubles = std::move(run.send_troubles);
   result.strangers = run.strangers;
   result.restarts = std::move(run.restarts);
   result.log = options.log;

@@ -15,6 +15,7 @@
 #include "services/recorder/realtime_figures.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/refusals.h"
+#include "services/runtime/send_trouble.h"
 #include "services/runtime/strangers.h"
 #include "services/runtime/traffic_options.h"
 
@@ -34,13 +35,12 @@ struct ExperimentOptions {
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
   TrafficOptions traffic;
-  std::string remark;     // for the user: where the run does not go where it was asked to go
   bool announce = false;  // say on stderr where the run is and which processes take part
 };
 
-/// How often a role was started again.
+/// How often a process was started again.
 struct Restarts {
-  Role role;
+  std::string role;  // or "relay", the run's own
   int count;
   std::string last;  // how the last one before the present one ended
 };
@@ -53,6 +53,7 @@ struct ExperimentResult {
   double wall_s = 0;
   std::int64_t repairs = 0;  // requests to publish something again
   Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;  // of other runs, on the same network
   std::vector<Restarts> restarts;
   std::filesystem::path log;  // empty if there is none

@@ -94,6 +94,11 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   for (std::size_t i = 0; i < kRefusals.size(); ++i) {
     json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
   }
+  json["failed_sends"] = nlohmann::ordered_json::array();
+  for (const SendTrouble& one : result.send_troubles) {
+    json["failed_sends"].push_back(
+        {{"role", one.role}, {"count", one.count}, {"error", one.error}});
+  }
   json["strangers"] = nlohmann::ordered_json::array();
   for (const Stranger& stranger : result.strangers) {
     json["strangers"].push_back({{"role", stranger.role},
@@ -103,8 +108,7 @@ std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult
   }
   json["restarts"] = nlohmann::ordered_json::array();
   for (const Restarts& role : result.restarts) {
-    json["restarts"].push_back(
-        {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
+    json["restarts"].push_back({{"role", role.role}, {"count", role.count}, {"last", role.last}});
   }
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
   json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
@@ -139,7 +143,6 @@ int Run(RunArguments& arguments) {
   if (options.realtime) ApplyRealtime(arguments);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
-  if (options.announce && !options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
@@ -168,8 +171,11 @@ int Run(RunArguments& arguments) {
         fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
   }
   if (!refused.empty()) fmt::print("refused messages: {}\n", refused);
+  if (!result.send_troubles.empty()) {
+    fmt::print("messages that could not be sent: {}\n", Text(result.send_troubles));
+  }
   for (const Restarts& role : result.restarts) {
-    fmt::print("{} was started again {}: {}\n", NameOf(role.role),
+    fmt::print("{} was started again {}: {}\n", role.role,
                role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
   }
   if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));

@@ -56,7 +56,6 @@ struct TableArguments {
 ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
   arguments.transport.Apply(options);
-  if (!options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
   const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
   if (!options.external.empty() && own_port) {
     throw InputError(

@@ -8,7 +8,6 @@
 #include "scenario/loader.h"
 #include "services/graph.h"
 #include "services/runtime/lcm_url.h"
-#include "services/runtime/multicast_route.h"
 #include "tools/fogline/help.h"
 
 namespace fogline {
@@ -60,12 +59,6 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
         fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_, kLcmDefaultUrl));
   }
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
-  if (options.transport == "udpm" && !WhyNoMulticast(kLcmDefaultUrl).empty()) {
-    options.transport = "tcpq";
-    options.remark =
-        "this machine has no route for multicast: messages go over TCP on loopback, as with "
-        "--transport tcpq, and other programs need --lcm-url";
-  }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   // A wrong key is refused, also for a run without messages to sign.

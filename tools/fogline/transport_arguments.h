@@ -18,7 +18,6 @@ class TransportArguments {
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, what is asked of its traffic, and the roles that are started elsewhere.
-  /// Where the machine has no route for multicast, tcpq takes the place of udpm, with a remark.
   /// @throws InputError if these cannot go together
   void Apply(ExperimentOptions& options) const;
 
