@@ -240,7 +240,7 @@ void Conductor::Announce(std::size_t part, std::int64_t answer_to) {
 }
 
 void Conductor::Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to) {
-  const TimePoint now = Clock::now();
+  const TimePoint now = pauses_.Attend(Clock::now());
   run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
   run.sequence = ++sequence_;
   run.answer_to = answer_to;

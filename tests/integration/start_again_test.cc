@@ -6,10 +6,11 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <string>
 #include <thread>
 
 #include "services/graph.h"

@@ -6,6 +6,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+
 #include "services/runtime/bus.h"
 #include "services/runtime/channel_filter.h"
 
@@ -72,7 +77,7 @@ std::string SendsOver(int socket) {
   socklen_t size = sizeof(address);
   EXPECT_EQ(getsockopt(socket, IPPROTO_IP, IP_MULTICAST_IF, &address, &size), 0);
   std::array<char, INET_ADDRSTRLEN> text{};
-  return inet_ntop(AF_INET, &address, text.data(), text.size());
+  return inet_ntop(AF_INET, &address, text.data(), static_cast<socklen_t>(text.size()));
 }
 
 TEST(LcmSocketsTest, SendOverLoopbackOnlyWhatIsToStayOnThisMachine) {

@@ -250,6 +250,7 @@ TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioI
       MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, HashOf("{}"), parts, 0), 0));
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_TRUE(node.Waits());
+  other.Poll(node);
   other.PollUpTo(node, Clock::now() + milliseconds(6000));
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_FALSE(node.Waits());
@@ -279,13 +280,14 @@ class ExternalNodeTest : public testing::Test {
 
 TEST_F(ExternalNodeTest, JoinsNoRunThatHasItsRoleOrStartsItItself) {
   Script other;
+  const std::vector<status_t>& said = other.Listen<status_t>();
   StepNode<Driver> node(other.bus(), std::nullopt);
   const std::vector<std::string> parts = SplitScenario(other.text());
   const run_t run = MakeRunPart(Script::kRunId, run_t::PREPARE, 0, HashOf(other.text()), parts, 0);
   for (int i = 0; i < 2; ++i) {
     other.Say(i == 0 ? run : Script::WithDriver(run, 4711));
     other.Poll(node, Clock::now() + milliseconds(300));
-    EXPECT_TRUE(other.Listen<status_t>().empty());
+    EXPECT_TRUE(said.empty());
   }
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_FALSE(node.Waits());
@@ -339,7 +341,8 @@ TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
   StepNode<Driver> started(other.bus(), Script::kRunId);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, before), 0);
   other.SayRun(run_t::GO, -1);
-  other.PollUpTo(started, Clock::now() + milliseconds(100'000));
+  other.Poll(started);
+  other.PollUpTo(started, Clock::now() + milliseconds(25'000));
   EXPECT_FALSE(started.left()) << started.error();
 }
 

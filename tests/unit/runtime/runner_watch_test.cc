@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace fogline {
 namespace {
 
@@ -19,7 +21,8 @@ void AttendUntil(RunnerWatch& watch, int from_ms, int to_ms) {
 }
 
 TEST(RunnerWatchTest, WaitsForLongerThanTheRunWaitsForAStep) {
-  for (const auto& [stall_ms, gone_ms] : {std::pair(0, 19'000), {4000, 19'000}, {60'000, 75'000}}) {
+  for (const auto& [stall_ms, gone_ms] :
+       {std::pair(0, 19'000), std::pair(4000, 19'000), std::pair(60'000, 75'000)}) {
     RunnerWatch watch(At(0));
     watch.Heard(RunWith(stall_ms), At(0));
     AttendUntil(watch, 0, gone_ms + 100);
