@@ -9,6 +9,8 @@ foreach(service IN LISTS FOGLINE_SERVICES)
 endforeach()
 install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
+install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
+
 # The scenario names policies and conflict measures, so it brings them and what they are made of.
 foreach(part IN ITEMS lcmtypes scenario runtime policies conflict driver_models driver)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})

@@ -1,12 +1,16 @@
 #include "scenario/file.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
-#include <cstdio>
-#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -21,7 +25,47 @@ namespace {
 // A folder with more entries is not looked through: a hint is not worth the time.
 constexpr std::size_t kMostEntries = 10'000;
 
-std::string LastError() { return "cannot be read: " + std::generic_category().message(errno); }
+// A pipe that brings nothing for so long is given up: time enough for a remote shell to answer.
+constexpr int kPipeLimit_ms = 5000;
+
+std::string Message(int error) { return std::generic_category().message(error); }
+
+FileText Unreadable(const std::string& why) {
+  return {.text = "", .error = "cannot be read: " + why};
+}
+
+// An open file, closed at the end of a scope.
+class OpenFile {
+ public:
+  // Does not wait for a process that opens the other end of a pipe.
+  explicit OpenFile(const std::filesystem::path& file)
+      : fd_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (fd_ >= 0) close(fd_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+// Why nothing is read from what is there; "" for a file or pipe.
+std::string WhyNotRead(mode_t mode) {
+  if (S_ISDIR(mode)) return "it is a folder";
+  return S_ISREG(mode) || S_ISFIFO(mode) ? "" : "it is neither a file nor a pipe";
+}
+
+// Waits until a pipe has something, or is at its end.
+bool HasMore(int fd) {
+  pollfd waited{.fd = fd, .events = POLLIN, .revents = 0};
+  int ready = 0;
+  do {
+    ready = poll(&waited, 1, kPipeLimit_ms);
+  } while (ready < 0 && errno == EINTR);
+  return ready > 0;
+}
 
 // The files of a folder, in the order of their names; none if it cannot be listed.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) {
@@ -40,13 +84,14 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
 
 }  // namespace
 
-std::string DidYouMeanFile(const std::filesystem::path& file) {
+std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending) {
   const std::filesystem::path folder = file.parent_path();
   // An ending that all have is no likeness: names with the same one are compared without it.
   std::vector<std::string> same;
   std::vector<std::string> other;
   for (const std::filesystem::path& name : FilesOf(folder)) {
-    if (name.extension() == file.extension()) {
+    if (!name.native().ends_with(ending)) continue;
+    if (name.extension() == file.extension() || (file.extension().empty() && !ending.empty())) {
       same.push_back(name.stem().string());
     } else {
       other.push_back(name.string());
@@ -56,30 +101,66 @@ std::string DidYouMeanFile(const std::filesystem::path& file) {
     return Nearest(word, std::vector<std::string_view>(names.begin(), names.end()));
   };
   if (const auto stem = nearest(file.stem().string(), same)) {
-    return DidYouMean((folder / *stem).string() + file.extension().string());
+    const std::string with =
+        file.extension().empty() ? std::string(ending) : file.extension().string();
+    return DidYouMean((folder / *stem).string() + with);
   }
   const auto name = nearest(file.filename().string(), other);
   return name ? DidYouMean((folder / *name).string()) : "";
 }
 
-FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes) {
-  constexpr std::size_t kChunk = std::size_t{1} << 16U;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
-                                                               &std::fclose);
-  if (!stream) {
-    const std::string why = LastError();
-    return {.text = "", .error = errno == ENOENT ? why + DidYouMeanFile(file) : why};
+FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
+                  std::string_view ending) {
+  const OpenFile opened(file);
+  if (opened.fd() < 0) {
+    const int error = errno;
+    ThrowIfExhausted(error, PathText(file));
+    return Unreadable(Message(error) + (error == ENOENT ? DidYouMeanFile(file, ending) : ""));
   }
+  struct stat info {};
+  if (fstat(opened.fd(), &info) != 0) return Unreadable(Message(errno));
+  if (const std::string why = WhyNotRead(info.st_mode); !why.empty()) return Unreadable(why);
   std::string text;
-  std::array<char, kChunk> chunk;
-  while (const std::size_t size = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {
-    text.append(chunk.data(), size);
+  std::array<char, std::size_t{1} << 16U> chunk;
+  while (true) {
+    if (S_ISFIFO(info.st_mode) && !HasMore(opened.fd())) {
+      return Unreadable(
+          fmt::format("no process has written into this pipe for {} s", kPipeLimit_ms / 1000));
+    }
+    const ssize_t size = read(opened.fd(), chunk.data(), chunk.size());
+    if (size < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (size < 0) return Unreadable(Message(errno));
+    if (size == 0) return {.text = std::move(text), .error = ""};
+    text.append(chunk.data(), static_cast<std::size_t>(size));
     if (text.size() > max_bytes) {
       return {.text = "", .error = fmt::format("larger than {} bytes", max_bytes)};
     }
   }
-  if (std::ferror(stream.get()) != 0) return {.text = "", .error = LastError()};
-  return {.text = std::move(text), .error = ""};
+}
+
+std::string WhyNoRegularFile(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return "";
+  return std::filesystem::is_directory(status) ? "it is a folder" : "it is no regular file";
+}
+
+int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
+  while (!bytes.empty()) {
+    const ssize_t size = write(fd, bytes.data(), bytes.size());
+    if (size < 0 && errno != EINTR) return errno;
+    if (size > 0) bytes.remove_prefix(static_cast<std::size_t>(size));
+    // A signal may come while a part is written, which then is all that the call tells of.
+    if (!bytes.empty() && stop != nullptr && stop()) return EINTR;
+  }
+  return 0;
+}
+
+void ThrowIfExhausted(int error, std::string_view what) {
+  constexpr std::array kExhausted{EMFILE, ENFILE, ENOMEM, ENOSPC, EDQUOT};
+  if (std::ranges::find(kExhausted, error) == kExhausted.end()) return;
+  throw std::runtime_error(fmt::format("{}: {}{}", what, Message(error),
+                                       error == EMFILE ? "; ulimit -n 1024 allows more" : ""));
 }
 
 }  // namespace fogline

@@ -1,8 +1,10 @@
-// Reading a whole file.
+// Reading a whole file, and what is said when that or another call for a file fails.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace fogline {
 
@@ -14,10 +16,29 @@ struct FileText {
 
 /// `; did you mean "scenario/paper.json"?` for a name of which there is no file: the one in the
 /// same folder that is spelt alike. Nothing if there is none.
-std::string DidYouMeanFile(const std::filesystem::path& file);
+/// @param ending of every file that may be meant, such as ".json"; "" for any
+std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending = "");
 
-/// The bytes of a file of at most `max_bytes`. The error of a file that is not there has the name
-/// that may be meant.
-FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes);
+/// The bytes of a file of at most `max_bytes`, or what comes out of a pipe, such as that of
+/// `<(command)` in a shell: up to its end, with no pause longer than 5 s, so that a pipe into
+/// which no process writes is not waited for without end. The error of a file that is not there has
+/// the name that may be meant, with this ending.
+/// @throws std::runtime_error as ThrowIfExhausted()
+FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
+                  std::string_view ending = "");
+
+/// Why what is there is no file to be read, "" if it is one: for programs that map or seek.
+std::string WhyNoRegularFile(const std::filesystem::path& file);
+
+/// Writes all bytes to an open file. @return 0, or errno
+/// @param stop whether a signal that interrupts the call ends it, with EINTR
+int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
+
+/// For a call that failed because the process or the machine has used up descriptors, memory or
+/// disk. Not the input is bad then, but the run fails (exit code 3). Returns if it is something
+/// else.
+/// @param what such as the file's name
+/// @throws std::runtime_error "WHAT: Too many open files; ulimit -n 1024 allows more"
+void ThrowIfExhausted(int error, std::string_view what);
 
 }  // namespace fogline

@@ -53,7 +53,7 @@ Scenario ParseScenario(std::string_view text, std::string_view name,
 
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides) {
-  const FileText read = ReadFile(file, kMaxFileBytes);
+  const FileText read = ReadFile(file, kMaxFileBytes, ".json");
   if (!read.error.empty()) ThrowUnreadable(file.string(), read.error);
   Document document = ReadDocument(read.text, file.string(), overrides);
   const LeadSection& lead = document.scenario.lead;

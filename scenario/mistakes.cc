@@ -43,7 +43,7 @@ class LineCounter {
 };
 
 std::string Line(const Mistake& mistake) {
-  std::string line = mistake.file;
+  std::string line = EscapeControls(mistake.file);
   if (mistake.line > 0) line += fmt::format(":{}:{}", mistake.line, mistake.column);
   line += ": error: ";
   if (!mistake.pointer.empty()) line += Shown(mistake.pointer) + ": ";
@@ -115,7 +115,7 @@ void ThrowUnreadable(std::string_view file, std::string_view message) {
                         .pointer = "",
                         .rule = "file",
                         .message = std::string(message)};
-  throw ScenarioError(fmt::format("{}: error: {}", file, message), {mistake});
+  throw ScenarioError(fmt::format("{}: error: {}", EscapeControls(file), message), {mistake});
 }
 
 }  // namespace fogline

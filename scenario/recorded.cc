@@ -183,7 +183,7 @@ void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,
     mistakes.Throw(sources);
   }
   const std::filesystem::path file = folder / scenario.lead.recorded.file;
-  const FileText csv = ReadFile(file, kMaxFileBytes);
+  const FileText csv = ReadFile(file, kMaxFileBytes, ".csv");
   sources.push_back({.name = file.string(), .text = csv.text});
   RecordingReader reader(scenario, root, file.string(),
                          static_cast<std::uint32_t>(sources.size() - 1), mistakes);

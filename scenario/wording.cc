@@ -1,7 +1,9 @@
 #include "scenario/wording.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,51 @@ std::size_t ControlCharacterSize(std::string_view text) {
   return 0;
 }
 
+// A character at the beginning of a text; none if what stands there is not UTF-8.
+struct Character {
+  std::size_t bytes = 1;
+  std::optional<char32_t> code_point;
+};
+
+Character FirstCharacter(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {.bytes = 1, .code_point = byte(0)};
+  // The first byte has as many leading ones as there are bytes.
+  const std::size_t bytes = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < bytes) return {};
+  char32_t code_point = byte(0) & (0x7fU >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) >> 6U) != 2) return {};
+    code_point = (code_point << 6U) | (byte(i) & 0x3fU);
+  }
+  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800,
+                                           0x10000};  // no longer than it must be
+  const bool is_surrogate = code_point >= 0xd800 && code_point < 0xe000;
+  if (code_point < kLeast[bytes] || code_point > 0x10ffff || is_surrogate) return {};
+  return {.bytes = bytes, .code_point = code_point};
+}
+
+// Control characters (Unicode's general category Cc), and those that are not seen but change what
+// is: the invisible ones of its category Cf, and the separators of lines and paragraphs.
+bool IsUnseen(char32_t c) {
+  struct Block {
+    char32_t first, last;
+  };
+  constexpr std::array kUnseen{Block{0x0, 0x1f},      Block{0x7f, 0x9f},      Block{0xad, 0xad},
+                               Block{0x61c, 0x61c},   Block{0x180e, 0x180e},  Block{0x200b, 0x200f},
+                               Block{0x2028, 0x202e}, Block{0x2060, 0x206f},  Block{0xfeff, 0xfeff},
+                               Block{0xfff9, 0xfffb}, Block{0xe0000, 0xe007f}};
+  return std::ranges::any_of(
+      kUnseen, [c](const Block& block) { return c >= block.first && c <= block.last; });
+}
+
+// As in a JSON string: in units of UTF-16.
+std::string Escaped(char32_t c) {
+  if (c < 0x10000) return fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c));
+  const std::uint32_t rest = c - 0x10000;
+  return fmt::format("\\u{:04x}\\u{:04x}", 0xd800 + (rest >> 10U), 0xdc00 + (rest & 0x3ffU));
+}
+
 std::string Shorten(std::string_view text) {
   if (text.size() <= kMaxExcerpt) return std::string(text);
   std::size_t end = kMaxExcerpt;
@@ -54,18 +101,31 @@ std::string EscapeControls(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t size = ControlCharacterSize(text);
-    if (size == 0) {
-      out += text[0];
-      text.remove_prefix(1);
+    const Character first = FirstCharacter(text);
+    if (!first.code_point) {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    } else if (IsUnseen(*first.code_point)) {
+      out += Escaped(*first.code_point);
     } else {
-      // Both forms of a control character end in the byte that is its code point.
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(text[size - 1]));
-      text.remove_prefix(size);
+      out += text.substr(0, first.bytes);
     }
+    text.remove_prefix(first.bytes);
   }
   return out;
 }
+
+std::string EscapeLines(std::string_view text) {
+  std::string lines;
+  while (true) {
+    const std::size_t end = text.find('\n');
+    lines += EscapeControls(text.substr(0, end));
+    if (end == std::string_view::npos) return lines;
+    lines += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::string PathText(const std::filesystem::path& file) { return EscapeControls(file.native()); }
 
 std::string Printable(std::string_view text) {
   std::string printable(text);

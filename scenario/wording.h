@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,8 +18,16 @@ std::string NumberText(double value);
 /// A time in s, of which a run has whole microseconds: "899.9" for a sum that is 899.9000000000001.
 std::string TimeText(double time_s);
 
-/// Control characters (C0, DEL, C1) escaped: as any terminal may be shown the text.
+/// As any terminal may be shown the text, in one line: control characters (C0, DEL, C1) are escaped
+/// as in JSON, and those that are not seen but change what is (directions of writing, zero width);
+/// what is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
+
+/// The same, but line feeds stay. JSON stays JSON of the same meaning.
+std::string EscapeLines(std::string_view text);
+
+/// The name of a file as it may be printed.
+std::string PathText(const std::filesystem::path& file);
 
 /// `text` with '?' for everything but ASCII letters, digits, signs and spaces: for what comes from
 /// the network, of which not even the encoding is known.

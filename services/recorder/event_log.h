@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,11 +19,26 @@
 
 namespace fogline {
 
+/// The most that an event takes besides its data: its header, and LCM's longest channel name.
+inline constexpr std::size_t kMostEventOverhead = 28 + 63;
+
 /// The part of a log that is kept when writing goes on: its first bytes, that many whole events.
 struct LogHead {
   std::int64_t bytes = 0;
   std::int64_t events = 0;
 };
+
+/// What is in a log by the word of one of its writers: the bytes from `begin` on, up to `bytes`,
+/// and their CRC-32 (that of zlib).
+struct WrittenLog {
+  std::int64_t begin = 0;
+  std::int64_t bytes = 0;
+  std::uint32_t checksum = 0;
+};
+
+/// A recorder that is killed leaves at most a ring of incomplete steps and a torn event behind the
+/// last complete step, and has told nothing of them: all that is in so many bytes at the end.
+inline constexpr std::int64_t kTailBytes = 1 << 20;
 
 /// Appends events to a new file, or to the head of an old one.
 class EventLogWriter {
@@ -43,17 +59,31 @@ class EventLogWriter {
   void Flush();
   /// Bytes of all events so far, whether written already or not.
   std::int64_t size() const { return size_; }
+  /// The same, and how many events.
+  LogHead head() const { return {.bytes = size_, .events = events_}; }
+  /// What the operating system has of it. The last kTailBytes of an old file's head count as they
+  /// were found; what is before them its writer has told.
+  const WrittenLog& written() const { return written_; }
 
  private:
   bool WriteOut();
+  /// Adds what the operating system has now.
+  void CountWritten(Bytes bytes);
+  /// Counts the end of the head that is there. @return false and errno if it cannot be read
+  bool CountHead(std::int64_t bytes);
   [[noreturn]] void FailToWrite() const;
 
   std::filesystem::path file_;
   std::FILE* out_;  // without a buffer of its own
   std::int64_t events_ = 0;
   std::int64_t size_ = 0;
+  WrittenLog written_;
   std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
+
+/// Adds an event to bytes that are to be a log.
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
+                 std::vector<std::uint8_t>& bytes);
 
 /// A file that may be replaced by a log: an event log by its first bytes, or empty.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
@@ -72,6 +102,11 @@ std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
 /// Bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
+/// Where the first event in `bytes` begins, from `offset` on, that `accept` recognises: there may
+/// be something else before it, such as the end of another event. Nothing if there is none.
+std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+                                     const std::function<bool(const Event&)>& accept);
+
 /// Reads a log from front to back without copying. A torn tail (a last event that is incomplete, as
 /// a kill or a full disk leaves it) ends the log and is named by torn().
 class EventLogReader {
@@ -84,13 +119,29 @@ class EventLogReader {
 
   /// The next event, or nothing at the end or at a torn tail.
   std::optional<Event> Next();
+  /// Reads on behind these bytes, which hold that many events.
+  void GoTo(const LogHead& head);
   /// What is wrong with the end of the file, "" if nothing: known once Next() has come to it.
   const std::string& torn() const { return torn_; }
+  /// Whether there is not one byte in the file.
+  bool empty() const { return content_.empty(); }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
+  /// The events read so far.
+  LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
+  /// All bytes of the file.
+  Bytes content() const { return content_; }
+  /// Hands out the bytes of the file from one place to another in pieces, and gives the memory of
+  /// each back.
+  void ReadThrough(std::size_t from, std::size_t to, const std::function<void(Bytes)>& use) const;
 
  private:
+  /// Gives the memory of what is read back to the operating system: it maps the file, and would
+  /// keep all of it otherwise.
+  void Release();
+
   Bytes content_;
+  std::size_t released_ = 0;  // up to here
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;
   std::string torn_;

@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -11,164 +11,127 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
-#include "services/runtime/scenario_parts.h"
+#include "services/recorder/step_order.h"
 
 namespace fogline {
 namespace {
 
-constexpr std::size_t kStepChannels = [] {
-  std::size_t count = 0;
-  for (const ChannelInfo& channel : kChannels) count += channel.pace == Pace::kStep ? 1 : 0;
-  return count;
-}();
-
-/// Names of the per-step channels, in the order in which a step stands in a log.
-constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
-  std::array<std::string_view, kStepChannels> names;
-  std::size_t i = 0;
-  for (const ChannelInfo& channel : kChannels) {
-    if (channel.pace == Pace::kStep) names[i++] = channel.name;
-  }
-  return names;
-}();
-
-/// Follows the events of a log as the recorder writes them: the scenario, then whole steps.
-class Follower {
- public:
-  Follower(std::filesystem::path file, std::int64_t run_id) : file_(std::move(file)) {
-    run_id_ = run_id;
-  }
-
-  /// @return false at the first event that does not continue what the recorder wrote
-  bool Take(const Event& event, std::size_t end) {
-    ++events_;
-    if (event.data.size() < kHeaderEnd) return false;
-    if (const std::int64_t id = ReadInt64(event.data, kRunIdOffset); id != run_id_) {
-      throw InputError(
-          fmt::format("{}: the log is that of run {}, not of {}", file_.string(), id, run_id_));
-    }
-    if (parts_.Complete()) {
-      return realtime_ ? TakeRealtimeEvent(event, end) : TakeStepEvent(event, end);
-    }
-    run_t run{};
-    if (event.channel != ChannelOf<run_t>().name || !Decode(event.data, run)) return false;
-    if (!parts_.Add(run)) return false;
-    realtime_ = run.realtime != 0;
-    if (parts_.Complete()) {
-      remains_.begin = static_cast<std::int64_t>(end);
-      remains_.head = {.bytes = remains_.begin, .events = events_};
-    }
-    return true;
-  }
-
-  const ScenarioParts& parts() const { return parts_; }
-  const Remains& remains() const { return remains_; }
-
- private:
-  bool TakeStepEvent(const Event& event, std::size_t end) {
-    const auto step = static_cast<std::int64_t>(remains_.ends.size());
-    if (event.channel != kStepNames[next_] || ReadInt64(event.data, kStepOffset) != step) {
-      return false;
-    }
-    if (event.channel == ChannelOf<truth_t>().name && Decode(event.data, truth_)) {
-      last_ = truth_.last;
-    }
-    if (++next_ < kStepChannels) return true;
-    next_ = 0;
-    remains_.final = last_;
-    remains_.ends.push_back(static_cast<std::int64_t>(end));
-    remains_.head = {.bytes = remains_.ends.back(), .events = events_};
-    return true;
-  }
-
-  /// In real time steps may lack messages, and STATUS stands between them: a step is known to end
-  /// where a later one begins, or when it has all its messages.
-  bool TakeRealtimeEvent(const Event& event, std::size_t end) {
-    const auto begin = static_cast<std::int64_t>(end - SizeInFile(event));
-    const std::int64_t step = ReadInt64(event.data, kStepOffset);
-    const auto open = static_cast<std::int64_t>(remains_.ends.size());
-    if (event.channel == ChannelOf<status_t>().name) return true;
-    if (std::ranges::find(kStepNames, event.channel) == kStepNames.end()) return false;
-    if (step < open || step > open + kLongestGap) return false;
-    if (step > open) {
-      next_ = 0;
-      remains_.ends.insert(remains_.ends.end(), static_cast<std::size_t>(step - open), begin);
-      remains_.head = {.bytes = begin, .events = events_ - 1};
-    }
-    if (event.channel == ChannelOf<truth_t>().name && Decode(event.data, truth_)) {
-      remains_.final = truth_.last;
-    }
-    if (++next_ < kStepChannels) return true;
-    next_ = 0;
-    remains_.ends.push_back(static_cast<std::int64_t>(end));
-    remains_.head = {.bytes = static_cast<std::int64_t>(end), .events = events_};
-    return true;
-  }
-
-  // More steps than a run can lose in a row before it has ended for another reason.
-  static constexpr std::int64_t kLongestGap = 1'000'000;
-
-  std::filesystem::path file_;
-  std::int64_t run_id_;
-  bool realtime_ = false;
-  ScenarioParts parts_;
-  Remains remains_;
-  std::int64_t events_ = 0;
-  std::size_t next_ = 0;  // channel of kStepNames that comes next
-  truth_t truth_{};
-  bool last_ = false;
-};
+// More than any step takes, so that where something is read a step begins.
+constexpr std::int64_t kLook = 32 << 10;
+static_assert(kLook > 2 * kMostStepBytes);
 
 }  // namespace
 
-History::History(std::filesystem::path file, std::int64_t begin)
-    : file_(std::move(file)), ends_{begin} {}
+History::History(std::filesystem::path file, const LogFront& front, const Remains& remains)
+    : file_(std::move(file)),
+      run_id_(front.run_id),
+      realtime_(front.realtime),
+      front_(front.head),
+      steps_(remains.steps),
+      last_(remains.last),
+      end_(remains.head.bytes) {}
 
 History::~History() {
   if (fd_ >= 0) close(fd_);
 }
 
-void History::ForEach(std::string_view channel, StepRange steps,
-                      const std::function<void(Bytes)>& use) {
-  if (fd_ < 0) fd_ = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
-  const auto first = static_cast<std::size_t>(steps.first);
-  const std::int64_t begin = ends_[first];
-  const std::int64_t end = ends_[first + static_cast<std::size_t>(steps.count)];
-  chunk_.resize(static_cast<std::size_t>(end - begin));
-  const ssize_t size = fd_ < 0 ? -1 : pread(fd_, chunk_.data(), chunk_.size(), begin);
-  if (size != end - begin) {
-    throw std::runtime_error(fmt::format("cannot read {} again: {}", file_.string(),
-                                         size < 0 ? std::strerror(errno) : "it is too short"));
-  }
-  std::string_view why;
-  for (Bytes rest = chunk_; !rest.empty();) {
-    const auto event = ParseEvent(rest, why);
-    if (!event) throw std::runtime_error(fmt::format("{}: {}", file_.string(), why));
-    if (event->channel == channel) use(event->data);
-    rest = rest.subspan(SizeInFile(*event));
-  }
+void History::Add(std::int64_t end) {
+  ++steps_;
+  last_ = std::exchange(end_, end);
 }
 
-std::optional<Remains> ReadRemains(const std::filesystem::path& file, std::int64_t run_id,
-                                   const std::string& scenario_hash) {
-  std::error_code missing;
-  if (std::filesystem::file_size(file, missing) == 0 || missing) return std::nullopt;
-  EventLogReader reader(file);
-  Follower follower(file, run_id);
-  while (const auto event = reader.Next()) {
-    if (!follower.Take(*event, reader.good_bytes())) break;
+void History::ForEachMessage(std::int64_t step,
+                             const std::function<void(std::string_view channel, Bytes)>& use) {
+  const std::int64_t begin = Find(step);
+  const Place& behind = found_[RingSlot(step + 1)];
+  const std::int64_t known_end =
+      step == steps_ - 1 ? end_ : (behind.step == step + 1 ? behind.begin : begin + kMostStepBytes);
+  const Bytes read = Read(begin, known_end - begin);
+  Bytes rest = read;
+  std::size_t messages = 0;
+  std::string_view why;
+  while (messages < kStepChannels) {
+    const auto event = ParseEvent(rest, why);
+    const bool is_next = event && (realtime_ ? IsStepChannel(event->channel)
+                                             : event->channel == kStepNames[messages]);
+    const bool is_of_step = is_next && StepOf(*event, run_id_) == step;
+    if (is_of_step) {
+      ++messages;
+      use(event->channel, event->data);
+    } else if (!event || !realtime_) {
+      break;
+    }
+    rest = rest.subspan(SizeInFile(*event));
   }
-  const ScenarioParts& parts = follower.parts();
-  if (!parts.empty() && parts.hash() != scenario_hash) {
-    throw InputError(fmt::format("{}: the log is that of another scenario", file.string()));
+  if (realtime_) return;  // what is missing was missing
+  if (messages < kStepChannels) {
+    throw std::runtime_error(fmt::format("cannot read {} again: step {} at byte {} is damaged",
+                                         file_.string(), step, begin));
   }
-  if (!parts.Complete()) return std::nullopt;
-  if (!parts.HashHolds()) {
-    throw InputError(
-        fmt::format("{}: the scenario in the log does not match its hash", file.string()));
+  found_[RingSlot(step)] = {.step = step, .begin = begin};
+  const auto size = static_cast<std::int64_t>(read.size() - rest.size());
+  found_[RingSlot(step + 1)] = {.step = step + 1, .begin = begin + size};
+}
+
+std::int64_t History::Find(std::int64_t step) {
+  if (step == steps_ - 1) return last_;
+  if (const Place& known = found_[RingSlot(step)]; known.step == step) return known.begin;
+  Place low{.step = 0, .begin = front_.bytes};  // the step is not before this one
+  std::int64_t high = end_;                     // and begins before this byte
+  // Steps are nearly of the same size; one before it, so that it is behind there.
+  const double share = static_cast<double>(std::max<std::int64_t>(0, step - 1)) /
+                       static_cast<double>(std::max<std::int64_t>(1, steps_ - 1));
+  std::int64_t guess =
+      low.begin + static_cast<std::int64_t>(share * static_cast<double>(last_ - low.begin));
+  while (low.step != step) {
+    const bool is_near = high - low.begin <= kLook;
+    const std::int64_t from = is_near ? low.begin : std::clamp(guess, low.begin, high - 1);
+    const auto found = Look(from, high, step);
+    if (found && found->step <= step && (found->step > low.step || from > low.begin)) {
+      low = *found;
+    } else if (from > low.begin) {
+      high = from;
+    } else {
+      throw std::runtime_error(
+          fmt::format("cannot read {} again: there is no step {} behind byte {}", file_.string(),
+                      low.step + 1, low.begin));
+    }
+    guess = low.begin + (high - low.begin) / 2;
   }
-  return follower.remains();
+  return low.begin;
+}
+
+std::optional<History::Place> History::Look(std::int64_t from, std::int64_t limit,
+                                            std::int64_t step) {
+  const Bytes chunk = Read(from, std::min(kLook, end_ - from));
+  std::optional<Place> found;
+  std::size_t offset = 0;
+  const auto begins_step = [this](const Event& event) {
+    return StepBegunBy(event, front_.events, run_id_).has_value();
+  };
+  while (const auto at = FindEvent(chunk, offset, begins_step)) {
+    std::string_view why;
+    const auto event = ParseEvent(chunk.subspan(*at), why);
+    const Place place{.step = *StepBegunBy(*event, front_.events, run_id_),
+                      .begin = from + static_cast<std::int64_t>(*at)};
+    if (place.begin >= limit) break;
+    if (place.step > step) return found ? found : place;
+    found = place;
+    offset = *at + SizeInFile(*event);
+  }
+  return found;
+}
+
+Bytes History::Read(std::int64_t from, std::int64_t size) {
+  if (fd_ < 0) fd_ = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
+  const auto wanted = static_cast<std::size_t>(size);
+  if (chunk_.size() < wanted) chunk_.resize(wanted);
+  const ssize_t got = fd_ < 0 ? -1 : pread(fd_, chunk_.data(), wanted, from);
+  if (got < 0) {
+    throw std::runtime_error(
+        fmt::format("cannot read {} again: {}", file_.string(), std::strerror(errno)));
+  }
+  return {chunk_.data(), static_cast<std::size_t>(got)};
 }
 
 }  // namespace fogline

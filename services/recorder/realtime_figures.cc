@@ -14,11 +14,41 @@ void RealtimeAccumulator::Add(const status_t& status) {
   fallbacks_.Add(status);
 }
 
+void RealtimeAccumulator::AddStep(const ChannelSet& there) {
+  ++steps_;
+  for (std::size_t i = 0; i < kNumChannels; ++i) logged_[i] += there[i] ? 1 : 0;
+}
+
+std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
+  const Role from = kChannels[channel].from;
+  // The world leaves no step out, whichever of its processes computes it.
+  if (from == Role::kWorld) return steps_ - logged_[channel];
+  std::int64_t published = 0;
+  int processes = 0;
+  std::int64_t late = 0;  // at the recorder, which then has written the step without it
+  for (const auto& [process, status] : last_) {
+    if (process.first == NameOf(from)) {
+      published = status.ticks;
+      ++processes;
+    }
+    if (process.first != NameOf(Role::kRecorder)) continue;
+    const auto input = std::ranges::find(status.input, kChannels[channel].name);
+    if (input != status.input.end()) {
+      late += status.input_late[static_cast<std::size_t>(input - status.input.begin())];
+    }
+  }
+  // A process that was started again may compute a step once more.
+  return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
+}
+
 RealtimeFigures RealtimeAccumulator::Result() const {
-  RealtimeFigures figures{.speed = speed_,
-                          .missed_messages = missed_,
-                          .fallbacks = fallbacks_.all(),
-                          .fallbacks_left_out = fallbacks_.left_out()};
+  RealtimeFigures figures{
+      .speed = speed_, .fallbacks = fallbacks_.all(), .fallbacks_left_out = fallbacks_.left_out()};
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    if (kChannels[i].pace != Pace::kStep) continue;
+    figures.missed_messages += steps_ - logged_[i];
+    figures.unlogged_messages += Unlogged(i);
+  }
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(Role::kRecorder)) continue;  // nobody depends on it
     figures.deadline_misses += status.deadline_misses;

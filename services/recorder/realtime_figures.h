@@ -1,6 +1,7 @@
 // How a run in real time kept its time, from the STATUS messages in its log.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -26,9 +27,11 @@ struct RealtimeFigures {
   std::int64_t latency_max_us = 0;
   // Steps that a role left out, or had to do without an input that was due.
   std::int64_t deadline_misses = 0;
-  // Messages that came too late to be used, and messages that are not in the log.
+  // Messages that came too late to be used; messages that are not in the log, whether they were
+  // published or not; and of these at least so many that were, and did not come too late for it.
   std::int64_t late_messages = 0;
   std::int64_t missed_messages = 0;
+  std::int64_t unlogged_messages = 0;
   // The first ones, and how many there were after these.
   std::vector<Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
@@ -44,6 +47,7 @@ void VisitFigures(const RealtimeFigures& f, Visitor&& visit) {
   visit("deadline_misses", f.deadline_misses, "", "steps without an input that was due");
   visit("late_messages", f.late_messages, "", "messages that came too late to be used");
   visit("missed_messages", f.missed_messages, "", "messages that are not in the log");
+  visit("unlogged_messages", f.unlogged_messages, "", "of these, at least so many were published");
   visit("jitter_p99_us", f.jitter_p99_us, "us", "how far from its due time a step begins");
   visit("latency_p50_us", f.latency_p50_us, "us", "from sensor to command: median");
   visit("latency_p99_us", f.latency_p99_us, "us", "the same: 99 % are below");
@@ -57,14 +61,19 @@ class RealtimeAccumulator {
 
   /// The next STATUS of the log.
   void Add(const status_t& status);
-  void AddMissed(std::int64_t messages) { missed_ += messages; }
+  /// The next step of the log has messages on these channels.
+  void AddStep(const ChannelSet& there);
 
   RealtimeFigures Result() const;
 
  private:
+  /// Messages of a channel that are not in the log although its producer has published them.
+  std::int64_t Unlogged(std::size_t channel) const;
+
   double speed_;
   FallbackLog fallbacks_;
-  std::int64_t missed_ = 0;
+  std::int64_t steps_ = 0;                           // in the log
+  std::array<std::int64_t, kNumChannels> logged_{};  // messages of each channel
   // The last STATUS of each process: its counters are those of its life.
   std::map<std::pair<std::string, std::int64_t>, status_t> last_;
 };

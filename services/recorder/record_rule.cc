@@ -37,10 +37,24 @@ void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>&
 }
 
 void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
-  // Steps before it that nothing has come of, too, are late from now on.
-  const std::int64_t known = std::max({next(), newest() + 1, step - kRingSteps + 1});
-  for (std::int64_t k = std::min(step, known); k <= step; ++k) OpenAt(k, time);
+  OpenUpTo(step, time);
+  OpenAt(step, time);
   RealtimeRule::OnInput(input, step, time);
+}
+
+void RecordRule::OnProgress() {
+  RealtimeRule::OnProgress();
+  const TimePoint now = Clock::now();
+  const std::int64_t step = std::min(progress(), NewestPossible(now));
+  if (step <= newest()) return;
+  OpenUpTo(step, now);
+  KnowOf(step);
+}
+
+void RecordRule::OpenUpTo(std::int64_t step, TimePoint now) {
+  for (std::int64_t k = std::max({next(), newest() + 1, step - kRingSteps + 1}); k <= step; ++k) {
+    OpenAt(k, now);
+  }
 }
 
 RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {

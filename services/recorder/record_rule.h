@@ -1,6 +1,7 @@
 // Recording in real time: the world does not wait for the recorder. Steps are written in order as
 // soon as they are complete; what is missing is asked for as long as its producer can still have
-// it, and a step that stays incomplete is written as it is. Each STATUS goes into the log as well,
+// it, and a step that stays incomplete is written as it is. That a step is under way of which
+// nothing has come is known from the runner. Each STATUS goes into the log as well,
 // behind the step in which it came: how the roles were is part of what happened.
 #pragma once
 
@@ -18,6 +19,7 @@ class RecordRule final : public RealtimeRule {
   RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
 
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  void OnProgress() override;
 
   /// Hands out what came in this step or before, once.
   void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
@@ -36,6 +38,8 @@ class RecordRule final : public RealtimeRule {
   };
 
   TimePoint Fire(TimePoint now) override;
+  /// Steps up to this one are under way: those of which nothing has come are late from now on.
+  void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;
   /// Nothing more will come.

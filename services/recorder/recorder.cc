@@ -7,6 +7,7 @@
 
 #include "scenario/loader.h"
 #include "services/recorder/record_rule.h"
+#include "services/runtime/lockstep_rule.h"
 
 namespace fogline {
 namespace {
@@ -17,53 +18,103 @@ constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
 // starts again asks for its inputs of 63 steps at a time, one that has six for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
+constexpr double kNoLimit = 1e9;
 // Who asks within this time after an answer has it.
 constexpr Duration kAnswerHolds = milliseconds(2);
+// The runner cannot ask a recorder that has left. With a third of all messages lost one of so many
+// arrives, but for one time in 700.
+constexpr int kLastWords = 6;
+// Old steps that are handed out between two looks at what has come, which may be asked for, too.
+constexpr int kStepsAtOnce = 4;
+// In this time it may send another 30 answers.
+constexpr Duration kBudgetPatience = milliseconds(1);
 
 }  // namespace
+
+/// Lockstep, and answers for old steps besides.
+class Recorder::AnsweringRule final : public LockstepRule {
+ public:
+  explicit AnsweringRule(Recorder& recorder) : LockstepRule(recorder), recorder_(recorder) {}
+
+  TimePoint Poll(TimePoint now) override {
+    return std::min(LockstepRule::Poll(now), recorder_.AnswerSome(now));
+  }
+
+ private:
+  Recorder& recorder_;
+};
 
 Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
                    Existing existing)
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
-  budget_ = AnswerBudget(kAnswersPerSecond, kAnswersAtOnce);
-  if (existing_ == Existing::kReplace) log_.emplace(file);
+  // In memory there is nobody from outside who could ask too much.
+  const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
+  budget_ = AnswerBudget(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
 void Recorder::Configure(const Scenario& scenario) {
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
-  history_->Reserve(scenario.steps);
   step_us_ = std::llround(scenario.step_s * 1e6);
 }
 
 std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
-  if (!realtime()) return Node::MakeRule(scenario);
+  if (!realtime()) return std::make_unique<AnsweringRule>(*this);
   auto rule = std::make_unique<RecordRule>(*this, scenario, pace(), run_id());
   recording_ = rule.get();
   return rule;
 }
 
 bool Recorder::Resume() {
-  const std::optional<Remains> remains = ReadRemains(file_, run_id(), parts().hash());
-  const auto steps = remains ? static_cast<std::int64_t>(remains->ends.size()) : 0;
-  // The world has begun a step only after the one kMaxAhead before it was on disk.
-  // In real time it waits for nobody, and what is missing is a hole.
-  if (!realtime() && steps <= progress() - kMaxAhead) {
-    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
-                                 steps, progress() - kMaxAhead + 1));
+  std::error_code missing;
+  const bool is_there = std::filesystem::file_size(file_, missing) > 0 && !missing;
+  const LogFront front = is_there ? ReadFront(file_) : LogFront();
+  if (!front.parts.empty() && front.run_id != run_id()) {
+    throw InputError(fmt::format("{}: the log is that of run {}, not of {}", file_.string(),
+                                 front.run_id, run_id()));
   }
-  if (!remains) {
-    log_.emplace(file_);
-    return false;
+  if (!front.parts.empty() && front.parts.hash() != parts().hash()) {
+    throw InputError(fmt::format("{}: the log is that of another scenario", file_.string()));
   }
-  log_.emplace(file_, remains->head);
-  history_.emplace(file_, remains->begin);
-  for (const std::int64_t end : remains->ends) history_->Add(end);
-  if (remains->final) final_ = steps - 1;
-  StartAt(steps);
+  const Remains remains = ReadOwnRemains(front);
+  if (!front.parts.Complete()) return false;
+  log_.emplace(file_, remains.head);
+  history_.emplace(file_, front, remains);
+  if (remains.final) final_ = remains.steps - 1;
+  first_ = remains.steps;
+  StartAt(first_);
+  if (!realtime()) RememberLastSteps();
   return true;
 }
 
+Remains Recorder::ReadOwnRemains(const LogFront& front) {
+  const auto say_so_far = [this](std::int64_t steps) {
+    status().header.step = steps - 1;
+    PublishStatus();
+  };
+  Remains remains;
+  if (front.parts.Complete()) remains = ReadRemains(file_, front, say_so_far);
+  // The world has begun a step only after the one kMaxAhead before it was on disk.
+  // In real time it waits for nobody, and what is missing is a hole.
+  if (!realtime() && remains.steps <= progress() - kMaxAhead) {
+    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
+                                 remains.steps, progress() - kMaxAhead + 1));
+  }
+  return remains;
+}
+
+void Recorder::RememberLastSteps() {
+  const std::int64_t steps = history_->steps();
+  for (std::int64_t step = std::max<std::int64_t>(0, steps - kRingSteps); step < steps; ++step) {
+    auto input = inputs().begin();  // they stand in the order of the log, too
+    history_->ForEachMessage(step, [&](std::string_view /*channel*/, Bytes bytes) {
+      (input++)->ring.Store(step, bytes);
+    });
+  }
+}
+
 void Recorder::WriteScenario() {
+  if (!log_) log_.emplace(file_);
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
     run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
@@ -75,7 +126,10 @@ void Recorder::WriteScenario() {
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
   log_->Flush();
-  history_.emplace(file_, log_->size());
+  const LogHead head{.bytes = log_->size(), .events = std::ssize(parts().parts())};
+  history_.emplace(file_,
+                   LogFront{.run_id = run_id(), .parts = {}, .realtime = realtime(), .head = head},
+                   Remains{.head = head, .last = head.bytes});
 }
 
 RefusalCounter Recorder::Wrong(std::size_t input, Arrival& arrival) {
@@ -137,21 +191,39 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
   // can be read.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
   steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
+  const std::size_t place = ChannelNamed(channel);
+  if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
-    AnswerStep(channel, k, now);
+    // An answer is everybody's.
+    const Answered& last = answered_[place][RingSlot(k)];
+    if (last.step == k && now - last.at < kAnswerHolds) continue;
+    asked_.Add(k, AskedSteps::Channels{1} << place);
   }
 }
 
-void Recorder::AnswerStep(std::string_view channel, std::int64_t step, TimePoint now) {
-  const auto input = std::ranges::find_if(
-      inputs(), [channel](const Input& one) { return kChannels[one.channel].name == channel; });
-  // Reading is work, too: none of it for nothing.
-  if (input == inputs().end() || !budget_.Has(now)) return;
-  Answered& last = answered_[input->channel][RingSlot(step)];
-  if (last.step == step && now - last.at < kAnswerHolds) return;
-  last = {.step = step, .at = now};
-  history_->ForEach(channel, {.first = step, .count = 1},
-                    [&](Bytes bytes) { Answer(channel, bytes, now); });
+TimePoint Recorder::AnswerSome(TimePoint now) {
+  if (asked_.empty()) return TimePoint::max();
+  // What has come is read first. Requests that wait behind old answers are repeated, and each
+  // repetition would have an answer of its own.
+  bus().Drain();
+  for (int i = 0; i < kStepsAtOnce && budget_.Has(now); ++i) {
+    const auto asked = asked_.Take();
+    if (!asked) return TimePoint::max();
+    AnswerStep(*asked, now);
+  }
+  // Then the others are listened to, and it goes on when it may.
+  return asked_.empty() ? TimePoint::max() : budget_.Has(now) ? now : now + kBudgetPatience;
+}
+
+void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
+  history_->ForEachMessage(asked.step, [&](std::string_view name, Bytes bytes) {
+    const std::size_t channel = ChannelNamed(name);
+    const AskedSteps::Channels bit = AskedSteps::Channels{1} << channel;
+    if ((asked.channels & bit) == 0) return;
+    if (!budget_.Has(now)) return asked_.Add(asked.step, bit);
+    answered_[channel][RingSlot(asked.step)] = {.step = asked.step, .at = now};
+    Answer(name, bytes, now);
+  });
 }
 
 // In real time nobody computes old steps again. A world that has been started again wants to know
@@ -168,7 +240,17 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
   // It may have been started again itself.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
-  AnswerStep(channel, history_->steps() - 1, now);
+  AnswerStep(
+      {.step = history_->steps() - 1, .channels = AskedSteps::Channels{1} << IndexOf<truth_t>()},
+      now);
+}
+
+std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
+  if (step >= first_) return Node::Contradiction(step, channel);
+  return fmt::format(
+      "step {}: {} is not what the log has: {} is another program, or another "
+      "version, than the one that was recorded",
+      step, channel.name, NameOf(channel.from));
 }
 
 void Recorder::BeforeStatus() {
@@ -179,6 +261,14 @@ void Recorder::BeforeStatus() {
   } catch (const std::exception& error) {
     Fail(error.what());
   }
+  TellWritten();
+}
+
+void Recorder::TellWritten() {
+  if (!log_) return;  // it has failed, and has left
+  status().log_begin = log_->written().begin;
+  status().log_bytes = log_->written().bytes;
+  status().log_checksum = log_->written().checksum;
 }
 
 void Recorder::OnLeave() {
@@ -189,10 +279,13 @@ void Recorder::OnLeave() {
   try {
     for (std::int64_t step = next(); step <= newest; ++step) Write(step);
     if (recording_ != nullptr) WriteStatus(std::max(newest, next() - 1));
+    log_->Flush();
   } catch (const std::runtime_error&) {
     // The disk is full. If that matters to the run it has been said; these steps do not.
   }
+  TellWritten();
   log_.reset();
+  for (int i = 0; i < kLastWords; ++i) PublishStatus();
 }
 
 }  // namespace fogline

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "services/recorder/asked_steps.h"
 #include "services/recorder/event_log.h"
 #include "services/recorder/history.h"
 #include "services/runtime/node.h"
@@ -21,11 +22,14 @@ class Recorder final : public Node {
   /// What becomes of a file that exists.
   enum class Existing { kReplace, kResume };
 
+  /// With a run id an existing file is replaced at once, without one when a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
 
  private:
+  class AnsweringRule;
+
   void Configure(const Scenario& scenario) override;
   std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override;
   RefusalCounter Wrong(std::size_t input, Arrival& arrival) override;
@@ -33,25 +37,34 @@ class Recorder final : public Node {
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
   void OnAsked(std::string_view channel, StepRange steps, TimePoint now) override;
+  std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const override;
   void BeforeStatus() override;
   void OnLeave() override;
 
   /// Goes on with what is in the file; false if that is nothing.
   bool Resume();
+  /// What the file has of this run. @throws InputError if that is less than what was acknowledged
+  Remains ReadOwnRemains(const LogFront& front);
+  /// Has the last steps of the log come in again: who computes them again must come to the same.
+  void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
+  /// Puts into STATUS how much of the log the operating system has, and its checksum.
+  void TellWritten();
   void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
-  /// Hands out one step of a channel again, unless it was handed out just now. An answer is
-  /// everybody's.
-  void AnswerStep(std::string_view channel, std::int64_t step, TimePoint now);
+  /// Hands out some of what was asked for. @return when to go on with it
+  TimePoint AnswerSome(TimePoint now);
+  void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
 
   const std::filesystem::path file_;
   const Existing existing_;
   std::optional<EventLogWriter> log_;
   std::optional<History> history_;
+  std::int64_t first_ = 0;   // step that it records first; those before it were in the log
   std::int64_t final_ = -1;  // step after which the run ends, once known
   std::int64_t step_us_ = 0;
+  AskedSteps asked_;
   RecordRule* recording_ = nullptr;  // the rule, in real time
   struct Answered {
     std::int64_t step = -1;

@@ -2,10 +2,12 @@
 // logger of LCM traffic (that is lcm-logger) and computes nothing.
 #include "services/recorder/recorder.h"
 
+#include <memory>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
+#include "services/recorder/log_of_run.h"
 #include "services/runtime/file_lock.h"
 #include "services/runtime/service.h"
 
@@ -21,15 +23,23 @@ constexpr const char* kHelpFooter =
 
 int main(int argc, char** argv) {
   using fogline::FileLock;
+  using fogline::LogOfRun;
   using fogline::Recorder;
   std::string file;
   bool resume = false;
   bool shared = false;
-  std::optional<FileLock> lock;  // for as long as it writes
+  // For as long as it writes.
+  std::optional<FileLock> lock;
+  std::unique_ptr<LogOfRun> log;
   return fogline::RunProcess(
       argc, argv, fogline::Role::kRecorder,
       [&](fogline::Bus& bus, std::optional<std::int64_t> run_id) {
-        lock.emplace(file, shared ? FileLock::Kind::kShared : FileLock::Kind::kOwn, "--log", "run");
+        if (shared) {
+          lock.emplace(file, FileLock::Kind::kShared, "--log", "run");
+        } else {
+          log.reset();  // of an earlier try to find a run
+          log = std::make_unique<LogOfRun>(file);
+        }
         return std::make_unique<Recorder>(
             bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
       },

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/digest.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/seal.h"
 
@@ -24,7 +27,8 @@ constexpr std::size_t ChannelsPerStep() {
 /// Puts the events of a log together to steps.
 class RunLogReader::Assembler {
  public:
-  explicit Assembler(const std::filesystem::path& file) : file_(file), reader_(file) {}
+  Assembler(const std::filesystem::path& file, Compared compared)
+      : file_(file), reader_(file), compared_(compared) {}
 
   const StepMessages* Next() {
     while (!Ready()) {
@@ -38,6 +42,9 @@ class RunLogReader::Assembler {
       Take(*event);
     }
     current_ = TakeStep();
+    for (const Bytes message : current_) {
+      if (!message.empty()) digest_.Add(message);
+    }
     if (Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
     ++run_.steps;
     return &current_;
@@ -65,17 +72,22 @@ class RunLogReader::Assembler {
   /// Messages of the next step. In real time there may be none at all.
   StepMessages TakeStep() {
     const auto next = pending_.begin();
-    const bool there = next->first == run_.steps;
-    const std::size_t count = there ? next->second.count : 0;
-    if (realtime_) realtime_->AddMissed(static_cast<std::int64_t>(ChannelsPerStep() - count));
-    if (!there) return {};
-    const StepMessages messages = next->second.messages;
-    pending_.erase(next);
+    StepMessages messages{};
+    if (next->first == run_.steps) {
+      messages = next->second.messages;
+      pending_.erase(next);
+    }
+    if (realtime_) {
+      ChannelSet there;
+      for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
+      realtime_->AddStep(there);
+    }
     return messages;
   }
 
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
+    if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
     if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
@@ -101,23 +113,33 @@ class RunLogReader::Assembler {
 
   void Finish() {
     finished_ = true;
+    if (reader_.empty()) {
+      throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
+                                   PathText(file_)));
+    }
     if (!parts_.Complete()) {
       throw InputError(
-          fmt::format("{}: error: the log has no complete scenario of a run", file_.string()));
+          fmt::format("{}: error: the log has no complete scenario of a run", PathText(file_)));
     }
     if (!parts_.HashHolds()) {
       throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
-                                   file_.string()));
+                                   PathText(file_)));
     }
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();
     run_.scenario = ParseScenario(run_.scenario_text, file_.string());
-    run_.complete = last_ && pending_.empty() && conflict_.empty();
+    run_.digest = digest_.Hex();
+    run_.events = reader_.head();
     if (realtime_) run_.realtime = realtime_->Result();
+    const std::string alteration = Alteration();
+    run_.altered = !alteration.empty();
+    run_.complete =
+        last_ && pending_.empty() && conflict_.empty() && reader_.torn().empty() && !run_.altered;
     run_.note = reader_.torn();
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
     };
+    if (run_.altered) note("altered: " + alteration);
     if (!last_) note(Shortage());
     if (run_.realtime && run_.realtime->missed_messages > 0) {
       note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
@@ -127,6 +149,21 @@ class RunLogReader::Assembler {
     }
     if (!conflict_.empty()) note(conflict_);
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+  /// What of the log is not as its seal says, "" if nothing is or there is no seal.
+  std::string Alteration() const {
+    if (!run_.seal) return "";
+    const LogSeal& seal = *run_.seal;
+    if (!seal.whole) return "its seal was changed";
+    if (seal.says.digest != run_.digest || seal.says.steps != run_.steps) {
+      return fmt::format("sealed with digest {} of {} steps, it has {} of {}",
+                         EscapeControls(seal.says.digest), seal.says.steps, run_.digest,
+                         run_.steps);
+    }
+    if (seal.says.scenario_hash != run_.scenario_hash) return "it was sealed with another scenario";
+    if (compared_ == Compared::kRun && !run_.realtime) return "";
+    return WhyNotSealedFile(seal, reader_);
   }
 
   std::string Shortage() const {
@@ -157,6 +194,16 @@ class RunLogReader::Assembler {
     const bool known = parts_.Complete();
     if (!parts_.Add(run)) ++foreign_;
     if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
+  }
+
+  void TakeSeal(const Event& event) {
+    LogHead before = reader_.head();
+    before.bytes -= static_cast<std::int64_t>(SizeInFile(event));
+    --before.events;
+    LogSeal seal = ReadLogSeal(event, before);
+    const bool others = seal.whole && seal.says.header.run_id != run_.run_id;
+    if (others) ++foreign_;
+    if (!others && !run_.seal) run_.seal = std::move(seal);
   }
 
   void ExpectRealtime(const run_t& run) {
@@ -191,6 +238,8 @@ class RunLogReader::Assembler {
 
   std::filesystem::path file_;
   EventLogReader reader_;
+  Compared compared_;
+  Digest digest_;
   RunLog run_;
   ScenarioParts parts_;
   std::map<std::int64_t, Pending> pending_;
@@ -207,8 +256,8 @@ class RunLogReader::Assembler {
   std::int64_t steps_ = 0;  // at most, in real time
 };
 
-RunLogReader::RunLogReader(const std::filesystem::path& file)
-    : assembler_(std::make_unique<Assembler>(file)) {}
+RunLogReader::RunLogReader(const std::filesystem::path& file, Compared compared)
+    : assembler_(std::make_unique<Assembler>(file, compared)) {}
 RunLogReader::~RunLogReader() = default;
 const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
 const RunLog& RunLogReader::run() const { return assembler_->run(); }

@@ -10,6 +10,7 @@
 
 #include "scenario/scenario.h"
 #include "services/recorder/event_log.h"
+#include "services/recorder/log_seal.h"
 #include "services/recorder/realtime_figures.h"
 
 namespace fogline {
@@ -24,9 +25,14 @@ struct RunLog {
   std::string scenario_text;
   std::string scenario_hash;
   std::int64_t steps = 0;  // complete ones
-  // The last step says that it is the last; in lockstep nothing is missing.
+  std::string digest;      // of these
+  // The last step says that it is the last; in lockstep nothing is missing; nothing was changed
+  // since the log was sealed.
   bool complete = false;
-  std::string note;  // why it is not complete, or what was ignored; "" if nothing
+  std::string note;             // why it is not complete, or what was ignored; "" if nothing
+  LogHead events{};             // all whole ones of the file
+  std::optional<LogSeal> seal;  // lcm-logger's logs have none, nor has a run that was cut off
+  bool altered = false;         // the log is not what its seal says
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
@@ -34,8 +40,14 @@ struct RunLog {
 /// its events stand; within bounded memory when they are in order.
 class RunLogReader {
  public:
+  /// What is compared with the seal.
+  enum class Compared {
+    kRun,   // scenario and steps; in real time the file, because STATUS counts there
+    kFile,  // all bytes of the file, once more at its end
+  };
+
   /// @throws InputError when the file cannot be read or is no event log
-  explicit RunLogReader(const std::filesystem::path& file);
+  explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun);
   ~RunLogReader();
 
   /// The next complete step, from 0 on; the bytes live as long as the reader. nullptr at the end.

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "scenario/wording.h"
+#include "services/runtime/lcm_sockets.h"
 #include "services/runtime/lcm_url.h"
 #include "services/runtime/multicast_route.h"
 #include "services/runtime/this_process.h"
@@ -35,11 +36,9 @@ std::string TitleOf(const std::string& scenario) {
 std::optional<std::string> BeaconUrl(const std::string& run_url) {
   const std::string meeting = MeetingUrl();
   const auto address = ParseMulticastUrl(meeting);
-  if (!address || !WhyNoMulticast(meeting).empty() || SameNetwork(meeting, run_url) ||
-      !MayBeAnnounced(run_url)) {
-    return std::nullopt;
-  }
-  return fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
+  if (!address || SameNetwork(meeting, run_url) || !MayBeAnnounced(run_url)) return std::nullopt;
+  const std::string url = fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
+  return WhyNoMulticast(url).empty() ? std::optional(url) : std::nullopt;
 }
 
 }  // namespace
@@ -51,7 +50,10 @@ Beacon::Beacon(Announcement run) {
   beacon_.scenario = TitleOf(run.scenario);
   beacon_.host = HostName();
   beacon_.pid = getpid();
-  if (const auto url = BeaconUrl(beacon_.url)) lcm_ = lcm_create(url->c_str());
+  const auto url = BeaconUrl(beacon_.url);
+  if (!url) return;
+  const LcmSockets sockets({}, ReachOf(*url));
+  lcm_ = lcm_create(url->c_str());
 }
 
 Beacon::~Beacon() {

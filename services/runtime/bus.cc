@@ -1,11 +1,14 @@
 #include "services/runtime/bus.h"
 
+#include <fcntl.h>
 #include <lcm/lcm.h>
 #include <poll.h>
 #include <sodium.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,8 +17,11 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
 #include "services/runtime/channel_filter.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/lcm_sockets.h"
 #include "services/runtime/multicast_route.h"
 #include "services/runtime/tcpq_client.h"
 
@@ -53,6 +59,23 @@ void WidenBuffer(int socket) {
   setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
 }
 
+/// errno if a process cannot have as many descriptors as LCM needs for a network, else 0.
+int LackOfDescriptors() {
+  std::array<int, 16> descriptors{};  // LCM has ten at most: sockets, pipes and those of a test
+  int error = 0;
+  for (int& descriptor : descriptors) {
+    descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (descriptor < 0) error = errno;
+  }
+  for (const int descriptor : descriptors) {
+    if (descriptor >= 0) close(descriptor);
+  }
+  return error;
+}
+
+// Whoever hears nothing for so long, five signs of life of a run, sees to it that it could.
+constexpr Duration kJoinAgainEvery = milliseconds(1000);
+
 }  // namespace
 
 Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
@@ -70,28 +93,33 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   {
     // From its first datagram on a socket takes nothing but LCM's test of itself. Not those of
     // mpudpm, which tells its ports on a channel of its own.
-    std::optional<FilterFromTheStart> filter;
-    if (url_.starts_with("udpm://")) filter.emplace(ChannelFilter({{"LCM_SELF_TEST"}}));
+    std::optional<LcmSockets> sockets;
+    if (url_.starts_with("udpm://")) {
+      const LcmSockets::Reach reach = ReachOf(url_);
+      routed_ = reach == LcmSockets::Reach::kRoute;
+      sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), reach);
+    }
     lcm_ = lcm_create(url_.c_str());
     if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
-    if (filter) {
-      sockets_ = filter->sockets();
-      filtered_ = filter->on_all();
+    if (sockets) {
+      sockets_ = sockets->receiving();
+      filtered_ = sockets->filtered();
     }
   }
   for (const int socket : sockets_) WidenBuffer(socket);
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
+    ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
   // LCM has tested itself by now. What has not been subscribed to need not reach its parser.
   Filter(ChannelFilter({}));
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
-    fmt::print(stderr,
-               "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
-               "parser (`fogline doctor` says more)\n",
-               url_);
+    Notice(fmt::format(
+        "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
+        "parser (`fogline doctor` says more)",
+        url_));
   }
 }
 
@@ -178,13 +206,32 @@ void Bus::Publish(const Topic& topic, Bytes bytes) {
                                          bytes.size(), kMaxMessageBytes));
   }
   if (seal_) bytes = seal_->Sign(topic.channel, bytes);
-  if (tcpq_) return tcpq_->Publish(topic.channel, bytes);
-  if (lcm_publish(lcm_, topic.channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
-      0) {
-    throw std::runtime_error(fmt::format("LCM cannot publish {} bytes on {}: {}", bytes.size(),
-                                         topic.channel, WhyNoMulticast(url_)));
-  }
+  errno = 0;
+  const bool sent = tcpq_ ? tcpq_->Publish(topic.channel, bytes)
+                          : lcm_publish(lcm_, topic.channel.c_str(), bytes.data(),
+                                        static_cast<unsigned>(bytes.size())) == 0;
+  if (!sent) return OnFailedSend(errno);
+  if (failed_sends_.since) OnSentAgain();
   if (in_memory_ && !topic.handlers.empty()) ++waiting_;
+}
+
+void Bus::OnFailedSend(int error) {
+  ++failed_sends_.count;
+  failed_sends_.error = tcpq_ ? tcpq_->trouble() : std::strerror(error);
+  if (!failed_sends_.since) failed_sends_.since = Clock::now();
+}
+
+void Bus::OnSentAgain() {
+  failed_sends_.since.reset();
+  if (!routed_) return;
+  for (const int socket : sockets_) JoinAgain(socket, url_);
+}
+
+void Bus::JoinAgainIfSilent() {
+  const TimePoint now = Clock::now();
+  if (now - std::max(now_, joined_) < kJoinAgainEvery) return;
+  joined_ = now;
+  for (const int socket : sockets_) JoinAgain(socket, url_);
 }
 
 bool Bus::Wait(Duration timeout) {
@@ -192,7 +239,10 @@ bool Bus::Wait(Duration timeout) {
     if (HandleDue()) return true;
     timeout = std::min(timeout, faults_->NextDue() - Clock::now());
   }
-  if (waiting_ == 0 && !Readable(timeout)) return faults_ && HandleDue();
+  if (waiting_ == 0 && !Readable(timeout)) {
+    if (routed_) JoinAgainIfSilent();
+    return faults_ && HandleDue();
+  }
   now_ = Clock::now();
   Handle();
   return true;

@@ -65,7 +65,8 @@ class Bus {
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
-  /// Sends bytes; they are copied before it returns.
+  /// Sends bytes; they are copied before it returns. What cannot be sent is lost, as on a bad
+  /// network, and counted.
   /// @throws std::runtime_error if there are more than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
@@ -73,6 +74,14 @@ class Bus {
   struct Topic;
   Topic& TopicOf(std::string_view channel);
   void Publish(const Topic& topic, Bytes bytes);
+
+  /// Messages that could not be sent.
+  struct FailedSends {
+    std::int64_t count = 0;          // since the beginning
+    std::string error;               // why the last one could not
+    std::optional<TimePoint> since;  // nothing could be sent since then; none if the last one was
+  };
+  const FailedSends& failed_sends() const { return failed_sends_; }
 
   /// Handles one message, waiting for it up to `timeout`. @return whether there was one.
   bool Wait(Duration timeout);
@@ -99,6 +108,9 @@ class Bus {
 
  private:
   bool Readable(Duration timeout);
+  void OnFailedSend(int error);
+  void OnSentAgain();
+  void JoinAgainIfSilent();
   void Handle();
   bool HandleDue();
   /// What the signature vouches for; nothing if the message is refused.
@@ -118,6 +130,9 @@ class Bus {
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
+  bool routed_ = false;       // the group is heard and reached as the route leads, which may change
+  TimePoint joined_{};        // when it was seen to last that the group is joined there
+  FailedSends failed_sends_;
   // Of memq, which nobody but this object publishes on: messages that wait to be handled.
   bool in_memory_;
   std::int64_t waiting_ = 0;

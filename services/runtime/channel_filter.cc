@@ -2,8 +2,6 @@
 
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -116,20 +114,7 @@ std::vector<sock_filter> WholeMessages() {
   };
 }
 
-thread_local FilterFromTheStart* at_bind = nullptr;
-
 }  // namespace
-
-FilterFromTheStart::FilterFromTheStart(std::vector<sock_filter> program)
-    : program_(std::move(program)) {
-  at_bind = this;
-}
-FilterFromTheStart::~FilterFromTheStart() { at_bind = nullptr; }
-
-void FilterFromTheStart::Take(int socket) {
-  refused_ = !AttachFilter(socket, program_) || refused_;
-  sockets_.push_back(socket);
-}
 
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program = WholeMessages();
@@ -164,9 +149,3 @@ bool AttachFilter(int socket, std::vector<sock_filter> program) {
 }
 
 }  // namespace fogline
-
-// In place of the C library's, also for LCM: nothing arrives before a socket is bound.
-extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
-  if (fogline::at_bind != nullptr) fogline::at_bind->Take(socket);
-  return static_cast<int>(syscall(SYS_bind, socket, address, size));
-}

@@ -19,27 +19,6 @@
 
 namespace fogline {
 
-/// While it lives, every socket that this thread binds (in LCM, which keeps its sockets to itself)
-/// has this filter before it can receive anything. One at a time in a thread.
-class FilterFromTheStart {
- public:
-  explicit FilterFromTheStart(std::vector<sock_filter> program);
-  ~FilterFromTheStart();
-  FilterFromTheStart(const FilterFromTheStart&) = delete;
-  FilterFromTheStart& operator=(const FilterFromTheStart&) = delete;
-
-  /// Called for each.
-  void Take(int socket);
-  const std::vector<int>& sockets() const { return sockets_; }
-  /// Whether there are sockets, and the kernel has taken the filter for every one.
-  bool on_all() const { return !sockets_.empty() && !refused_; }
-
- private:
-  std::vector<sock_filter> program_;
-  std::vector<int> sockets_;
-  bool refused_ = false;
-};
-
 /// What of a channel's data is wanted: that which has one of these texts at a place of its own.
 struct Contents {
   std::size_t offset = 0;

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "scenario/wording.h"
+#include "services/runtime/node.h"
 #include "services/runtime/possible_status.h"
 #include "services/runtime/this_process.h"
 
@@ -18,13 +19,11 @@ constexpr Duration kAnnounceEvery = milliseconds(50);
 constexpr Duration kRepeatEvery = milliseconds(200);
 // Requests for the whole scenario that come together are answered together.
 constexpr Duration kPartsEvery = milliseconds(10);
-// A role without a STATUS for this long (five heartbeats) counts as silent.
-constexpr Duration kSilent = milliseconds(1000);
-// If the runner itself has not looked for so long (the machine was suspended, its disk held it up,
-// Ctrl-Z), what it has not heard in that time means nothing.
-constexpr Duration kAway = milliseconds(500);
-// A STATUS may be so long on its way; later than that its sender is alive.
-constexpr Duration kOnItsWay = milliseconds(100);
+// A recorder is asked so often what it has written of the last step, when its word was lost.
+constexpr Duration kAskRecorderEvery = milliseconds(5);
+// In real time a tick may be early by what another one was late, which is less than a period; and
+// the world begins with the first one.
+constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
   for (const RoleInfo& info : kRoles) {
@@ -40,32 +39,19 @@ Conductor::Conductor(Bus& bus, ConductorOptions options)
       options_(std::move(options)),
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
+      signs_of_life_(Node::kHeartbeat),
+      deaf_(options_.realtime ? options_.period : Duration::zero()),
       host_(HostName()),
       began_(Clock::now()),
-      looked_(began_) {
+      pauses_(began_),
+      sequence_(options_.sequence),
+      progress_(options_.progress) {
   bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
     if (const RefusalCounter wrong = arrival.Wrong<status_t>()) return Refuse(wrong);
     OnStatus(*arrival.As<status_t>());
   });
   bus_.Subscribe(ChannelOf<resend_t>().name, [this](Bytes bytes) { OnResend(bytes); },
                  {.offset = kHeaderEnd, .texts = {EncodedText(ChannelOf<run_t>().name)}});
-}
-
-void Conductor::Attend(TimePoint now) {
-  const Duration away = now - looked_;
-  if (away > kAway) {
-    pauses_.push_back({.from = looked_, .to = now});
-    away_ = std::max(away_, away);
-  }
-  looked_ = now;
-}
-
-Duration Conductor::HeldAgainst(TimePoint since, TimePoint now) const {
-  Duration held = now - since;
-  for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
-    held -= pause->to - std::max(pause->from, since);
-  }
-  return held;
 }
 
 TimePoint Conductor::Poll(TimePoint now) {
@@ -79,16 +65,48 @@ TimePoint Conductor::Poll(TimePoint now) {
   if (phase_ == Phase::kJoining && ready) {
     phase_ = Phase::kRunning;
     progressed_ = now;
+    going_since_ = now;
   }
+  // A recorder that reads a long log says how far it is.
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
-      HeldAgainst(began_, now) > options_.join_limit) {
+      HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
+  }
+  if (const Bus::FailedSends& failed = bus_.failed_sends(); failed.count != own_.sends_failed) {
+    own_.sends_failed = failed.count;
+    own_.send_error = failed.error;
+  }
+  if (const auto since = bus_.failed_sends().since;
+      since && HeldAgainst(*since, now) > options_.stall_limit) {
+    Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *since),
+                     own_.send_error));
   }
   if (phase_ == Phase::kRunning && HeldAgainst(progressed_, now) > options_.stall_limit) {
     Fail(Culprit(now));
   }
   if (phase_ == Phase::kJoining || phase_ == Phase::kRunning) AnnounceWhenDue(now);
-  return std::min(announce_at_, now + kAnnounceEvery);
+  FinishWhenRecorded(now);
+  return std::min(announce_at_, ask_recorder_at_.value_or(now + kAnnounceEvery));
+}
+
+void Conductor::FinishWhenRecorded(TimePoint now) {
+  const auto& world = member(Role::kWorld).status;
+  const auto& recorder = member(Role::kRecorder).status;
+  const bool under_way = phase_ == Phase::kJoining || phase_ == Phase::kRunning;
+  if (!under_way || !world || world->state != status_t::DONE) return;
+  if (options_.realtime || (recorder && recorder->header.step >= world->header.step)) {
+    return OnDone();
+  }
+  if (ask_recorder_at_ && now >= *ask_recorder_at_) {
+    resend_t question{};
+    question.header = {.run_id = options_.run_id, .step = world->header.step, .utime = 0};
+    question.channel = ChannelOf<status_t>().name;
+    question.count = 1;
+    question.requester = NameOf(Role::kRunner);
+    Encode(question, buffer_);
+    bus_.Publish(ChannelOf<resend_t>().name, buffer_);
+  }
+  if (!ask_recorder_at_ || now >= *ask_recorder_at_) ask_recorder_at_ = now + kAskRecorderEvery;
 }
 
 void Conductor::AnnounceWhenDue(TimePoint now) {
@@ -101,13 +119,9 @@ void Conductor::AnnounceWhenDue(TimePoint now) {
   announce_at_ = now + (going ? kRepeatEvery : kAnnounceEvery);
 }
 
-bool Conductor::IsExternal(Role role) const {
-  return std::ranges::find(options_.external, role) != options_.external.end();
-}
-
 bool Conductor::AllReady(TimePoint now) const {
   return std::ranges::none_of(kRoles, [&](const RoleInfo& info) {
-    return Lacks(info.role, now) || member(info.role).rival;
+    return Lacks(info.role, now) || HasRival(info.role, now);
   });
 }
 
@@ -131,8 +145,8 @@ std::string Conductor::NotReady() const {
   for (const RoleInfo& info : kRoles) {
     const auto& status = member(info.role).status;
     if (status && status->state != status_t::WAITING) continue;
-    names +=
-        fmt::format("{}{}{}", names.empty() ? "" : ", ", info.name, status ? "" : " (never heard)");
+    names += fmt::format("{}{}{}{}", names.empty() ? "" : ", ", info.name,
+                         status ? "" : " (never heard)", HindranceOf(info.role));
   }
   return names;
 }
@@ -154,6 +168,22 @@ Refusals Conductor::Refused() const {
   return refused;
 }
 
+std::vector<SendTrouble> Conductor::SendTroubles() const {
+  std::vector<SendTrouble> troubles;
+  const auto add = [&troubles](std::string_view role, const status_t& status) {
+    if (status.sends_failed == 0) return;
+    if (troubles.empty() || troubles.back().role != role) troubles.push_back({std::string(role)});
+    troubles.back().count += status.sends_failed;
+    troubles.back().error = status.send_error;
+  };
+  for (const RoleInfo& info : kRoles) {
+    for (const status_t& status : member(info.role).dead) add(info.name, status);
+    if (const auto& status = member(info.role).status) add(info.name, *status);
+  }
+  add("runner", own_);
+  return troubles;
+}
+
 std::string Conductor::KeyTrouble() const {
   return SignatureTrouble({.not_signed = Total(&status_t::not_signed) + own_.not_signed,
                            .badly_signed = Total(&status_t::badly_signed) + own_.badly_signed,
@@ -167,6 +197,9 @@ void Conductor::Fail(std::string error) {
   phase_ = Phase::kFailed;
   error_ = std::move(error);
   if (const std::string trouble = KeyTrouble(); !trouble.empty()) error_ += "\n  " + trouble;
+  if (const auto troubles = SendTroubles(); !troubles.empty()) {
+    error_ += "\n  messages that could not be sent: " + Text(troubles);
+  }
 }
 
 void Conductor::OnStatus(const status_t& heard) {
@@ -174,15 +207,18 @@ void Conductor::OnStatus(const status_t& heard) {
     strangers_.Hear(heard);
     return Refuse(&status_t::foreign);
   }
-  if (!IsPossible(heard) || heard.header.step > options_.steps)
+  const TimePoint now = Clock::now();
+  if (!IsPossible(heard) || heard.header.step > NewestPossible(now))
     return Refuse(&status_t::out_of_window);
   status_t status = heard;  // with texts as they may be printed
   status.host = EscapeControls(heard.host);
   status.error = EscapeControls(heard.error);
+  status.send_error = EscapeControls(heard.send_error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
-  if (phase_ != Phase::kJoining && phase_ != Phase::kRunning) return;
-  const TimePoint now = Clock::now();
+  // After the end only the recorder has something to say: what it has written in the end.
+  const bool over = phase_ != Phase::kJoining && phase_ != Phase::kRunning;
+  if (over && role != Role::kRecorder) return;
   Attend(now);
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
@@ -199,6 +235,9 @@ void Conductor::OnStatus(const status_t& heard) {
   // A role that catches up makes progress, too. It starts below what its predecessor had done.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
+  signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
+                       now);
+  deaf_.Heard(*role, status, now);
   member.status = status;
   member.heard = now;
   const bool decides = *role == Role::kWorld || *role == Role::kArbitrator;
@@ -208,73 +247,36 @@ void Conductor::OnStatus(const status_t& heard) {
     announce_at_ = now;
   }
   if (on_status_) on_status_(status);
+  if (options_.same_build) {
+    if (const auto other = OtherBuildOf(*role, status, options_.builds)) {
+      return Fail(other->Text() + " (--same-build)");
+    }
+  }
   if (member.status->state == status_t::FAILED) return OnFailure(*role, status);
-  if (*role == Role::kWorld && member.status->state == status_t::DONE) phase_ = Phase::kDone;
+  FinishWhenRecorded(now);
+}
+
+std::int64_t Conductor::NewestPossible(TimePoint now) const {
+  if (!options_.realtime || options_.period == Duration::zero()) return options_.steps;
+  const Duration going = phase_ == Phase::kJoining ? Duration::zero() : now - going_since_;
+  return std::min(options_.steps, going / options_.period + kEarly);
+}
+
+void Conductor::OnDone() {
+  for (const RoleInfo& info : kRoles) {
+    const auto deaf = deaf_.AtTheEnd(info.role);
+    if (!deaf) continue;
+    const status_t& status = *member(info.role).status;
+    return Fail(fmt::format("{} (pid {} on {}) is deaf at the end of the run: it {}", info.name,
+                            status.pid, status.host, Text(*deaf)));
+  }
+  phase_ = Phase::kDone;
 }
 
 void Conductor::OnFailure(Role role, const status_t& status) {
   // In real time the cars are under way: what fails is lost, and the others know what to do then.
   if (GoesOnWithout(role)) return;
   Fail(fmt::format("{}: {}", status.role, status.error));
-}
-
-bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
-  Member& member = members_[static_cast<std::size_t>(role)];
-  const auto same = [&](const status_t& other) { return other.instance == status.instance; };
-  if (const auto dead = std::ranges::find_if(member.dead, same); dead != member.dead.end()) {
-    // What it said before its death may come late. If it speaks on, it was not dead.
-    if (IsExternal(role) && member.status && status.sequence > dead->sequence &&
-        HeldAgainst(member.replaced_at, now) > kOnItsWay) {
-      Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
-                       member.status->pid, member.status->host, status.pid, status.host));
-    }
-    return false;
-  }
-  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
-    return false;
-  }
-  if (!member.status) return true;
-  if (same(*member.status)) {
-    const bool speaks = status.sequence > member.status->sequence;
-    if (speaks && member.rival && HeldAgainst(member.rival_since, now) > kOnItsWay) {
-      Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", status.role,
-                       status.pid, status.host, member.rival->pid, member.rival->host));
-    }
-    return true;
-  }
-  if (!member.rival || !same(*member.rival)) {
-    member.rival = status;
-    member.rival_since = now;
-  }
-  if (!IsExternal(role) || HeldAgainst(member.heard, now) <= kSilent) return false;
-  if (++member.replaced > options_.restarts) {
-    Fail(
-        fmt::format("{} was started again as pid {} on {} {}, after {} restarts "
-                    "(--restarts)",
-                    status.role, status.pid, status.host, Where(), options_.restarts));
-    return false;
-  }
-  member.dead.push_back(std::move(*member.status));
-  member.status.reset();
-  member.rival.reset();
-  member.replaced_at = now;
-  return true;
-}
-
-void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
-  Member& member = members_[static_cast<std::size_t>(role)];
-  member.pids.push_back(pid);
-  if (member.status && member.status->pid == pid && member.status->host == host_) {
-    member.dead.push_back(std::move(*member.status));
-    member.status.reset();
-  }
-  member.rival.reset();
-  progressed_ = now;  // somebody is at work to get the run going again
-}
-
-void Conductor::Launched(Role role, std::int32_t pid, TimePoint now) {
-  std::erase(members_[static_cast<std::size_t>(role)].pids, pid);
-  progressed_ = now;
 }
 
 void Conductor::OnResend(Bytes bytes) {
@@ -298,18 +300,32 @@ void Conductor::Announce(std::size_t part, std::int64_t answer_to) {
 }
 
 void Conductor::Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to) {
+  const TimePoint now = pauses_.Attend(Clock::now());
   run_t run = MakeRunPart(options_.run_id, phase, options_.pace, hash_, parts_, part);
   run.sequence = ++sequence_;
   run.answer_to = answer_to;
   run.progress = progress_;
   run.realtime = options_.realtime;
   run.minimal_risk = minimal_risk_;
+  run.stall_ms = Milliseconds(options_.stall_limit);
+  for (const Role role : options_.external) {
+    run.external.emplace_back(NameOf(role));
+    run.holder.push_back(HolderOf(role, now));
+  }
+  run.num_external = static_cast<std::int32_t>(run.external.size());
   Encode(run, buffer_);
   bus_.Publish(ChannelOf<run_t>().name, buffer_);
 }
 
 std::string Conductor::Where() const {
   return step() < 0 ? "before step 0" : fmt::format("at step {}", step());
+}
+
+std::string Conductor::HindranceOf(Role role) const {
+  const Member& of = member(role);
+  if (!of.hindrance.empty()) return "; " + of.hindrance;
+  const bool left = !of.status && !of.dead.empty() && of.dead.back().state == status_t::LEFT;
+  return left ? fmt::format("; it has left: {}", of.dead.back().error) : "";
 }
 
 std::string Conductor::Culprit(TimePoint now) const {
@@ -320,9 +336,9 @@ std::string Conductor::Culprit(TimePoint now) const {
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
     const Member& consumer = member(waiting);
     if (!consumer.status || HeldAgainst(consumer.heard, now) > kSilent) {
-      return fmt::format("step {}: {} is silent (last heard: step {}, {:.1f} s ago)", stuck,
+      return fmt::format("step {}: {} is silent (last heard: step {}, {:.1f} s ago){}", stuck,
                          NameOf(waiting), consumer.status ? consumer.status->header.step : -1,
-                         Seconds(now - consumer.heard));
+                         Seconds(now - consumer.heard), HindranceOf(waiting));
     }
     stuck = consumer.status->header.step + 1;
     const std::size_t place = ChannelNamed(consumer.status->waiting_for);
@@ -345,8 +361,9 @@ std::string Conductor::Culprit(TimePoint now) const {
             ? Known(channel->name, consumer.status->last_heard_step,
                     now - consumer.heard + milliseconds(consumer.status->last_heard_ms))
             : Known("the log", source.status ? source.status->header.step : -1, now - source.heard);
-    return fmt::format("step {}: {} waits for {} from {} (last heard: step {}, {:.1f} s ago)",
-                       stuck, NameOf(waiting), what, NameOf(producer), last, Seconds(age));
+    return fmt::format("step {}: {} waits for {} from {} (last heard: step {}, {:.1f} s ago){}",
+                       stuck, NameOf(waiting), what, NameOf(producer), last, Seconds(age),
+                       HindranceOf(producer));
   }
   return fmt::format("step {}: every role waits for another", stuck);
 }

@@ -17,24 +17,22 @@ std::string ToHex(const std::array<unsigned char, kHashBytes>& hash) {
 
 }  // namespace
 
-struct Digest::State {
+struct Hash::State {
   crypto_generichash_state hash;
 };
 
-Digest::Digest() : state_(std::make_unique<State>()) {
+Hash::Hash() : state_(std::make_unique<State>()) {
   crypto_generichash_init(&state_->hash, nullptr, 0, kHashBytes);
 }
-Digest::~Digest() = default;
-Digest::Digest(Digest&&) noexcept = default;
-Digest& Digest::operator=(Digest&&) noexcept = default;
+Hash::~Hash() = default;
+Hash::Hash(Hash&&) noexcept = default;
+Hash& Hash::operator=(Hash&&) noexcept = default;
 
-void Digest::Add(Bytes message) {
-  crypto_generichash_update(&state_->hash, message.data(), kRunIdOffset);
-  crypto_generichash_update(&state_->hash, message.data() + kStepOffset,
-                            message.size() - kStepOffset);
+void Hash::Add(Bytes piece) {
+  crypto_generichash_update(&state_->hash, piece.data(), piece.size());
 }
 
-std::string Digest::Hex() const {
+std::string Hash::Hex() const {
   crypto_generichash_state copy = state_->hash;
   std::array<unsigned char, kHashBytes> hash{};
   crypto_generichash_final(&copy, hash.data(), hash.size());

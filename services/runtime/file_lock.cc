@@ -13,16 +13,21 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 
 namespace fogline {
 namespace {
 
 // A file that is removed or replaced between opening and locking it is opened again.
 constexpr int kTries = 10;
+// A lock that others have is tried again this often.
+constexpr Duration kTryEvery = milliseconds(10);
 
 /// @throws InputError
 int Open(const std::filesystem::path& path, std::string_view option) {
@@ -30,8 +35,9 @@ int Open(const std::filesystem::path& path, std::string_view option) {
   const bool is_folder = std::filesystem::is_directory(path, ignored);
   const int fd = open(path.c_str(), (is_folder ? O_RDONLY : O_RDWR | O_CREAT) | O_CLOEXEC, 0666);
   if (fd >= 0) return fd;
+  ThrowIfExhausted(errno, PathText(path));
   throw InputError(
-      fmt::format("{}: error: {}: cannot write: {}", path.string(), option, std::strerror(errno)));
+      fmt::format("{}: error: {}: cannot write: {}", PathText(path), option, std::strerror(errno)));
 }
 
 /// Whether a file still has the name by which it was opened.
@@ -73,14 +79,20 @@ std::optional<pid_t> HolderOf(int fd) {
 }  // namespace
 
 FileLock::FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
-                   std::string_view owner) {
+                   std::string_view owner, Duration patience) {
+  const TimePoint end = Clock::now() + patience;
   for (int tries = 1;; ++tries) {
     fd_ = Open(path, option);
-    if (!Lock(fd_, kind)) {
+    while (!Lock(fd_, kind)) {
+      if (Clock::now() < end) {
+        std::this_thread::sleep_for(kTryEvery);
+        continue;
+      }
       const std::optional<pid_t> holder = HolderOf(fd_);
       close(fd_);
-      throw InputError(fmt::format("{}: error: {}: is being written by another {}{}", path.string(),
-                                   option, owner, holder ? fmt::format(" (pid {})", *holder) : ""));
+      throw InputError(fmt::format("{}: error: {}: is being written by another {}{}",
+                                   PathText(path), option, owner,
+                                   holder ? fmt::format(" (pid {})", *holder) : ""));
     }
     if (IsFileOf(path, fd_) || tries == kTries) return;
     close(fd_);

@@ -1,9 +1,9 @@
 #include "services/runtime/lcm_url.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -59,23 +59,43 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
   return true;
 }
 
-/// An address is of this machine if a socket can be bound to it.
+/// Whether an address is one of this machine's interfaces, or of loopback, where all of 127.0.0.0/8
+/// is this machine.
 bool IsOfThisMachine(in_addr numeric) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr = numeric;
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool bound = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  close(probe);
-  return bound;
+  if (ntohl(numeric.s_addr) >> 24 == IN_LOOPBACKNET) return true;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == numeric.s_addr;
+  }
+  freeifaddrs(interfaces);
+  return found;
 }
 
-bool IsRelayOfThisMachine(std::string_view place) {
-  const std::string_view host = TakeUntil(':', place);
-  const auto address = ParseAddress(host);
-  const auto port = place.empty() ? tcpq::kDefaultPort : ParseNumber<std::uint16_t>(place);
-  return address && address->s_addr != htonl(INADDR_ANY) && port && *port != 0 &&
-         IsOfThisMachine(*address);
+/// Where a tcpq:// URL says that a relay is, with LCM's defaults where it says nothing.
+struct RelayPlace {
+  std::string_view host;
+  std::optional<std::uint16_t> port;  // none if it is no number
+
+  bool operator==(const RelayPlace&) const = default;
+};
+
+std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
+  if (!url.starts_with(kTcpq)) return std::nullopt;
+  url.remove_prefix(kTcpq.size());
+  if (url.empty()) url = "127.0.0.1";
+  RelayPlace place{.host = TakeUntil(':', url), .port = tcpq::kDefaultPort};
+  if (!url.empty()) place.port = ParseNumber<std::uint16_t>(url);
+  return place;
+}
+
+bool IsRelayOfThisMachine(std::string_view url) {
+  const auto place = ParseRelayUrl(url);
+  if (!place || !place->port || *place->port == 0) return false;
+  const auto address = ParseAddress(place->host);
+  return address && address->s_addr != htonl(INADDR_ANY) && IsOfThisMachine(*address);
 }
 
 }  // namespace
@@ -117,12 +137,14 @@ bool SameNetwork(std::string_view a, std::string_view b) {
   const auto one = ParseMulticastUrl(a);
   const auto other = ParseMulticastUrl(b);
   if (one && other) return one->group == other->group && one->port == other->port;
+  const auto relay = ParseRelayUrl(a);
+  if (relay && relay->port) return relay == ParseRelayUrl(b);
   return TakeUntil('?', a) == TakeUntil('?', b);
 }
 
 bool MayBeAnnounced(std::string_view url) {
   if (url.size() > kMaxAnnounced) return false;
-  if (url.starts_with(kTcpq)) return IsRelayOfThisMachine(url.substr(kTcpq.size()));
+  if (url.starts_with(kTcpq)) return url != kTcpq && IsRelayOfThisMachine(url);
   const auto address = ParseMulticastUrl(url);
   return address && IsMulticast(address->group) && address->port != 0 && address->ttl <= 1;
 }

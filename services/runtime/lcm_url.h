@@ -37,7 +37,8 @@ struct MulticastAddress {
 /// an option that LCM does not know.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
-/// Whether two URLs name one network: group and port of udpm, else the URL without its options.
+/// Whether two URLs name one network: group and port of udpm, host and port of tcpq, else the URL
+/// without its options.
 bool SameNetwork(std::string_view a, std::string_view b);
 
 /// Whether a program may go to this network because a message says so: a multicast group whose

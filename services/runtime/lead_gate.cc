@@ -37,7 +37,7 @@ void LeadGate::Configure(const Scenario& scenario, std::int64_t run_id) {
 }
 
 void LeadGate::OnGo(const run_t& run, TimePoint now) {
-  begun_before_ = std::max(begun_before_, run.progress);
+  BegunBefore(run.progress);
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);

@@ -3,6 +3,7 @@
 // after the end.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -19,6 +20,8 @@ class LeadGate {
   LeadGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
+  /// This step has begun, by a world that was there before this one.
+  void BegunBefore(std::int64_t step) { begun_before_ = std::max(begun_before_, step); }
   void OnGo(const run_t& run, TimePoint now);
   bool started() const { return started_; }
 
@@ -49,7 +52,7 @@ class LeadGate {
   double pace_ = 0;
   TimePoint start_{};
   std::int64_t recorded_ = -1;
-  std::int64_t begun_before_ = -1;  // by a world that was there before this one
+  std::int64_t begun_before_ = -1;
   std::optional<std::int64_t> final_;
   std::optional<TimePoint> ask_at_;
   Duration patience_{};

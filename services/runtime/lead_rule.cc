@@ -10,6 +10,11 @@ void LeadRule::OnGo(const run_t& run, TimePoint now) {
   Advance(now);
 }
 
+void LeadRule::OnProgress() {
+  gate_.BegunBefore(progress());
+  LockstepRule::OnProgress();
+}
+
 TimePoint LeadRule::Poll(TimePoint now) {
   if (gate_.started()) Expect(next());
   if (gate_.Finished(next()) && InputsReady()) SetState(status_t::DONE);

@@ -9,10 +9,13 @@ namespace fogline {
 
 class LeadRule final : public LockstepRule {
  public:
-  LeadRule(Node& node, LeadGate& gate) : LockstepRule(node), gate_(gate) {}
+  LeadRule(Node& node, LeadGate& gate) : LockstepRule(node), gate_(gate) {
+    gate_.BegunBefore(progress());
+  }
 
   void OnGo(const run_t& run, TimePoint now) override;
   TimePoint Poll(TimePoint now) override;
+  void OnProgress() override;
   void SetFinal(std::int64_t step) override { gate_.SetFinal(step); }
 
  private:

@@ -12,6 +12,9 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
+#include "services/runtime/lcm_sockets.h"
+
 namespace fogline {
 namespace {
 
@@ -60,7 +63,10 @@ std::string RouteError(const std::string& address) {
   to.sin_port = htons(kAnyPort);
   to.sin_addr = *numeric;
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return std::strerror(errno);
+  if (probe < 0) {
+    ThrowIfExhausted(errno, "cannot look for a route");
+    return std::strerror(errno);
+  }
   const int result = connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
   const std::string error = result == 0 ? "" : std::strerror(errno);
   close(probe);
@@ -98,6 +104,29 @@ std::string RouteInterface(std::string_view table, const std::string& address) {
   return best;
 }
 
+bool HasGroup(std::string_view table, std::string_view interface, const std::string& group) {
+  const auto numeric = ToAddress(group);
+  if (!numeric) return false;
+  std::istringstream lines{std::string(table)};
+  std::string line;
+  std::getline(lines, line);  // headings
+  bool here = false;
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    if (!line.starts_with('\t')) {  // "2	eth0      :     3      V3", and then its groups
+      std::string name;
+      fields >> name >> name;
+      here = name == interface;
+      continue;
+    }
+    std::uint32_t address =
+        0;  // "				434CFFEF     1 0:00000000		0"
+    fields >> std::hex >> address;
+    if (here && fields && address == numeric->s_addr) return true;
+  }
+  return false;
+}
+
 std::string WhyNoMulticast(std::string_view url) {
   const auto group = GroupOf(url);
   if (!group || !ToAddress(*group)) return "";
@@ -105,6 +134,7 @@ std::string WhyNoMulticast(std::string_view url) {
     return fmt::format("{} is no multicast group (224.0.0.0 to 239.255.255.255): {}", *group,
                        InPlaceOfUnicast(url));
   }
+  if (ReachOf(std::string(url)) == LcmSockets::Reach::kLoopback) return "";
   if (RouteError(*group).empty()) return "";
   return fmt::format(
       "this machine has no route for multicast to {}; as root: \"{}\" for traffic on this machine "

@@ -28,6 +28,9 @@ std::string RouteError(const std::string& address);
 /// prefix, then lowest metric), "" if there is no such route or `address` is none.
 std::string RouteInterface(std::string_view table, const std::string& address);
 
+/// Whether an interface receives a multicast group, by a table as /proc/net/igmp has it.
+bool HasGroup(std::string_view table, std::string_view interface, const std::string& group);
+
 /// Why a udpm:// URL cannot be opened, and what to do about it; "" if nothing is known against it.
 std::string WhyNoMulticast(std::string_view url);
 

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "services/runtime/build_id.h"
 #include "services/runtime/lockstep_rule.h"
 #include "services/runtime/this_process.h"
 
@@ -26,9 +27,8 @@ constexpr Duration kPartPatience = milliseconds(20);
 constexpr std::size_t kMaxErrorBytes = 700;
 // Announcements that repeat are answered this often at most.
 constexpr Duration kAnnouncedPatience = milliseconds(20);
-// The runner repeats itself five times a second. A role that hears nothing for so long is an
-// orphan: longer than a busy disk holds a runner up.
-constexpr Duration kRunnerSilence = milliseconds(15'000);
+// What could not be sent is told no later than that: a run may be over before the next heartbeat.
+constexpr Duration kTellSends = milliseconds(20);
 // One that has not heard all of the scenario yet loses nothing and looks for another run.
 constexpr Duration kAnnouncerSilence = milliseconds(5'000);
 
@@ -52,7 +52,8 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
       chosen_(run_id.has_value()),
       run_id_(run_id),
       bound_(chosen_),
-      fresh_(!bus.secured()) {
+      fresh_(!bus.secured()),
+      ends_with_runner_(chosen_ && EndsWithItsParent()) {
   for (std::size_t i = 0; i < kChannels.size(); ++i) {
     const ChannelInfo& channel = kChannels[i];
     if (channel.pace != Pace::kStep) continue;
@@ -69,6 +70,7 @@ Node::Node(Bus& bus, Role role, std::optional<std::int64_t> run_id)
   status_.pid = getpid();
   randombytes_buf(&status_.instance, sizeof(status_.instance));
   status_.version = FOGLINE_VERSION;
+  status_.build_id = OwnBuildId();
   status_.type_fingerprint = TypeFingerprint();
   status_.header.step = -1;
   status_.last_heard_step = -1;
@@ -87,21 +89,24 @@ void Node::Read(std::size_t channel, bool on_demand) {
   bus_.Subscribe(info.name, [this, index](Arrival& arrival) { OnInput(index, arrival); });
 }
 
+std::string Node::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
+  return fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
+                     channel.name, NameOf(channel.from));
+}
+
 std::unique_ptr<FireRule> Node::MakeRule(const Scenario& /*scenario*/) {
   return std::make_unique<LockstepRule>(*this);
 }
 
 TimePoint Node::Poll(TimePoint now) {
-  if (left_) return now + kHeartbeat;
-  if (runner_heard_ != TimePoint{}) {
-    const Duration silence = now - runner_heard_;
-    if (Waits()) {
-      if (silence > kAnnouncerSilence && !chosen_) Unbind();
-    } else if (silence > kRunnerSilence) {
-      Fail(fmt::format("the runner has been silent for {} s", Milliseconds(kRunnerSilence) / 1000));
-      return now + kHeartbeat;
-    }
+  if (left_ || released()) return now + kHeartbeat;
+  runner_.Attend(now);
+  if (Waits() && runner_.Silence(now) > kAnnouncerSilence && !chosen_) Unbind();
+  if (!Waits() && runner_.Gone(now) && !ends_with_runner_) {
+    Fail(fmt::format("the runner has been silent for {:.0f} s", Seconds(runner_.Silence(now))));
   }
+  CheckSends(now);
+  if (left_) return now + kHeartbeat;
   TimePoint next = now + kHeartbeat;
   if (Running()) {
     next = std::min(next, rule_->Poll(now));
@@ -114,6 +119,20 @@ TimePoint Node::Poll(TimePoint now) {
   }
   if (now >= status_at_) PublishStatus();
   return std::min(next, status_at_);
+}
+
+void Node::CheckSends(TimePoint now) {
+  const Bus::FailedSends& failed = bus_.failed_sends();
+  if (failed.count == status_.sends_failed) return;
+  status_at_ = std::min(status_at_, said_at_ + kTellSends);
+  if (left_ || !failed.since || !runner_.Stalled(*failed.since, now)) return;
+  Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
+                   failed.error));
+}
+
+void Node::Release(const std::string& why) {
+  status_.error = why.substr(0, kMaxErrorBytes);
+  SetState(status_t::LEFT);
 }
 
 void Node::Leave() {
@@ -138,6 +157,7 @@ void Node::SetState(std::int8_t state) {
 
 void Node::PublishStatus() {
   const TimePoint now = Clock::now();
+  said_at_ = now;
   status_at_ = now + kHeartbeat;
   if (!bound_) return;  // nobody has announced a run yet
   BeforeStatus();
@@ -155,6 +175,8 @@ void Node::PublishStatus() {
     status_.cpu_ms = use.cpu_ms;
     status_.rss_bytes = use.rss_bytes;
   }
+  status_.sends_failed = bus_.failed_sends().count;
+  status_.send_error = bus_.failed_sends().error;
   Encode(status_, buffer_);
   bus_.Publish(ChannelOf<status_t>().name, buffer_);
 }
@@ -193,14 +215,17 @@ void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
 }
 
 void Node::OnRun(Bytes bytes) {
-  if (left_) return;  // and everything is closed
+  if (left_ || released()) return;  // and everything is closed
   run_t run{};
   if (const RefusalCounter wrong = Examine(bytes, run)) return Refuse(wrong);
+  const TimePoint now = Clock::now();
   if (bound_ ? run.header.run_id != *run_id_ : run.phase == run_t::STOP) {
+    OnOtherRun(run, now);
     return Refuse(&status_t::foreign);
   }
+  if (!bound_ && SeatIn(run, status_.role, status_.instance) != Seat::kFree) return;
   if (run.progress > steps_) return Refuse(&status_t::out_of_window);
-  const TimePoint now = Clock::now();
+  if (run.realtime && !IsSpeed(run.pace)) return Refuse(&status_t::malformed);
   if (!IsFresh(run, now)) return;
   if (status_.state == status_t::WAITING && run.phase != run_t::STOP && !parts_.Add(run)) {
     return Refuse(&status_t::malformed);
@@ -212,13 +237,26 @@ void Node::OnRun(Bytes bytes) {
   if (news && run.phase == run_t::GO && Running()) rule_->OnGo(run, now);
 }
 
+void Node::OnOtherRun(const run_t& run, TimePoint now) {
+  now = runner_.Attend(now);
+  const bool may_go = bound_ && !chosen_ && runner_.Silent(now) && run.phase != run_t::STOP;
+  if (!may_go || SeatIn(run, status_.role, status_.instance) != Seat::kFree) return;
+  // What is signed may be a repetition: it is to answer this process.
+  if (bus_.secured() && run.answer_to != status_.instance) return AskWhetherThere(run, now);
+  Release(fmt::format("the runner of run {} has been silent for {:.1f} s; run {} waits for the {}",
+                      *run_id_, Seconds(runner_.Silence(now)), run.header.run_id, status_.role));
+}
+
 bool Node::IsFresh(const run_t& run, TimePoint now) {
   if (fresh_) return true;
   fresh_ = run.answer_to == status_.instance;
-  if (!fresh_ && questions_.Take(now)) {
-    Ask(run.header.run_id, ChannelOf<run_t>().name, {.first = 0, .count = 1});
-  }
+  if (!fresh_) AskWhetherThere(run, now);
   return fresh_;
+}
+
+void Node::AskWhetherThere(const run_t& run, TimePoint now) {
+  if (!questions_.Take(now)) return;
+  Ask(run.header.run_id, ChannelOf<run_t>().name, {.first = 0, .count = 1});
 }
 
 bool Node::TakeNews(const run_t& run, TimePoint now) {
@@ -227,12 +265,14 @@ bool Node::TakeNews(const run_t& run, TimePoint now) {
     return false;
   }
   sequence_ = run.sequence;
-  runner_heard_ = now;
+  runner_.Heard(run, now);
   progress_ = std::max(progress_, run.progress);
   minimal_risk_ = run.minimal_risk;
   if (rule_) rule_->OnProgress();
   if (run.phase == run_t::STOP) {
     Leave();
+  } else if (!chosen_ && SeatIn(run, status_.role, status_.instance) == Seat::kTaken) {
+    Release(fmt::format("another process is the {} of run {}", status_.role, run.header.run_id));
   } else if (status_.state != status_t::WAITING && run.phase == run_t::PREPARE &&
              run.header.step == 0 && now >= announced_at_ + kAnnouncedPatience) {
     announced_at_ = now;
@@ -248,7 +288,7 @@ void Node::Unbind() {
   fresh_ = !bus_.secured();
   sequence_ = 0;
   progress_ = -1;
-  runner_heard_ = {};
+  runner_.Forget();
 }
 
 void Node::Join(const run_t& run) {
@@ -281,7 +321,7 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
   if (ReadInt64(bytes, 0) != inputs_[index].fingerprint) return Refuse(&status_t::wrong_type);
   if (ReadInt64(bytes, kRunIdOffset) != *run_id_) return Refuse(&status_t::foreign);
   const std::int64_t step = ReadInt64(bytes, kStepOffset);
-  if (step < 0) return Refuse(&status_t::out_of_window);
+  if (step < 0 || step >= steps_) return Refuse(&status_t::out_of_window);
   switch (rule_->Classify(index, step, bytes)) {
     case StepRing::Verdict::kDuplicate:
       ++status_.duplicates;
@@ -293,10 +333,7 @@ void Node::OnInput(std::size_t index, Arrival& arrival) {
       return;
     case StepRing::Verdict::kConflict: {
       if (const RefusalCounter wrong = Wrong(index, arrival)) return Refuse(wrong);
-      const ChannelInfo& channel = kChannels[inputs_[index].channel];
-      return Fail(
-          fmt::format("step {}: {} came twice with different contents: is there a second {}?", step,
-                      channel.name, NameOf(channel.from)));
+      return Fail(Contradiction(step, kChannels[inputs_[index].channel]));
     }
     case StepRing::Verdict::kNew:
       return TakeInput(index, step, arrival);

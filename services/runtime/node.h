@@ -18,6 +18,7 @@
 #include "services/runtime/bus.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/flood_gate.h"
+#include "services/runtime/runner_watch.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/step_ring.h"
 
@@ -27,7 +28,10 @@ class FireRule;
 
 class Node {
  public:
-  /// @param run_id take part in this run only; without it, in the first that is announced
+  /// It says how it is at least so often.
+  static constexpr Duration kHeartbeat = milliseconds(200);
+
+  /// @param run_id take part in this run only; without it, in the first that waits for the role
   Node(Bus& bus, Role role, std::optional<std::int64_t> run_id);
   virtual ~Node();
   Node(const Node&) = delete;
@@ -41,6 +45,14 @@ class Node {
   bool left() const { return left_; }
   /// It has not heard all of a scenario yet.
   bool Waits() const { return status_.state == status_t::WAITING; }
+  /// It takes no part in its run any more, and another node may take part in another one.
+  bool released() const { return status_.state == status_t::LEFT; }
+  /// Gives up its place in the run, and says why.
+  void Release(const std::string& why);
+  /// Whether its runner has been silent for so long that it may go to another run.
+  bool RunnerSilent(TimePoint now) { return runner_.Silent(runner_.Attend(now)); }
+  /// @pre it is in a run
+  std::int64_t run_id() const { return *run_id_; }
   /// Why the role failed, "" if it did not.
   const std::string& error() const { return status_.error; }
   Role role() const { return role_; }
@@ -85,6 +97,8 @@ class Node {
   virtual void BeforeStatus() {}
   /// Called once when the node leaves.
   virtual void OnLeave() {}
+  /// A message of a step that is not what is known of it already.
+  virtual std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const;
   /// Someone asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/, TimePoint /*now*/) {}
   /// Someone asks for these steps of a channel, whoever its producer is.
@@ -117,7 +131,6 @@ class Node {
   std::int64_t next() const { return next_; }
   /// Last step that the world has begun, as far as the runner knows; -1 before the first.
   std::int64_t progress() const { return progress_; }
-  std::int64_t run_id() const { return *run_id_; }
   const ScenarioParts& parts() const { return parts_; }
   std::int8_t state() const { return status_.state; }
   bool Running() const {
@@ -129,14 +142,18 @@ class Node {
   /// hundred a second.
   AnswerBudget budget_{2000, 500};
 
-  static constexpr Duration kHeartbeat = milliseconds(200);
-
  private:
   void Read(std::size_t channel, bool on_demand);
   void OnRun(Bytes bytes);
+  /// A run that is not this node's says something.
+  void OnOtherRun(const run_t& run, TimePoint now);
   /// Whether the runner can be believed to have said this just now, and not in an old run. Asks it,
   /// if that is not known.
   bool IsFresh(const run_t& run, TimePoint now);
+  /// Asks a runner to say something to this process.
+  void AskWhetherThere(const run_t& run, TimePoint now);
+  /// Fails if nothing could be sent for too long; has what could not be sent told soon.
+  void CheckSends(TimePoint now);
   /// Takes what the runner says of the run as a whole, if it says it for the first time.
   bool TakeNews(const run_t& run, TimePoint now);
   /// Forgets a run whose runner has fallen silent before all of it was known.
@@ -178,9 +195,11 @@ class Node {
 
   TimePoint part_at_{};       // when to ask for a part of the scenario
   TimePoint announced_at_{};  // when a repeated announcement was answered
+  TimePoint said_at_{};       // a STATUS, last
   TimePoint status_at_{};
   TimePoint use_at_{};
-  TimePoint runner_heard_{};
+  RunnerWatch runner_{Clock::now()};
+  const bool ends_with_runner_;  // which has started it: the kernel sees to that
 };
 
 }  // namespace fogline

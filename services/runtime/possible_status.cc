@@ -18,7 +18,8 @@ constexpr std::int64_t status_t::*kCounters[] = {
     &status_t::duplicates,     &status_t::ticks,           &status_t::ticks_late,
     &status_t::ticks_missed,   &status_t::deadline_misses, &status_t::jitter_p50_us,
     &status_t::jitter_p99_us,  &status_t::jitter_max_us,   &status_t::latency_p50_us,
-    &status_t::latency_p99_us, &status_t::latency_max_us,
+    &status_t::latency_p99_us, &status_t::latency_max_us,  &status_t::log_begin,
+    &status_t::log_bytes,      &status_t::sends_failed,
 };
 
 bool Counted(std::int64_t number) { return number >= 0 && number <= kMaxStep; }

@@ -6,6 +6,17 @@
 #include "services/runtime/culprit.h"
 
 namespace fogline {
+namespace {
+
+// A tick may be early by what another one was late, which is less than a period; and one that was
+// heard was on its way for a moment.
+constexpr std::int64_t kSlack = 2;
+// What the runner says of the progress is so old at most: five signs of life of the roles, of which
+// some are lost.
+constexpr Duration kHearsay = milliseconds(1000);
+
+}  // namespace
+
 Duration PeriodOf(const Scenario& scenario, double speed) {
   return duration_cast<Duration>(std::chrono::duration<double>(scenario.step_s / speed));
 }
@@ -16,6 +27,8 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
       step_us_(std::llround(scenario.step_s * kMicrosPerSecond)),
       limits_(scenario.health),
       clock_(period_, Clock::now()),
+      heard_(period_, kSlack),
+      told_(period_, kSlack + kHearsay / period_),
       tick_input_(static_cast<std::size_t>(
           std::ranges::find(inputs(), Role::kWorld,
                             [](const Input& input) { return kChannels[input.channel].from; }) -
@@ -25,6 +38,21 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
   const TimePoint began = clock_.At(Clock::now());
   const auto judged = std::ranges::count(inputs(), false, &Input::on_demand);
   health_.assign(static_cast<std::size_t>(judged), InputHealth(limits_, period_, began));
+  told_.Heard(progress(), Clock::now());
+}
+
+void RealtimeRule::OnProgress() { told_.Heard(progress(), Clock::now()); }
+
+std::int64_t RealtimeRule::NewestPossible(TimePoint now) const {
+  if (!heard_.known()) return told_.Newest(now);
+  const std::int64_t heard = heard_.Newest(now);
+  return clock_.Silence(now) <= kUnheard * period_ ? heard : std::max(heard, told_.Newest(now));
+}
+
+void RealtimeRule::Begun(std::int64_t step, TimePoint now) {
+  clock_.Heard(step, now);
+  heard_.Heard(step, now);
+  KnowOf(step);
 }
 
 StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
@@ -35,16 +63,14 @@ StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, B
   }
   // Of what is read on demand the newest counts, whatever its step.
   const bool late = from.on_demand ? step <= ring.newest()
-                                   : step + from.lag < next() ||
+                                   : step < next() - from.lag ||
                                          step <= ring.newest() - kRingSteps || ring.Has(step);
   if (late) {
     CountLate(input);
     return StepRing::Verdict::kLate;
   }
-  // Once ticks are heard nothing is from the future.
-  const std::int64_t newest = clock_.started() ? clock_.NewestPossible(Clock::now())
-                                               : std::max(next(), progress() + 1) + kRingSteps - 1;
-  return step <= newest ? StepRing::Verdict::kNew : StepRing::Verdict::kOutOfWindow;
+  return step <= NewestPossible(Clock::now()) ? StepRing::Verdict::kNew
+                                              : StepRing::Verdict::kOutOfWindow;
 }
 
 void RealtimeRule::CountLate(std::size_t input) {
@@ -54,11 +80,10 @@ void RealtimeRule::CountLate(std::size_t input) {
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   NoticeOwnPause(time);  // before anything is judged by a clock that has to stand still for it
-  newest_ = std::max(newest_, step);
-  if (inputs()[input].on_demand) return;
-  if (input == tick_input_) {
-    if (!clock_.started()) health_[input] = InputHealth(limits_, period_, time - paused_);
-    clock_.Tick(step, time);
+  if (inputs()[input].on_demand) return KnowOf(step);
+  if (tick_input_ < inputs().size()) {  // everybody's steps but the world's begin with the world's
+    if (!clock_.started()) health_[tick_input_] = InputHealth(limits_, period_, time - paused_);
+    Begun(step, time);
   }
   health_[input].Arrived(step, ClockOf(input, time));
 }

@@ -5,6 +5,11 @@
 // over is late: it is counted and never used. An input that is read on demand is neither waited for
 // nor judged.
 //
+// What is of a step that cannot be under way is refused: unless nothing new has been heard for some
+// periods, by what was heard of the steps themselves; else by what the runner says of the progress.
+// So a role that is wrong about how far the run is (it was started in the middle of it, and heard
+// an old message first) is right again soon, and no message alone can make it wrong.
+//
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
 #pragma once
@@ -20,20 +25,23 @@
 #include "services/runtime/input_health.h"
 #include "services/runtime/realtime_statistics.h"
 #include "services/runtime/run_clock.h"
+#include "services/runtime/step_horizon.h"
 
 namespace fogline {
 
 /// How long a step takes on the wall clock.
+/// @pre IsSpeed(speed)
 Duration PeriodOf(const Scenario& scenario, double speed);
 
 class RealtimeRule : public FireRule {
  public:
-  /// @param speed simulated seconds per second, above 0
+  /// @param speed simulated seconds per second. @pre IsSpeed(speed)
   RealtimeRule(Node& node, const Scenario& scenario, double speed);
 
   StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   TimePoint Poll(TimePoint now) override;
+  void OnProgress() override;
   void WriteStatus(TimePoint now) override;
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
@@ -64,7 +72,11 @@ class RealtimeRule : public FireRule {
   Duration period() const { return period_; }
   /// Newest step that is known to be under way, -1 if none.
   std::int64_t newest() const { return newest_; }
-  RunClock& clock() { return clock_; }
+  /// Newest step that can be under way.
+  std::int64_t NewestPossible(TimePoint now) const;
+  /// This step is under way: as the runner says, or as a message of it tells just now.
+  void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
+  void Begun(std::int64_t step, TimePoint now);
   RealtimeStatistics& statistics() { return statistics_; }
   /// The input that brings the world's ticks; inputs().size() if there is none.
   std::size_t tick_input() const { return tick_input_; }
@@ -73,6 +85,8 @@ class RealtimeRule : public FireRule {
   /// Periods between two steps of an input that comes again; an input that is lost by default has
   /// been silent for longer.
   static constexpr int kSpeaks = 2;
+  /// Periods without a newer step after which the runner knows better how far the run is.
+  static constexpr int kUnheard = 3;
 
   /// A message that is too late to be used.
   void CountLate(std::size_t input);
@@ -96,6 +110,8 @@ class RealtimeRule : public FireRule {
   std::int64_t step_us_;
   HealthSection limits_;
   RunClock clock_;
+  StepHorizon heard_;  // by what was heard of the steps
+  StepHorizon told_;   // by what the runner says
   std::size_t tick_input_;
   std::vector<InputHealth> health_;  // of the awaited inputs
   std::vector<std::int64_t> late_;

@@ -30,6 +30,10 @@ class RestartPolicy {
     return wait_;
   }
 
+  /// It could not be started. @return how long to wait before the next try, which is no restart
+  /// more: that ends with the run's stall timeout
+  Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
+
   int restarts() const { return restarts_; }
   int limit() const { return limit_; }
 

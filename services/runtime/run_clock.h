@@ -10,54 +10,57 @@
 
 namespace fogline {
 
-/// Runs with the wall clock while the world ticks, stands still when a tick is overdue by more than
-/// kGrace periods, and goes on with the next tick. It never goes backwards. Before the first tick
-/// it stands at its beginning.
+/// Runs with the wall clock while the run goes on, stands still when its next step is overdue by
+/// more than kGrace periods, and goes on with the next one that is heard of. Steps in between were
+/// not heard of: they took their time, and the clock makes up for it. A message that comes late (a
+/// TRUTH that was lost and sent again) tells of a step, not of a pause: the next one that is in
+/// time sets the clock right. It never goes backwards, nor ahead of the wall clock. Before the
+/// first step it stands at its beginning.
 class RunClock {
  public:
-  RunClock(Duration period, TimePoint began) : period_(period), heard_(began), limit_(began) {}
+  RunClock(Duration period, TimePoint began)
+      : period_(period), heard_(began), then_(began), due_(began), limit_(began) {}
 
-  /// The world has begun a step, or so it was heard, now. Steps in between are ticks that were not
-  /// heard of, not pauses.
-  void Tick(std::int64_t step, TimePoint now) {
+  /// Something of a step, or so it claims, was heard now: the world has begun it.
+  void Heard(std::int64_t step, TimePoint now) {
     if (step <= step_) return;
-    if (step_ < 0) {
-      paused_ = now - heard_;
-    } else {
-      paused_ += std::max(Duration::zero(), now - Overdue(step - step_));
-    }
+    then_ = At(now);
+    if (step_ >= 0) due_ = std::min(now, due_ + Periods(static_cast<double>(step - step_)));
+    then_ = std::max(then_, due_);
+    limit_ = std::max(then_, due_ + Periods(1 + kGrace));
     step_ = step;
     heard_ = now;
-    limit_ = Overdue(1);
   }
 
-  /// @pre `now` is not before the last tick
-  TimePoint At(TimePoint now) const { return std::min(now, limit_) - paused_; }
-  /// When At() is that, on the wall clock; TimePoint::max() if not before the next tick.
+  /// @pre `now` is not before the last step
+  TimePoint At(TimePoint now) const { return std::min(then_ + (now - heard_), limit_); }
+  /// When At() is that, on the wall clock; TimePoint::max() if not before the next step.
   TimePoint Wall(TimePoint at) const {
-    return at > limit_ - paused_ ? TimePoint::max() : at + paused_;
+    return at > limit_ ? TimePoint::max() : heard_ + (at - then_);
   }
-
-  /// The newest step that can be under way: a tick may be early by what another one was late.
-  std::int64_t NewestPossible(TimePoint now) const { return step_ + (now - heard_) / period_ + 2; }
 
   bool started() const { return step_ >= 0; }
+  /// Time since a step was heard of that was newer than all before.
+  Duration Silence(TimePoint now) const { return now - heard_; }
 
  private:
   /// Part of a period by which a tick may be late: well above what it varies by, well below what
   /// would make an input stale.
   static constexpr double kGrace = 0.25;
+  /// Longer than any run, and no sum of two overflows.
+  static constexpr double kLongest_ns = 1e18;
 
-  TimePoint Overdue(std::int64_t steps) const {
-    const double periods = static_cast<double>(steps) + kGrace;
-    return heard_ + duration_cast<Duration>(periods * std::chrono::duration<double>(period_));
+  Duration Periods(double periods) const {
+    return Duration(static_cast<Duration::rep>(
+        std::min(periods * static_cast<double>(period_.count()), kLongest_ns)));
   }
 
   Duration period_;
-  std::int64_t step_ = -1;  // newest that the world has begun
-  TimePoint heard_;         // the last tick, on the wall clock
-  TimePoint limit_;         // when the next one is overdue
-  Duration paused_{};
+  std::int64_t step_ = -1;  // newest that was heard of
+  TimePoint heard_;         // when, on the wall clock
+  TimePoint then_;          // and on this one
+  TimePoint due_;           // when the step was due on this one
+  TimePoint limit_;         // where it stands still
 };
 
 }  // namespace fogline

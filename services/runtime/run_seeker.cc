@@ -5,6 +5,7 @@
 namespace fogline {
 
 std::optional<Announcement> RunSeeker::Look(TimePoint now) {
+  pauses_.Attend(now);
   listener_.Look();
   if (tried_) return std::nullopt;
   for (const Announcement& run : listener_.Runs()) {
@@ -15,10 +16,23 @@ std::optional<Announcement> RunSeeker::Look(TimePoint now) {
   return std::nullopt;
 }
 
+bool RunSeeker::InVain(TimePoint now) {
+  if (!tried_) return false;
+  now = pauses_.Attend(now);
+  listener_.Look();
+  const std::vector<Announcement> runs = listener_.Runs();
+  return pauses_.HeldAgainst(tried_->at, now) > kPatience ||
+         std::ranges::find(runs, tried_->run_id, &Announcement::run_id) == runs.end();
+}
+
 void RunSeeker::GiveUp() {
-  in_vain_.push_back(tried_->run_id);
-  if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
+  Ignore(tried_->run_id);
   tried_.reset();
+}
+
+void RunSeeker::Ignore(std::int64_t run_id) {
+  in_vain_.push_back(run_id);
+  if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
 }
 
 }  // namespace fogline

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "services/runtime/beacon.h"
+#include "services/runtime/own_pauses.h"
 
 namespace fogline {
 
@@ -22,11 +23,15 @@ class RunSeeker {
 
   /// Whether the role is at the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// True once nothing was heard of the run for kPatience. The role then goes back to the meeting
-  /// address.
-  bool InVain(TimePoint now) const { return tried_ && now - tried_->at > kPatience; }
+  /// True once the run is over, or nothing was heard of it for kPatience. The role then goes back
+  /// to the meeting address.
+  bool InVain(TimePoint now);
   /// The run that was gone to last is not tried again.
   void GiveUp();
+  /// This run is not to be tried (again).
+  void Ignore(std::int64_t run_id);
+  /// The role is at the network of this run, and has no part in it any more.
+  void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
   // A runner that waits speaks 20 times a second; what a busy machine or a bad network holds back
@@ -41,6 +46,7 @@ class RunSeeker {
   };
   Role role_;
   BeaconListener listener_;
+  OwnPauses pauses_{Clock::now()};
   std::optional<Try> tried_;
   std::deque<std::int64_t> in_vain_;
 };

@@ -13,7 +13,13 @@ namespace fogline {
 
 /// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for its other
 /// fields.
-inline constexpr std::size_t kPartBytes = 1200;
+inline constexpr std::size_t kPartBytes = 1000;
+
+/// Simulated seconds per second that a run may have: a step of 0.1 s takes 100 s, or 0.1 ms. What
+/// is computed from it is finite then.
+inline constexpr double kMinSpeed = 1e-3;
+inline constexpr double kMaxSpeed = 1000;
+inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }
 
 /// The parts of a text, in order; at least one.
 inline std::vector<std::string> SplitScenario(std::string_view text) {

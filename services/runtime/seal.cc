@@ -12,7 +12,9 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 
 namespace fogline {
 namespace {
@@ -59,7 +61,7 @@ bool MaySend(Role sender, std::string_view channel, Bytes payload) {
 }
 
 InputError KeyError(const std::filesystem::path& file, const std::string& what) {
-  return InputError(fmt::format("{}: error: {}", file.string(), what));
+  return InputError(fmt::format("{}: error: {}", PathText(file), what));
 }
 
 void StartSodium() {
@@ -83,7 +85,7 @@ using KeyText = Wiped<char, kKeyDigits + 3>;
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file)
-      : fd_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+      : fd_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
   ~OpenFile() {
     if (fd_ >= 0) close(fd_);
   }
@@ -108,6 +110,12 @@ ssize_t ReadAll(int fd, KeyText& text) {
   return static_cast<ssize_t>(size);
 }
 
+/// Whether a file was opened: not a folder, nor a pipe or device, which has nothing yet or no end.
+bool IsFile(int fd) {
+  struct stat info {};
+  return fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
+}
+
 /// Why an open file is no secret of this user's, "" if it is one.
 std::string WhyNoSecret(int fd, const std::filesystem::path& file) {
   struct stat info {};
@@ -115,11 +123,11 @@ std::string WhyNoSecret(int fd, const std::filesystem::path& file) {
   if (info.st_uid != geteuid() && info.st_uid != 0) {
     return fmt::format(
         "the key belongs to user {}, who can change it; copy it, or: chown {} {}; chmod 600 {}",
-        info.st_uid, geteuid(), file.string(), file.string());
+        info.st_uid, geteuid(), PathText(file), PathText(file));
   }
   if ((info.st_mode & (S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH)) != 0) {
     return fmt::format("others can read or change this key (mode {:03o}); chmod 600 {}",
-                       info.st_mode & 0777U, file.string());
+                       info.st_mode & 0777U, PathText(file));
   }
   return "";
 }
@@ -131,9 +139,14 @@ SealKey::~SealKey() { sodium_memzero(secret_.data(), secret_.size()); }
 SealKey SealKey::Load(const std::filesystem::path& file) {
   StartSodium();
   const OpenFile in(file);
+  if (in.fd() >= 0 && !IsFile(in.fd())) throw KeyError(file, "cannot read the key: it is no file");
   KeyText text;
   const ssize_t size = in.fd() < 0 ? -1 : ReadAll(in.fd(), text);
-  if (size < 0) throw KeyError(file, fmt::format("cannot read the key: {}", std::strerror(errno)));
+  if (size < 0) {
+    const int error = errno;
+    ThrowIfExhausted(error, PathText(file));
+    throw KeyError(file, fmt::format("cannot read the key: {}", std::strerror(error)));
+  }
   std::string_view digits(text.data(), static_cast<std::size_t>(size));
   while (digits.ends_with('\n') || digits.ends_with('\r')) digits.remove_suffix(1);
   SealKey key(Secret{});
@@ -144,6 +157,10 @@ SealKey SealKey::Load(const std::filesystem::path& file) {
     throw KeyError(file,
                    "not a key, which is 64 hexadecimal digits and nothing else; `fogline keygen "
                    "FILE` makes one");
+  }
+  // What a script makes that finds no randomness; anybody tries it first.
+  if (sodium_is_zero(key.secret_.data(), key.secret_.size()) == 1) {
+    throw KeyError(file, "a key of zeros keeps nobody out; `fogline keygen FILE` makes one");
   }
   if (const std::string why = WhyNoSecret(in.fd(), file); !why.empty()) throw KeyError(file, why);
   return key;
@@ -161,12 +178,12 @@ void SealKey::Create(const std::filesystem::path& file) {
   Wiped<char, kKeyDigits + 1> text;
   sodium_bin2hex(text.data(), text.size(), secret.data(), secret.size());
   text.back() = '\n';
-  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (close(fd) != 0 || !written) {
-    const std::string why = std::strerror(errno);
-    unlink(file.c_str());
-    throw KeyError(file, fmt::format("cannot write: {}", why));
-  }
+  int error = WriteAll(fd, {text.data(), text.size()});
+  if (error == 0 && fsync(fd) != 0) error = errno;
+  close(fd);
+  if (error == 0) return;
+  unlink(file.c_str());
+  throw KeyError(file, fmt::format("cannot write: {}", std::strerror(error)));
 }
 
 Seal::KeyId Seal::IdOf(const SealKey& key) {

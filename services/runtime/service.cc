@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
@@ -11,7 +9,10 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/lcm_url.h"
+#include "services/runtime/own_pauses.h"
 #include "services/runtime/run_seeker.h"
 #include "services/runtime/this_process.h"
 #include "services/runtime/traffic_options.h"
@@ -21,16 +22,6 @@ namespace fogline {
 namespace {
 
 enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void WatchSignals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
-}
 
 // In real time the clock of the run comes first, then everybody else, then the rest of the machine.
 constexpr int kWorldPriority = 2;
@@ -62,7 +53,7 @@ class Service {
  public:
   /// @throws InputError, std::runtime_error if it cannot join the network
   Service(const Arguments& arguments, const NodeFactory& make)
-      : arguments_(arguments), make_(make), began_(Clock::now()) {
+      : arguments_(arguments), make_(make), began_(Clock::now()), pauses_(began_) {
     Join(NetworkUrl(arguments.url), arguments.run_id);
     if (arguments.run_id) return;
     if (arguments.url.empty()) seeker_.emplace(arguments.role, MeetingUrl());
@@ -72,13 +63,19 @@ class Service {
   /// Takes part in one run. @return the exit code
   int Run() {
     while (!node_->left()) {
-      if (interrupted != 0) {
+      if (WasInterrupted()) {
         node_->Leave();
         return kInterrupted;
       }
-      if (node_->Waits()) {
+      const TimePoint now = Clock::now();
+      pauses_.Attend(now);
+      if (node_->released()) {
+        StartOver(now);
+      } else if (node_->Waits()) {
         WarnOfSignatures();
-        Seek(Clock::now());
+        Seek(now);
+      } else if (node_->RunnerSilent(now)) {
+        SeekAnother(now);
       } else {
         seeker_.reset();
         PreferIfRealtime();
@@ -86,12 +83,12 @@ class Service {
       TakePart();
     }
     if (node_->error().empty()) return kStopped;
-    Say("error: " + node_->error());
+    Complain(fmt::format("{}: error: {}", arguments_.name, node_->error()));
     return kFailed;
   }
 
  private:
-  void Say(const std::string& what) const { fmt::print(stderr, "{}: {}\n", arguments_.name, what); }
+  void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
     node_.reset();
@@ -122,7 +119,8 @@ class Service {
   /// Goes where a run waits for the role, and back if it does not.
   /// @throws std::runtime_error after --wait
   void Seek(TimePoint now) {
-    if (arguments_.wait_s > 0 && now - began_ > std::chrono::duration<double>(arguments_.wait_s)) {
+    if (arguments_.wait_s > 0 &&
+        pauses_.HeldAgainst(began_, now) > std::chrono::duration<double>(arguments_.wait_s)) {
       throw std::runtime_error(
           fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
                       arguments_.wait_s, bus_->url(), HowToStartOne()));
@@ -131,12 +129,42 @@ class Service {
     if (seeker_->InVain(now)) return GoBack("nothing is heard of it");
     const auto run = seeker_->Look(now);
     if (!run) return;
-    Say("joins " + run->Text());
+    GoTo(*run);
+  }
+
+  void GoTo(const Announcement& run) {
+    Say("joins " + run.Text());
     try {
-      Join(run->url, run->run_id);
+      Join(run.url, std::nullopt);
     } catch (const std::exception& error) {  // the address came from the network
       GoBack(error.what());
     }
+  }
+
+  /// The runner is silent. If another run waits for the role, it goes there. (What is said on the
+  /// network where it is, its node hears.)
+  void SeekAnother(TimePoint now) {
+    if (!arguments_.url.empty() || arguments_.run_id) return;
+    if (!seeker_) {
+      seeker_.emplace(arguments_.role, MeetingUrl());
+      seeker_->Ignore(node_->run_id());
+    }
+    const auto run = seeker_->Look(now);
+    if (!run) return;
+    node_->Release(fmt::format("went to run {}: the runner was silent", run->run_id));
+    began_ = now;
+    GoTo(*run);
+  }
+
+  /// The node has given up its place. It waits for a run where it is.
+  void StartOver(TimePoint now) {
+    Say(node_->error());
+    began_ = now;
+    if (arguments_.url.empty() && !seeker_) {
+      seeker_.emplace(arguments_.role, MeetingUrl());
+      if (!SameNetwork(bus_->url(), MeetingUrl())) seeker_->Stay(node_->run_id(), now);
+    }
+    Join(std::string(bus_->url()), std::nullopt);
   }
 
   void GoBack(const std::string& why) {
@@ -160,7 +188,8 @@ class Service {
 
   const Arguments& arguments_;
   const NodeFactory& make_;
-  TimePoint began_;
+  TimePoint began_;  // to wait for a run
+  OwnPauses pauses_;
   std::optional<Bus> bus_;
   std::unique_ptr<Node> node_;
   std::optional<RunSeeker> seeker_;  // while there is no run yet
@@ -179,6 +208,7 @@ std::string_view PurposeOf(Role role) {
 
 int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                const std::function<void(CLI::App&)>& extend) {
+  TakeStandardDescriptors();
   Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
   const std::string& name = arguments.name;
   CLI::App app{
@@ -207,17 +237,18 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{0}: error: {1} (see {0} --help)\n", name, error.what());
+    Complain(fmt::format("{0}: error: {1} (see {0} --help)", name, error.what()));
     return kBadUsage;
   }
-  WatchSignals();
+  WatchInterrupts();
+  FailWritesBeyondTheSizeLimit();
   try {
     return Service(arguments, make).Run();
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
+    Complain(fmt::format("{}: {}", name, error.what()));
     return kBadUsage;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    Complain(fmt::format("{}: error: {}", name, error.what()));
     return kFailed;
   }
 }

@@ -18,7 +18,8 @@ using NodeFactory =
     std::function<std::unique_ptr<Node>(Bus& bus, std::optional<std::int64_t> run_id)>;
 
 /// Reads the command line, takes part in one run, and returns the exit code: 0 stopped by the
-/// runner, 2 bad usage, 3 failed, 130 ended by SIGINT, SIGTERM or SIGHUP.
+/// runner, 2 bad usage, 3 failed, 130 ended by SIGINT, SIGTERM or SIGHUP
+/// (interrupt.h).
 /// @param extend adds options of this service, before the command line is read
 int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
                const std::function<void(CLI::App&)>& extend = {});

@@ -1,9 +1,11 @@
 #include "services/runtime/tcpq_client.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,12 +16,16 @@
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
+
 namespace fogline::tcpq {
 namespace {
 
 // How long a relay may take to answer, and to take at least a byte of what it is sent.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
+// The same for one that was there and is to come back. Meanwhile a process does nothing else.
+constexpr Duration kSecondAnswerLimit = milliseconds(200);
 constexpr std::size_t kReadBytes = 64 << 10;
 // What is kept of what the relay sends while it takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;
@@ -27,7 +33,26 @@ constexpr std::size_t kMaxReceived = 64 << 20;
 // that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
+/// Waits for a socket, or without one (-1) for the time to pass.
+bool Poll(int socket, short events, Duration timeout) {
+  pollfd waited{.fd = socket, .events = events, .revents = 0};
+  const auto left = std::max(Duration::zero(), timeout);
+  const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
+                       .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
+  return ppoll(&waited, 1, &limit, nullptr) > 0;
+}
+
+/// A file that is never readable: polled in place of a lost connection, it wakes no program.
+int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
+
 }  // namespace
+
+/// This connection does not work any more.
+class Client::Lost : public std::runtime_error {
+ public:
+  Lost(const Endpoint& relay, std::string_view why)
+      : std::runtime_error(fmt::format("lost the relay {}: {}", relay.Url(), why)) {}
+};
 
 Client::Client(const std::string& url, const Limits& limits)
     : endpoint_(ResolveUrl(url)),
@@ -35,8 +60,8 @@ Client::Client(const std::string& url, const Limits& limits)
       parser_(kRelayMagic, limits),
       chunk_(kReadBytes) {
   try {
-    Connect();
-    Greet();
+    fd_ = Connect(kAnswerLimit);
+    Greet(kAnswerLimit);
   } catch (...) {
     if (fd_ >= 0) close(fd_);
     throw;
@@ -47,38 +72,45 @@ Client::~Client() {
   if (fd_ >= 0) close(fd_);
 }
 
-void Client::Connect() {
-  fd_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd_ < 0) throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
+int Client::Connect(Duration limit) const {
+  const int connection = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (connection < 0) {
+    ThrowIfExhausted(errno, endpoint_.ToString());
+    throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
+  }
   const int on = 1;  // a message is a packet at once, not when the one before is acknowledged
-  setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(endpoint_.port);
   inet_pton(AF_INET, endpoint_.address.c_str(), &address.sin_addr);
   int error = 0;
-  if (connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     error = errno;
   }
   if (error == EINPROGRESS) {
     socklen_t size = sizeof(error);
     error = ETIMEDOUT;
-    if (Ready(POLLOUT, kAnswerLimit)) getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (Poll(connection, POLLOUT, limit)) {
+      getsockopt(connection, SOL_SOCKET, SO_ERROR, &error, &size);
+    }
   }
-  if (error == ECONNREFUSED) {
-    throw std::runtime_error(
-        fmt::format("nobody listens on {}; start fogline-relay there", endpoint_.ToString()));
-  }
-  if (error != 0) {
-    throw std::runtime_error(
-        fmt::format("cannot reach {}: {}", endpoint_.ToString(), std::strerror(error)));
-  }
+  if (error == 0) return connection;
+  close(connection);
+  throw std::runtime_error(
+      error == ECONNREFUSED
+          ? fmt::format("nobody listens on {}; start fogline-relay there", endpoint_.ToString())
+          : fmt::format("cannot reach {}: {}", endpoint_.ToString(), std::strerror(error)));
 }
 
-void Client::Greet() {
+void Client::Greet(Duration limit) {
+  frame_.clear();
   AppendHello(kClientMagic, frame_);
+  for (const std::string& pattern : patterns_) {
+    AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
+  }
   SendFrame();
-  const TimePoint end = Clock::now() + kAnswerLimit;
+  const TimePoint end = Clock::now() + limit;
   while (!parser_.Greeted()) {
     if (!Ready(POLLIN, end - Clock::now())) {
       if (Clock::now() < end) continue;  // a signal
@@ -89,36 +121,52 @@ void Client::Greet() {
     Receive();
     parser_.Append(received_);
     received_.clear();
-    if (!parser_.Greeted() && !parser_.error().empty()) Lose(parser_.error());
+    if (!parser_.Greeted() && !parser_.error().empty()) {
+      throw Lost(endpoint_, parser_.error());
+    }
   }
 }
 
 void Client::Subscribe(std::string_view channel, std::string_view pattern, Handler handler) {
   handlers_.emplace_back(channel, std::move(handler));
-  frame_.clear();
-  AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
-  SendFrame();
+  Subscribe(pattern);
 }
 
 void Client::SubscribeAll(Watcher watcher) {
   watcher_ = std::move(watcher);
-  frame_.clear();
-  AppendFrame(FrameType::kSubscribe, ".*", {}, frame_);
-  SendFrame();
+  Subscribe(".*");
 }
 
-void Client::Publish(std::string_view channel, Bytes bytes) {
+void Client::Subscribe(std::string_view pattern) {
+  patterns_.emplace_back(pattern);
+  if (lost_) return;  // it is told when it is back
+  frame_.clear();
+  AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
+  try {
+    SendFrame();
+  } catch (const Lost& lost) {
+    Lose(lost);
+  }
+}
+
+bool Client::Publish(std::string_view channel, Bytes bytes) {
   if (channel.size() > limits_.channel || bytes.size() > limits_.payload) {
     throw std::runtime_error(
         fmt::format("{} bytes on \"{}\" are too many for tcpq", bytes.size(), channel));
   }
+  if (lost_) return false;
   frame_.clear();
   AppendFrame(FrameType::kPublish, channel, bytes, frame_);
-  SendFrame();
+  try {
+    SendFrame();
+    return true;
+  } catch (const Lost& lost) {
+    Lose(lost);
+    return false;
+  }
 }
 
 void Client::SendFrame() {
-  if (fd_ < 0) return;
   std::optional<TimePoint> stalled;
   for (std::size_t sent = 0; sent < frame_.size();) {
     const ssize_t size = send(fd_, frame_.data() + sent, frame_.size() - sent, MSG_NOSIGNAL);
@@ -127,11 +175,12 @@ void Client::SendFrame() {
       stalled.reset();
       continue;
     }
-    if (size < 0 && errno != EAGAIN && errno != EINTR) Lose(std::strerror(errno));
+    if (size < 0 && errno != EAGAIN && errno != EINTR) throw Lost(endpoint_, std::strerror(errno));
     const TimePoint now = Clock::now();
     if (!stalled) stalled = now;
     if (now - *stalled >= kStallLimit) {
-      Lose(fmt::format("it has taken nothing for {} s", Milliseconds(kStallLimit) / 1000));
+      throw Lost(endpoint_,
+                 fmt::format("it has taken nothing for {} s", Milliseconds(kStallLimit) / 1000));
     }
     const bool room = received_.size() < kMaxReceived;
     if (Ready(room ? POLLOUT | POLLIN : POLLOUT, *stalled + kStallLimit - now) && room) Receive();
@@ -144,19 +193,28 @@ void Client::SendFrame() {
 
 bool Client::Readable(Duration timeout) {
   if (Parse()) return true;
-  if (received_.empty()) {
-    if (!Ready(POLLIN, timeout)) return false;
-    Receive();
-    sent_unread_ = 0;
+  if (lost_) return ConnectAgain(timeout) && Parse();
+  try {
+    if (received_.empty()) {
+      if (!Ready(POLLIN, timeout)) return false;
+      Receive();
+      sent_unread_ = 0;
+    }
+    parser_.Append(received_);
+    received_.clear();
+    const bool there = Parse();
+    if (!parser_.error().empty()) {
+      throw Lost(endpoint_, "it " + parser_.error());
+    }
+    return there;
+  } catch (const Lost& lost) {
+    Lose(lost);
+    return false;
   }
-  parser_.Append(received_);
-  received_.clear();
-  return Parse();
 }
 
 bool Client::Parse() {
   if (!next_) next_ = parser_.Next();
-  if (!parser_.error().empty() && fd_ >= 0) Lose("it " + parser_.error());
   return next_.has_value();
 }
 
@@ -170,25 +228,49 @@ void Client::Handle() {
   if (watcher_) watcher_(frame.name, frame.payload);
 }
 
-bool Client::Ready(short events, Duration timeout) const {
-  pollfd waited{.fd = fd_, .events = events, .revents = 0};  // a lost one only waits
-  const auto left = std::max(Duration::zero(), timeout);
-  const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
-                       .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
-  return ppoll(&waited, 1, &limit, nullptr) > 0;
-}
+bool Client::Ready(short events, Duration timeout) const { return Poll(fd_, events, timeout); }
 
 void Client::Receive() {
   const ssize_t size = recv(fd_, chunk_.data(), chunk_.size(), 0);
-  if (size == 0) Lose("it has closed the connection");
-  if (size < 0 && errno != EAGAIN && errno != EINTR) Lose(std::strerror(errno));
   if (size > 0) received_.insert(received_.end(), chunk_.begin(), chunk_.begin() + size);
+  if (size > 0 || (size < 0 && (errno == EAGAIN || errno == EINTR))) return;
+  throw Lost(endpoint_, size == 0 ? "it has closed the connection" : std::strerror(errno));
 }
 
-void Client::Lose(std::string_view why) {
-  close(fd_);
-  fd_ = -1;
-  throw ConnectionLost(fmt::format("lost the relay {}: {}", endpoint_.Url(), why));
+void Client::Lose(const Lost& lost) {
+  lost_ = true;
+  trouble_ = lost.what();
+  tries_ = 0;
+  try_at_ = Clock::now();
+  BeReplacedBy(QuietFile());
+}
+
+void Client::BeReplacedBy(int file) {
+  dup3(file, fd_, O_CLOEXEC);
+  close(file);
+}
+
+bool Client::ConnectAgain(Duration timeout) {
+  const TimePoint now = Clock::now();
+  if (tries_ > kTries || try_at_ - now > timeout) {
+    Poll(-1, 0, timeout);
+    return false;
+  }
+  Poll(-1, 0, try_at_ - now);
+  try_at_ = Clock::now() + kTryEvery;
+  if (++tries_ > kTries) throw ConnectionLost(trouble_);
+  parser_ = FrameParser(kRelayMagic, limits_);
+  received_.clear();
+  next_.reset();
+  try {
+    BeReplacedBy(Connect(kSecondAnswerLimit));
+    Greet(kSecondAnswerLimit);
+  } catch (const std::runtime_error&) {  // not yet
+    BeReplacedBy(QuietFile());
+    return false;
+  }
+  lost_ = false;
+  return true;
 }
 
 }  // namespace fogline::tcpq

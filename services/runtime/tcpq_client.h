@@ -19,7 +19,7 @@
 
 namespace fogline::tcpq {
 
-/// The relay has ended, or does not work any more.
+/// The relay has ended, or does not work any more, and does not come back.
 class ConnectionLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,11 +27,17 @@ class ConnectionLost : public std::runtime_error {
 
 /// One connection, for one thread.
 ///
-/// A lost one is told once, by ConnectionLost out of Publish() or Readable(). From then on
-/// Publish() drops and Readable() only waits, so that a run can be ended in order.
+/// A lost one is made again by Readable(), as soon as the relay is back; what is published
+/// meanwhile is lost, and what others publish. If it is not back after kTries, ConnectionLost says
+/// so, once, out of Readable(). From then on that only waits, so that a run can be ended in order.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
+
+  /// A relay that was killed is started again within a second, unless the machine is short of
+  /// processes; a person who does it takes longer than anybody waits.
+  static constexpr Duration kTryEvery = milliseconds(50);
+  static constexpr int kTries = 200;
 
   /// Connects to the relay of a tcpq URL; messages above `limits` lose the connection.
   /// @throws InputError for a bad URL or an unknown host, std::runtime_error if there is no relay
@@ -51,8 +57,8 @@ class Client {
   void SubscribeAll(Watcher watcher);
 
   /// Sends a message. While the relay takes nothing, what it sends is kept, so that both do not
-  /// wait for each other.
-  void Publish(std::string_view channel, Bytes bytes);
+  /// wait for each other. @return false if the connection is lost
+  bool Publish(std::string_view channel, Bytes bytes);
 
   /// Waits up to `timeout` for a message; less if only a part of one comes. @return whether one is
   /// there
@@ -61,18 +67,30 @@ class Client {
   /// Handles the message that is there, if any.
   void Handle();
 
+  /// Stays the same when the connection is made again.
   int fd() const { return fd_; }
+  /// Why the connection was lost last.
+  const std::string& trouble() const { return trouble_; }
   /// In numbers, as LCM's programs need it.
   std::string url() const { return endpoint_.Url(); }
 
  private:
-  void Connect();
-  void Greet();
+  class Lost;
+  /// A socket that is connected to the relay.
+  int Connect(Duration limit) const;
+  /// Says that this is a client and what it wants, and waits until the relay has answered.
+  void Greet(Duration limit);
+  void Subscribe(std::string_view pattern);
   bool Ready(short events, Duration timeout) const;
   void SendFrame();
   void Receive();
   bool Parse();
-  [[noreturn]] void Lose(std::string_view why);
+  /// Tries to connect again when it is time to. @return whether the relay is back
+  bool ConnectAgain(Duration timeout);
+  /// Until the relay is back nothing is sent or received.
+  void Lose(const Lost& lost);
+  /// fd_ is this file from now on.
+  void BeReplacedBy(int file);
 
   Endpoint endpoint_;
   int fd_ = -1;
@@ -83,8 +101,13 @@ class Client {
   std::vector<std::uint8_t> received_;  // not yet parsed: a handler still looks at a frame
   std::vector<std::uint8_t> frame_;     // being sent
   std::size_t sent_unread_ = 0;         // bytes since it was looked what has come
+  std::vector<std::string> patterns_;   // that the relay knows of
   std::vector<std::pair<std::string, Handler>> handlers_;
   Watcher watcher_;
+  bool lost_ = false;
+  std::string trouble_;
+  int tries_ = 0;  // to connect again
+  TimePoint try_at_{};
 };
 
 }  // namespace fogline::tcpq

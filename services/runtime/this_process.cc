@@ -2,13 +2,20 @@
 
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+
+#include <fmt/core.h>
 
 namespace fogline {
 
@@ -34,6 +41,22 @@ bool RunBeforeOthers(int priority) {
   // A page that the kernel has taken back comes again from the disk, when that has time.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
+}
+
+void FailWritesBeyondTheSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
+
+std::string WhyWriteFailed(int error) {
+  rlimit limit{};
+  if (error != EFBIG || getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return std::strerror(error);
+  }
+  return fmt::format("the file size limit of {} bytes is reached; ulimit -f unlimited lifts it",
+                     limit.rlim_cur);
+}
+
+bool EndsWithItsParent() {
+  int signal = 0;
+  return prctl(PR_GET_PDEATHSIG, &signal) == 0 && signal == SIGKILL;
 }
 
 std::string HostName() {

@@ -17,6 +17,18 @@ ProcessUse MeasureThisProcess();
 /// @return whether it was granted to all threads
 bool RunBeforeOthers(int priority);
 
+/// A write beyond the limit for the size of files (ulimit -f) fails from now on, in this process
+/// and those that it starts, as one on a full disk does. Without this the kernel kills the process
+/// (SIGXFSZ), which could not say why.
+void FailWritesBeyondTheSizeLimit();
+
+/// Why a write failed, and what to do where the limit for the size of files is the reason.
+/// @param error errno
+std::string WhyWriteFailed(int error);
+
+/// Whether the kernel kills this process when its parent ends.
+bool EndsWithItsParent();
+
 /// The name of this machine.
 std::string HostName();
 

@@ -113,7 +113,7 @@ TimePoint TickRule::Tick(TimePoint now) {
   }
   ticks_missed_ += missed;
   const std::int64_t step = next();
-  clock().Tick(step, now);
+  Begun(step, now);
   ComputeDue(step, due, now);
   sent_[RingSlot(step)] = {.step = step, .time = Clock::now()};
   return phase_ == Phase::kTicking ? Due(tick_) : now;

@@ -1,89 +1,117 @@
-// What a recorder that is started again finds in the log of its predecessor. Input: the file.
+// What a recorder that is started again, or a runner that resumes a run, finds in a log. Input: the
+// file.
 #include <algorithm>
+#include <stdexcept>
 
 #include "scenario/loader.h"
 #include "services/recorder/history.h"
 #include "services/recorder/run_log.h"
+#include "services/recorder/step_order.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {
 namespace {
 
-std::optional<Remains> Remember(const std::filesystem::path& file) {
-  return ReadRemains(file, kRunId, HashOf(kScenarioText));
+// Less than the samples have, so that it may and may not do to look at the end alone.
+constexpr std::int64_t kShortTail = 2500;
+
+void DemandWhereabouts(const LogFront& front, const Remains& remains, std::int64_t file_size) {
+  Demand(front.head.bytes <= remains.head.bytes, "steps follow the scenario");
+  Demand(remains.head.bytes <= file_size, "what is kept is in the file");
+  Demand(front.head.bytes <= remains.last && remains.last <= remains.head.bytes,
+         "the last step is one of the steps");
+  Demand((remains.last < remains.head.bytes) == (remains.steps > 0) || front.realtime,
+         "the last step takes some bytes");
+  Demand(remains.steps >= 0 && !(remains.final && remains.steps == 0 && !front.realtime),
+         "no last step without a step");
+  if (front.realtime) return;
+  Demand(remains.head.events ==
+             front.head.events + remains.steps * static_cast<std::int64_t>(kStepChannels),
+         "what is kept is whole steps");
 }
 
-void DemandWhereabouts(const Remains& remains, std::size_t file_size) {
-  std::int64_t end = remains.begin;
-  for (const std::int64_t next : remains.ends) {
-    Demand(next > end, "each step takes some bytes behind the one before");
-    end = next;
-  }
-  Demand(remains.head.bytes == end, "what is kept ends with the last complete step");
-  Demand(end <= static_cast<std::int64_t>(file_size), "what is kept is in the file");
-  Demand(!remains.final || !remains.ends.empty(), "no last step without a step");
-}
-
-/// The log that is gone on with.
+/// The log that is gone on with, if it was read from front to back.
 void DemandWholeRun(const Remains& remains, const std::filesystem::path& file) {
   EventLogReader events(file);
   std::int64_t count = 0;
   while (events.Next()) ++count;
   Demand(count == remains.head.events && events.torn().empty(), "what is kept is whole events");
   RunLogReader run(file);
-  std::size_t steps = 0;
+  std::int64_t steps = 0;
   try {
     while (run.Next() != nullptr) ++steps;
   } catch (const InputError&) {
-    Demand(false, "what is kept is the beginning of a run");
+    return;  // its scenario is none
   }
-  Demand(steps == remains.ends.size(), "what is kept is all complete steps");
+  Demand(steps == remains.steps, "what is kept is all complete steps");
 }
 
 /// What is handed out again.
-void DemandAllMessages(const Remains& remains, const std::filesystem::path& file) {
-  History history(file, remains.begin);
-  for (const std::int64_t end : remains.ends) history.Add(end);
-  Demand(history.steps() == static_cast<std::int64_t>(remains.ends.size()), "steps are counted");
-  for (const ChannelInfo& channel : kChannels) {
-    if (channel.pace != Pace::kStep) continue;
-    std::int64_t step = 0;
-    history.ForEach(channel.name, {.first = 0, .count = history.steps()}, [&step](Bytes bytes) {
-      Demand(ReadInt64(bytes, kRunIdOffset) == kRunId, "what is handed out is of the run");
-      Demand(ReadInt64(bytes, kStepOffset) == step++, "what is handed out is of the step");
+void DemandAllMessages(const LogFront& front, const Remains& remains,
+                       const std::filesystem::path& file, std::int64_t first) {
+  History history(file, front, remains);
+  Demand(history.steps() == remains.steps, "steps are counted");
+  for (std::int64_t step = first; step < remains.steps; ++step) {
+    std::size_t messages = 0;
+    history.ForEachMessage(step, [&](std::string_view channel, Bytes bytes) {
+      Demand(channel == kStepNames[messages++], "each channel has a message of each step");
+      Demand(ReadInt64(bytes, kRunIdOffset) == front.run_id, "what is handed out is of the run");
+      Demand(ReadInt64(bytes, kStepOffset) == step, "what is handed out is of the step");
     });
-    Demand(step == history.steps(), "each channel has a message of each step");
+    Demand(messages == kStepChannels, "each step has all its messages");
   }
 }
 
-void DemandGoesOn(const Remains& remains, const std::filesystem::path& file) {
-  const auto step = static_cast<std::int64_t>(remains.ends.size());
+/// What lies before the end of the log may be anything, if only the end was looked at.
+void DemandMessagesOrRefusal(const LogFront& front, const Remains& remains,
+                             const std::filesystem::path& file) {
+  const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
+  for (std::int64_t step = first; step < remains.steps; ++step) {
+    try {
+      DemandAllMessages(front, remains, file, step);
+    } catch (const std::runtime_error&) {
+      continue;
+    }
+  }
+}
+
+void DemandGoesOn(const LogFront& front, const Remains& remains, const std::filesystem::path& file,
+                  std::int64_t tail) {
   {
     EventLogWriter log(file, remains.head);
     ForEachStepChannel([&]<class M>(std::size_t channel) {
-      log.Write(kChannels[channel].name, 0, Encoded(Sample<M>(step)));
+      M message = Sample<M>(remains.steps);
+      message.header.run_id = front.run_id;
+      log.Write(kChannels[channel].name, 0, Encoded(message));
     });
   }
-  const auto longer = Remember(file);
-  Demand(longer && longer->begin == remains.begin && longer->ends.size() == remains.ends.size() + 1,
-         "another step can be added");
-  Demand(std::equal(remains.ends.begin(), remains.ends.end(), longer->ends.begin()),
-         "the steps before it stay where they are");
+  const Remains longer = ReadRemains(file, front, {}, tail);
+  Demand(longer.steps == remains.steps + 1 && longer.last == remains.head.bytes,
+         "another step can be added, and those before it stay where they are");
 }
 
 void DemandUsefulRemains(Bytes bytes) {
   const MemoryFile file(bytes);
+  const auto size = static_cast<std::int64_t>(bytes.size());
   try {
-    const auto remains = Remember(file.path());
-    if (!remains) return;
-    DemandWhereabouts(*remains, bytes.size());
-    const MemoryFile kept(bytes.first(static_cast<std::size_t>(remains->head.bytes)));
-    DemandWholeRun(*remains, kept.path());
-    DemandAllMessages(*remains, file.path());
-    DemandGoesOn(*remains, file.path());
-    if (!remains->ends.empty()) Took();
+    const LogFront front = ReadFront(file.path());
+    Demand(front.head.bytes <= size, "the scenario is in the file");
+    if (!front.parts.Complete()) return;
+    const Remains all = ReadRemains(file.path(), front, {}, size);
+    const Remains end = ReadRemains(file.path(), front, {}, kShortTail);
+    DemandWhereabouts(front, all, size);
+    DemandWhereabouts(front, end, size);
+    OddEnd(file.path(), front, end);
+    if (front.realtime) return;
+    const MemoryFile kept(bytes.first(static_cast<std::size_t>(all.head.bytes)));
+    DemandWholeRun(all, kept.path());
+    DemandAllMessages(front, all, file.path(), 0);
+    DemandMessagesOrRefusal(front, end, file.path());
+    // Where the end alone tells the same, it still does when the log has grown.
+    DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
+    if (all.steps > 0) Took();
   } catch (const InputError&) {
-    return;  // no event log, or that of another run
+    return;  // no event log
   }
 }
 

@@ -1,12 +1,14 @@
-// Roles of a run among whatever others say: world, driver and recorder on a bus in memory, and
-// nobody else. Input: actions, a byte each: what a run says comes next, or a datagram on some
-// channel follows.
+// Roles of a run, in lockstep or in real time, among whatever others say: world, driver and
+// recorder on a bus in memory, and nobody else. Input: actions, a byte each: what a run says comes
+// next, or a datagram on some channel follows.
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "services/driver/driver.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/step_node.h"
+#include "services/world/failsafe_world.h"
 #include "services/world/world.h"
 #include "tests/fuzz/samples.h"
 
@@ -15,7 +17,16 @@ namespace {
 
 constexpr std::size_t kMaxActions = 64;
 
-enum Action : std::uint8_t { kAnnounce, kGo, kCommands, kPoll, kStop, kDatagram, kNumActions };
+enum Action : std::uint8_t {
+  kAnnounce,
+  kGo,
+  kCommands,
+  kPoll,
+  kStop,
+  kDatagram,
+  kAnnounceRealtime,
+  kNumActions
+};
 
 /// What the roles say, as others hear it.
 class Listener {
@@ -63,6 +74,9 @@ class Run {
  public:
   void Do(Action action, Cutter& cutter) {
     switch (action) {
+      case kAnnounceRealtime:
+        realtime_ = true;
+        return SayRun(run_t::PREPARE);
       case kAnnounce:
         return SayRun(run_t::PREPARE);
       case kGo:
@@ -103,6 +117,11 @@ class Run {
   void SayRun(std::int8_t phase) {
     auto run = Sample<run_t>(0);
     run.phase = phase;
+    run.realtime = realtime_;
+    run.pace = realtime_ ? kMaxSpeed : 0;
+    run.external = {"world", "driver", "recorder"};  // it waits for all three
+    run.holder = {0, 0, 0};
+    run.num_external = static_cast<std::int32_t>(run.external.size());
     run.sequence = ++sequence_;
     Say(run);
   }
@@ -114,13 +133,45 @@ class Run {
   Bus bus_{"memq://"};
   Listener listener_{bus_};
   MemoryFile log_;
-  StepNode<World> world_{bus_, {}};
+  StepNode<World, FailsafeWorld> world_{bus_, {}};
   StepNode<Driver> driver_{bus_, {}};
   Recorder recorder_{bus_, {}, log_.path()};
   std::array<Node*, 3> nodes_{&world_, &driver_, &recorder_};
   std::int64_t step_ = 0;
   std::int64_t sequence_ = 0;
+  bool realtime_ = false;  // since it was announced so
 };
+
+template <class M>
+void AddStep(std::int64_t step, Input& input) {
+  M message = Sample<M>(0);
+  message.header.step = step;
+  input.insert(input.end(), {kDatagram, static_cast<std::uint8_t>(IndexOf<M>())});
+  AddDatagram(Encoded(message), input);
+}
+
+/// Steps that no arithmetic may be done with, on channels that all of them read.
+Input WithImpossibleSteps(Action announce) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  Input input{announce, kGo, kPoll};
+  for (const std::int64_t step : {Limits::max(), Limits::max() - 1, Limits::min(), kSteps}) {
+    AddStep<truth_t>(step, input);
+    AddStep<arbitration_t>(step, input);
+    AddStep<follower_command_t>(step, input);
+    AddStep<status_t>(step, input);
+    AddStep<resend_t>(step, input);
+    AddStep<run_t>(step, input);
+  }
+  for (const std::int64_t progress : {Limits::max(), Limits::min(), kSteps}) {
+    auto run = Sample<run_t>(0);
+    run.sequence = 100;
+    run.progress = progress;
+    input.insert(input.end(), {kDatagram, static_cast<std::uint8_t>(IndexOf<run_t>())});
+    AddDatagram(Encoded(run), input);
+  }
+  input.insert(input.end(), {kCommands, kPoll, kPoll});
+  return input;
+}
 
 }  // namespace
 
@@ -141,7 +192,13 @@ std::vector<Input> Seeds() {
     });
   }
   recorded.push_back(kPoll);
-  return {undisturbed, asked, recorded};
+  const Input realtime{kAnnounceRealtime, kGo, kPoll, kCommands, kPoll, kCommands, kPoll, kStop};
+  return {undisturbed,
+          asked,
+          recorded,
+          realtime,
+          WithImpossibleSteps(kAnnounce),
+          WithImpossibleSteps(kAnnounceRealtime)};
 }
 
 }  // namespace fogline::fuzz

@@ -74,6 +74,8 @@ void DemandRunOrRefusal(Bytes bytes) {
   try {
     const Reading reading = Read(file.path());
     DemandWholeSteps(reading);
+    Demand(!reading.run.altered || (reading.run.seal && !reading.run.complete),
+           "what differs from its seal is not complete");
     if (reading.refused || reading.run.realtime) return;  // a copy would be of a run in lockstep
     const MemoryFile copy;
     Rewrite(reading, copy.path());
@@ -86,6 +88,24 @@ void DemandRunOrRefusal(Bytes bytes) {
   } catch (const InputError&) {
     return;  // no event log
   }
+}
+
+/// The log as a run leaves it.
+Input WithLogSeal(const Input& log) {
+  const MemoryFile file(log);
+  const Reading reading = Read(file.path());
+  log_seal_t seal{};
+  seal.header = {.run_id = kRunId, .step = kSteps - 1, .utime = (kSteps - 1) * 100'000};
+  seal.digest = reading.run.digest;
+  seal.steps = reading.run.steps;
+  seal.complete = 1;
+  seal.scenario_hash = reading.run.scenario_hash;
+  seal.file_hash = HashOf({reinterpret_cast<const char*>(log.data()), log.size()});
+  seal.role = {"world"};
+  seal.build_id = {4711};
+  seal.num_roles = 1;
+  SealLog(file.path(), reading.run.events, seal, nullptr);
+  return file.Content();
 }
 
 }  // namespace
@@ -117,7 +137,7 @@ std::vector<Input> Seeds() {
     EventLogWriter writer(reversed.path());
     for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
-  return {log, torn, sealed.Content(), reversed.Content()};
+  return {log, torn, sealed.Content(), reversed.Content(), WithLogSeal(log)};
 }
 
 }  // namespace fogline::fuzz

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <csignal>
+#include <deque>
 #include <functional>
 #include <thread>
 
 #include "services/recorder/event_log.h"
+#include "services/recorder/log_seal.h"
 #include "services/runtime/announcements.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/this_process.h"
@@ -197,6 +199,60 @@ TEST(AnnounceTest, ARoleThatIsKilledIsFoundAgainByItsSuccessor) {
   EXPECT_EQ(second.Wait(), 0) << second.Err();
 }
 
+TEST(AnnounceTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
+  Meeting meeting;
+  std::deque<Background> drivers;
+  for (int i = 0; i < 2; ++i) {
+    drivers.emplace_back(meeting.Command("fogline-driver", {}));
+    ASSERT_TRUE(drivers.back().WaitForErr("waiting for a run", kPatience));
+  }
+  const Outcome run =
+      RunCommand(meeting.Run({"--transport", "udpm", "--json", "--external", "driver"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest());
+  EXPECT_TRUE(json::parse(run.out)["restarts"].empty()) << run.out;
+  // AND the other takes part in the next one
+  const Outcome next = RunCommand(meeting.Run({"--transport", "udpm", "--external", "driver"}));
+  ASSERT_EQ(next.code, 0) << next.err;
+  for (Background& driver : drivers) EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
+/// A run with a driver from elsewhere, whose runner is killed under way.
+void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"--external", "driver", "--pace", "1"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  Background run(meeting.Run(arguments));
+  ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
+  run.Signal(SIGKILL);
+  run.Wait();
+}
+
+TEST(AnnounceTest, ARoleWhoseRunnerWasKilledGoesToTheNextRunThatWaitsForIt) {
+  Meeting meeting;
+  Background driver(meeting.Command("fogline-driver", {}));
+  KillRunner(meeting, {"--transport", "udpm"});
+  const Outcome run =
+      RunCommand(meeting.Run({"--transport", "udpm", "--json", "--external", "driver"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest());
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
+TEST(AnnounceTest, ARunSaysThatTheRoleItWaitsForIsInARunWhoseRunnerIsSilent) {
+  Meeting meeting;
+  const std::string url = FreshMulticastUrl();
+  Background driver(meeting.Command("fogline-driver", {"--lcm-url", url}));
+  KillRunner(meeting, {"--lcm-url", url});
+  const Outcome run = RunCommand(meeting.Run({"--lcm-url", url, "--json", "--external", "driver"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest());
+  EXPECT_THAT(run.err, HasSubstr("driver (pid " + std::to_string(driver.pid()) + " on "));
+  EXPECT_THAT(run.err, HasSubstr(" is not free: it comes when that run is over, or when its runner "
+                                 "has been silent for 2 s\n"));
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+  EXPECT_THAT(driver.Err(), HasSubstr(" waits for the driver\n"));
+}
+
 TEST(AnnounceTest, ARoleComesBackFromARunThatIsNotThere) {
   Meeting meeting;
   Bus bus(meeting.url());
@@ -264,9 +320,12 @@ TEST(AnnounceTest, ABeaconIsNeitherInTheLogNorInTheDigest) {
   EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest({"--set", "/steps=30"}));
   EventLogReader log(meeting.Log());
   while (const auto event = log.Next()) {
-    EXPECT_TRUE(std::ranges::any_of(kChannels, [&event](const ChannelInfo& channel) {
-      return channel.name == event->channel && channel.Logged();
-    })) << event->channel;
+    EXPECT_TRUE(IsLogSeal(*event) || std::ranges::any_of(kChannels,
+                                                         [&event](const ChannelInfo& channel) {
+                                                           return channel.name == event->channel &&
+                                                                  channel.Logged();
+                                                         }))
+        << event->channel;
   }
 }
 
@@ -274,7 +333,11 @@ class AnnounceOnMachineTest : public NetworkTest {};
 
 TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOfThat) {
   const Machine island("island");
-  const Outcome run = RunCommand(island.On(Run({"--transport", "tcpq", "--set", "/steps=30"})));
+  // Where programs meet over TCP there is no announcing.
+  std::vector<std::string> command{"env", "LCM_DEFAULT_URL=tcpq://127.0.0.1:1"};
+  const auto rest = Run({"--transport", "udpm", "--set", "/steps=30"});
+  command.insert(command.end(), rest.begin(), rest.end());
+  const Outcome run = RunCommand(island.On(command));
   EXPECT_EQ(Result(run)["steps"], 30);
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 2) << run.err;
 }

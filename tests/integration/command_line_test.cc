@@ -1,10 +1,15 @@
 // The command line as a person meets it: what it says when asked, and when it cannot follow.
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "services/graph.h"
 #include "tests/support/command.h"
@@ -92,6 +97,15 @@ TEST(CommandLineTest, NamesAVerbThatIsNoneAndTheOneThatMayBeMeant) {
   EXPECT_EQ(ErrorOf({"levitate"}), "fogline: error: no verb \"levitate\" (see fogline --help)\n");
 }
 
+TEST(CommandLineTest, ShowsNoHelpOfAVerbThatIsNone) {
+  for (const char* asked : {"--help", "-h", "--version"}) {
+    EXPECT_EQ(ErrorOf({"tabel", asked}),
+              "fogline: error: no verb \"tabel\"; did you mean \"table\"? (see fogline --help)\n");
+    EXPECT_EQ(ErrorOf({asked, "levitate"}),
+              "fogline: error: no verb \"levitate\" (see fogline --help)\n");
+  }
+}
+
 TEST(CommandLineTest, NamesAnOptionThatIsNoneAndTheOneThatMayBeMeant) {
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--sede=7"}),
             "fogline run: error: no option \"--sede\"; did you mean \"--seed\"? "
@@ -144,6 +158,140 @@ TEST(CommandLineTest, NamesTheFileThatMayBeMeant) {
             "scenario/paper" + missing + "\"scenario/paper.json\"?\n");
   EXPECT_EQ(ErrorOf({"report", "--curves", "scenario/densefog.json"}),
             "scenario/densefog.json" + missing + "\"scenario/dense_fog.json\"?\n");
+}
+
+TEST(CommandLineTest, MeansAScenarioWhereOneIsWanted) {
+  const ScratchFolder folder;
+  std::filesystem::copy(SourceDirectory() / "scenario/paper.json", folder.File("paper.json"));
+  std::ofstream(folder.File("papre.csv")) << "a,b\n";
+  const std::string wrong = folder.File("papre");
+  EXPECT_EQ(ErrorOf({"run", wrong}),
+            wrong + ": error: cannot be read: No such file or directory; did you mean \"" +
+                folder.File("paper.json") + "\"?\n");
+}
+
+TEST(CommandLineTest, WaitsForNoPipeThatIsGivenAsALogOrKey) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.File("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string error = pipe + ": error: cannot read the log: it is no regular file\n";
+  for (const char* verb : {"metrics", "digest", "events", "report"}) {
+    EXPECT_EQ(ErrorOf({verb, pipe}), error);
+  }
+  EXPECT_EQ(ErrorOf({"replay", pipe, "--all"}), error);
+  EXPECT_EQ(ErrorOf({"diff", pipe, pipe}), error);
+  EXPECT_EQ(ErrorOf({"export", pipe, "--out", folder.File("out")}), error);
+  EXPECT_EQ(ErrorOf({"compare", pipe, pipe}), error);
+  EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--key", pipe}),
+            pipe + ": error: cannot read the key: it is no file\n");
+  EXPECT_EQ(ErrorOf({"check", folder.path().string()}),
+            folder.path().string() + ": error: cannot be read: it is a folder\n");
+  EXPECT_EQ(ErrorOf({"check", "/dev/zero"}),
+            "/dev/zero: error: cannot be read: it is neither a file nor a pipe\n");
+}
+
+TEST(CommandLineTest, ReadsAScenarioFromAPipeThatAProcessWritesInto) {
+  const Outcome outcome = RunCommand({"bash", "-c",
+                                      Program("fogline") +
+                                          " check <(cat scenario/paper.json) && cat "
+                                          "scenario/paper.json | " +
+                                          Program("fogline") + " check /dev/stdin"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST(CommandLineTest, SaysWhatAFolderOrAnEmptyFileIsInPlaceOfALog) {
+  const ScratchFolder folder;
+  const std::string name = folder.path().string();
+  const std::string empty = folder.File("empty.lcm");
+  std::ofstream{empty};
+  for (const char* verb : {"metrics", "digest", "events", "report"}) {
+    EXPECT_EQ(ErrorOf({verb, name}), name +
+                                         ": error: cannot read the log: it is a folder; its "
+                                         "logs are " +
+                                         name + "/*.lcm\n");
+    EXPECT_EQ(ErrorOf({verb, empty}),
+              empty + ": error: the log is empty: no run has begun to write it\n");
+  }
+}
+
+TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
+  const ScratchFolder folder;
+  int failed = 0;
+  for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
+    for (int limit = 12; limit <= 28; limit += 4) {  // below, libraries cannot be loaded
+      const Outcome outcome =
+          RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
+                      Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",
+                      "--transport", transport, "--force", "--log", folder.File("run.lcm")});
+      EXPECT_TRUE(outcome.code == 0 || outcome.code == 3)
+          << transport << " " << limit << ": " << outcome.code << " " << outcome.err;
+      if (outcome.code != 3) continue;
+      EXPECT_THAT(outcome.err, HasSubstr("Too many open files")) << transport << " " << limit;
+      ++failed;
+    }
+  }
+  EXPECT_GT(failed, 3);
+  // What is to be done stands behind it.
+  const Outcome outcome =
+      RunCommand({"sh", "-c", "ulimit -n 12; exec \"$@\"", "sh", Program("fogline"), "run",
+                  "scenario/paper.json", "--transport", "udpm", "--log", folder.File("x.lcm")});
+  EXPECT_THAT(outcome.err, HasSubstr("ulimit -n 1024"));
+}
+
+TEST(CommandLineTest, PrintsNoNameThatATerminalWouldObey) {
+  const ScratchFolder folder;
+  // A name that colours, breaks the line, and turns round what stands behind it.
+  const std::string log = folder.File("a\x1b[31m\nb\xe2\x80\xae.lcm");
+  const std::string shown = folder.File("a\\u001b[31m\\u000ab\\u202e.lcm");
+  const auto expect_shown = [&](std::vector<std::string> arguments) {
+    SCOPED_TRACE(arguments.front());
+    arguments.insert(arguments.begin(), Program("fogline"));
+    const Outcome outcome = RunCommand(arguments);
+    const std::string said = outcome.out + outcome.err;
+    EXPECT_THAT(said, HasSubstr(shown));
+    EXPECT_THAT(said, testing::Not(HasSubstr("\x1b")));
+    EXPECT_THAT(said, testing::Not(HasSubstr("\xe2\x80\xae")));
+    EXPECT_THAT(said, testing::Not(HasSubstr("[31m\n")));
+  };
+  const std::vector<std::string> run{
+      "run", "scenario/paper.json", "--transport", "direct", "--set", "/steps=5", "--log", log};
+  expect_shown(run);
+  expect_shown(run);  // it is there
+  for (const char* verb : {"digest", "metrics", "events"}) expect_shown({verb, log});
+  expect_shown({"diff", log, log + "x"});
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) - 1);
+  for (const char* verb : {"digest", "metrics", "events"}) expect_shown({verb, log});
+  expect_shown({"diff", log, log});
+  expect_shown({"replay", log, "--all"});
+  expect_shown({"export", log, "--out", folder.File("csv")});
+  expect_shown({"compare", log, "scenario/data/acc_platoon_a.csv"});
+  for (const char* verb : {"run", "table", "sweep", "check"}) expect_shown({verb, log});
+  expect_shown({"report", "--curves", log});
+  expect_shown({"run", "scenario/paper.json", "--key", log});
+  expect_shown({"sweep", "scenario/paper.json", "--out", log});
+  expect_shown({"sweep", "--merge", log, "--out", folder.File("whole.csv")});
+}
+
+TEST(CommandLineTest, PrintsJsonThatNoTerminalObeysOfAnyName) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("a\x1b\xc2\x9b\xe2\x80\xae.lcm");
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                        "--set", "/steps=5", "--log", log})
+                .code,
+            0);
+  const Outcome digest = RunCommand({Program("fogline"), "digest", "--json", log});
+  EXPECT_EQ(nlohmann::json::parse(digest.out)[0]["log"], log);
+  for (const char* control : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"}) {
+    EXPECT_THAT(digest.out, testing::Not(HasSubstr(control)));
+  }
+  // Which JSON cannot carry.
+  const std::string latin = folder.File("f\xf6hn.lcm");
+  std::filesystem::rename(log, latin);
+  for (const char* verb : {"digest", "metrics", "events"}) {
+    const Outcome outcome = RunCommand({Program("fogline"), verb, "--json", latin});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out)[0]["log"], folder.File("f\xef\xbf\xbdhn.lcm"));
+  }
 }
 
 TEST(CommandLineTest, NamesTheLogThatMayBeMeant) {

@@ -101,6 +101,10 @@ class WatchedRun {
     gone_[pid] = true;
     kill(pid, signal);
   }
+  /// What a process has said last of its state, -1 if nothing.
+  std::int8_t StateOf(const std::string& role, pid_t pid) {
+    return last_[role].contains(pid) ? last_[role][pid].state : std::int8_t{-1};
+  }
   void WaitForState(const std::string& role, std::int8_t state) {
     const pid_t pid = PidOf(role);
     WaitUntil([&] { return last_[role][pid].state == state; }, "another state of " + role);
@@ -123,6 +127,7 @@ class WatchedRun {
   }
 
   Background& run() { return run_; }
+  std::string RunId() const { return run_.Err().substr(4, run_.Err().find(" on ") - 4); }
   const std::string& url() const { return bus_.url(); }
   std::string File(const std::string& name) const { return folder_.File(name); }
 
@@ -296,12 +301,38 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesEndsTheRunByBothNames) {
   WatchedRun watched({}, 100'000);
   watched.WaitForStep(100);
   const std::string ours = std::to_string(watched.PidOf("acc"));
-  const Background second({Program("fogline-acc"), "--lcm-url", watched.url()});
+  const Background second(
+      {Program("fogline-acc"), "--lcm-url", watched.url(), "--run-id", watched.RunId()});
   EXPECT_EQ(watched.run().Wait(), 3);
   const std::string err = watched.run().Err();
   EXPECT_THAT(err, HasSubstr("error: two processes are the acc: pid "));
   EXPECT_THAT(err, HasSubstr("pid " + ours + " on "));
   EXPECT_THAT(err, HasSubstr("pid " + std::to_string(second.pid()) + " on "));
+}
+
+TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
+  WatchedRun watched;
+  watched.WaitForStep(100);
+  const Background stray({Program("fogline-acc"), "--lcm-url", watched.url()});
+  EXPECT_TRUE(watched.ExpectSameResult()["restarts"].empty());
+  EXPECT_TRUE(IsAlive(stray.pid()));
+}
+
+TEST(CrashTest, OfARoleFromElsewhereThatComesToLifeAgainIsNone) {
+  // GIVEN a driver that stands still, and another one that has taken its place
+  WatchedRun watched({"--external", "driver"}, 6000);
+  const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
+  Background first(command);
+  watched.WaitForStep(100);
+  first.Signal(SIGSTOP);
+  Background second(command);
+  watched.WaitUntil([&] { return watched.StateOf("driver", second.pid()) == status_t::RUNNING; },
+                    "the other driver");
+  // WHEN it goes on, THEN it leaves the run to the other
+  first.Signal(SIGCONT);
+  EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
+  EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);
+  EXPECT_EQ(second.Wait(), 0) << second.Err();
 }
 
 TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
@@ -322,6 +353,30 @@ TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
                                      ": No space left on device\n"));
   EXPECT_THAT(outcome.err, HasSubstr("cut off after event "));
   EXPECT_THAT(outcome.out, testing::MatchesRegex("[0-9a-f]+ .*run.lcm\n"));
+}
+
+TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgain) {
+  for (const char* transport : {"udpm", "memq", "direct"}) {
+    SCOPED_TRACE(transport);
+    const ScratchFolder folder;
+    const std::string log = folder.File("run.lcm");
+    // GIVEN a shell that allows files of 64 KiB, about fifty steps
+    const Outcome outcome =
+        RunCommand({"bash", "-c", "ulimit -f 64; exec \"$0\" run scenario/paper.json --log \"$@\"",
+                    Program("fogline"), log, "--transport", transport});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("cannot write to " + log +
+                                       ": the file size limit of 65536 bytes is reached; "
+                                       "ulimit -f unlimited lifts it\n  the log so far: " +
+                                       log + "\n  to go on: fogline run --resume " + log));
+    EXPECT_EQ(outcome.err.find("started again"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::filesystem::file_size(log), 65'536U);
+    // WHEN the limit is lifted, THEN the run goes on
+    const Outcome rest =
+        RunCommand({Program("fogline"), "run", "--resume", log, "--transport", transport});
+    EXPECT_EQ(rest.code, 0) << rest.err;
+    EXPECT_THAT(rest.out, HasSubstr("digest dc509616fb13af4c"));
+  }
 }
 
 /// How many processes are to be killed: a few, unless the campaign wants more.

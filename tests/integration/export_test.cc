@@ -270,6 +270,17 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   EXPECT_EQ(error(out_), out_ + "/TRUTH.csv: error: --out: the file exists; --force replaces it\n");
   EXPECT_EQ(Export({"--out", mat_, "--force"}).code, 0);
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 0);
+  // Not even then what no export has written.
+  std::ofstream(mat_) << "MATLAB 5.0 MAT-file, my own analysis";
+  EXPECT_EQ(Export({"--out", mat_, "--force"}).err,
+            mat_ + ": error: --out: the file is no export and stays as it is, --force or not\n");
+  const std::string csv = out_ + "/RADAR.csv";
+  std::ofstream(csv) << "range,rate\n";
+  EXPECT_EQ(Export({"--out", out_, "--force"}).err,
+            csv + ": error: --out: the file is no export and stays as it is, --force or not\n");
+  std::filesystem::remove(csv);
+  std::ofstream(out_ + "/scenario.json") << "{\"mine\": 1}";
+  EXPECT_EQ(Export({"--out", out_, "--force"}).code, 2);
   EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: Not a directory\n");
   EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
 }
@@ -301,12 +312,12 @@ TEST_F(ExportTest, FailsOnAFullDiskAndKeepsTheMatFileThatWasThere) {
   const ScratchFolder folder;
   const Outcome outcome = RunCommand({"unshare", "--mount", "sh", "-c",
                                       "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
-                                      "echo precious > \"$1/run.mat\"\n"
+                                      "echo 'MATLAB 5.0 MAT-file, Fogline' > \"$1/run.mat\"\n"
                                       "\"$0\" export \"$2\" --out \"$1/run.mat\" --force; code=$?\n"
                                       "ls \"$1\"; cat \"$1/run.mat\"; exit $code",
                                       Program("fogline"), folder.path().string(), log_});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
-  EXPECT_EQ(outcome.out, "run.mat\nprecious\n");
+  EXPECT_EQ(outcome.out, "run.mat\nMATLAB 5.0 MAT-file, Fogline\n");
   EXPECT_THAT(outcome.err, HasSubstr("run.mat: cannot write the MAT-file"));
 }
 

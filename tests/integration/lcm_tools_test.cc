@@ -12,6 +12,7 @@
 
 #include "services/driver/driver.h"
 #include "services/recorder/event_log.h"
+#include "services/recorder/log_seal.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/step_node.h"
 #include "tests/support/command.h"
@@ -376,7 +377,9 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
     return ended;
   }));
   // THEN everything has arrived, in order, and decodes
-  EXPECT_TRUE(received == ReadTraffic(log));
+  Traffic logged = ReadTraffic(log);
+  EXPECT_EQ(logged.erase(std::string(kLogSealChannel)), 1U);  // no message of a process
+  EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());
 }

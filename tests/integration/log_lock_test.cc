@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -180,6 +181,46 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
   first.Signal(SIGINT);
   EXPECT_EQ(first.Wait(), 130) << first.Err();
   EXPECT_EQ(RunCommand(With(table, {"--transport", "direct"})).code, 0) << "free in the end";
+}
+
+TEST_F(LogLockTest, OfRunsThatBeginAtOnceIntoOneLogOneHasIt) {
+  constexpr int kRuns = 6;
+  for (int round = 0; round < 15; ++round) {
+    std::filesystem::remove(log_);
+    std::vector<std::unique_ptr<Background>> runs;
+    for (int i = 0; i < kRuns; ++i) {
+      runs.push_back(std::make_unique<Background>(
+          With(run_, {"--transport", "direct", "--set", "/steps=10"})));
+    }
+    int done = 0;
+    for (const auto& run : runs) done += run->Wait() == 0 ? 1 : 0;
+    ASSERT_EQ(done, 1) << "round " << round;
+    EXPECT_GT(std::filesystem::file_size(log_), 0U);
+  }
+}
+
+TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
+  // GIVEN a run that waits in vain for its driver, with a scenario and no step in its log
+  const Outcome run = RunCommand(With(WaitingForADriver(run_), {"--wait", "0.5"}));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("waited 0.5 s for the driver in vain"));
+  EXPECT_THAT(run.err, HasSubstr("\n  no log was written\n"));
+  EXPECT_FALSE(std::filesystem::exists(log_));
+  // AND a recorder that waits in vain for a run
+  const std::vector<std::string> recorder{Program("fogline-recorder"), "--log",  log_, "--lcm-url",
+                                          FreshMulticastUrl(),         "--wait", "0.5"};
+  EXPECT_EQ(RunCommand(recorder).code, 3);
+  EXPECT_FALSE(std::filesystem::exists(log_));
+  // AND an older log is as it was, where it would have been replaced
+  ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
+  const auto size = std::filesystem::file_size(log_);
+  EXPECT_EQ(RunCommand(recorder).code, 3);
+  EXPECT_EQ(std::filesystem::file_size(log_), size);
+}
+
+TEST_F(LogLockTest, AnEmptyFileIsAsGoodAsNone) {
+  std::ofstream(log_).flush();
+  EXPECT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
 }
 
 TEST_F(LogLockTest, AnInterruptedRunSpeaksOfNoLogWhereThereIsNone) {

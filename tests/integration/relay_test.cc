@@ -8,12 +8,14 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "services/recorder/event_log.h"
+#include "services/recorder/log_seal.h"
 #include "tests/integration/relay_fixture.h"
 
 namespace fogline::test {
@@ -164,6 +166,35 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
   EXPECT_FALSE(bus.Wait(milliseconds(1)));
 }
 
+TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
+  const auto relay = std::make_unique<Relay>();
+  const std::string url = relay->url();
+  Bus bus(url);
+  Bus other(url);
+  int heard = 0;
+  bus.Subscribe("A", [&heard](Bytes) { ++heard; });
+  ASSERT_TRUE(RoundTrip(bus));
+  // GIVEN a relay that is killed: what is sent is lost, and counted
+  relay->process().Signal(SIGKILL);
+  relay->process().Wait();
+  const TimePoint end = Clock::now() + kPatience;
+  while (other.failed_sends().count == 0 && Clock::now() < end) other.Publish("A", Payload(1));
+  EXPECT_THAT(other.failed_sends().error, HasSubstr("lost the relay " + url + ": "));
+  EXPECT_TRUE(other.failed_sends().since);
+  // WHEN another one is there
+  Background next({Program("fogline-relay"), "--listen", url.substr(7)});
+  // THEN messages go as before
+  heard = 0;
+  while (heard == 0 && Clock::now() < end) {
+    other.Publish("A", Payload(1));
+    other.Wait(milliseconds(1));
+    bus.Wait(milliseconds(1));
+  }
+  EXPECT_GT(heard, 0);
+  EXPECT_FALSE(other.failed_sends().since);
+  EXPECT_TRUE(RoundTrip(other));
+}
+
 // ---- runs --------------------------------------------------------------------------------------
 
 TEST(RelayTest, CarriesTwoRunsAtOnceThatDoNotMix) {
@@ -238,7 +269,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    if (channel == ChannelOf<run_t>().name) continue;  // ours keeps one RUN, with another phase
+    // Ours keeps one RUN, with another phase, and a seal, which no process says.
+    if (channel == ChannelOf<run_t>().name || channel == kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))
         << channel << ", step " << ReadInt64(payload, kStepOffset);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/recorder/event_log.h"
+#include "services/recorder/log_seal.h"
 #include "services/runtime/wire.h"
 #include "tests/support/command.h"
 
@@ -60,12 +60,14 @@ class ReplayTest : public testing::Test {
     for (const auto& role : json["roles"]) EXPECT_EQ(role["same"], true) << role;
   }
 
-  /// A copy of a log in which the track of a step has a distance that is 0.25 m larger.
+  /// A copy of a log in which the track of a step has a distance that is 0.25 m larger; without its
+  /// seal.
   std::string Altered(const std::string& log, std::int64_t step) const {
     const std::string altered = folder_.File("altered.lcm");
     EventLogReader reader(log);
     EventLogWriter writer(altered);
     while (const auto event = reader.Next()) {
+      if (IsLogSeal(*event)) continue;
       std::vector<std::uint8_t> bytes(event->data.begin(), event->data.end());
       track_t track{};
       if (event->channel == "TRACK" && Decode(bytes, track) && track.header.step == step) {

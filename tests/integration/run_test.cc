@@ -196,12 +196,12 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
                   "driver", "--lcm-url", FreshMulticastUrl()});
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log));
-  // WHEN a role dies, and then the user loses patience
+  // WHEN a role dies, and then the runner
   kill(PidOf(run.Err(), "radar"), SIGKILL);
   EXPECT_TRUE(run.WaitForErr("was killed by signal 9 (Killed) before step 0; started again"))
       << run.Err();
-  run.Signal(SIGINT);
-  EXPECT_EQ(run.Wait(), 130);
+  run.Signal(SIGKILL);
+  run.Wait();
   // THEN neither the run nor its log has a step -1
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
   EXPECT_EQ(metrics.code, 1);
@@ -225,6 +225,17 @@ TEST(RunTest, FailsWhereItsResultCannotBeWritten) {
     EXPECT_EQ(outcome.err,
               "fogline run: error: standard output cannot be written, such as on a full disk\n");
   }
+}
+
+TEST(RunTest, SaysInItsFirstLineThatItEndedInACollision) {
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                  "--set", "/world/host_speed_mps=40", "--set", "/world/host_gap_m=5"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  const std::string headline = run.out.substr(0, run.out.find('\n'));
+  EXPECT_NE(headline.find(": 4 of 500 steps in "), std::string::npos) << headline;
+  EXPECT_NE(headline.find(" repairs: the host hit the preceding car at 0.2"), std::string::npos)
+      << headline;
 }
 
 TEST(RunTest, HangingUpEndsARunAsCtrlCDoes) {

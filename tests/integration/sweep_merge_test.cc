@@ -16,6 +16,19 @@ TEST_F(SweepMergeTest, MergesSevenShardsIntoTheFileOfTheWholeSweep) {
   EXPECT_EQ(merge.out, "90 rows\n" + File("merged.csv") + "\n");
   EXPECT_EQ(Content(File("merged.csv")), whole);
   EXPECT_EQ(Content(File("merged.csv.json")), Content(File("whole.csv.json")));
+  EXPECT_EQ(Content(File("merged.csv.sums")), Content(File("whole.csv.sums")));
+}
+
+TEST_F(SweepMergeTest, NoticesADigitThatAShardHasNotWritten) {
+  const Words shards = Shards(2, kShort + Words{"--seeds", "1:4"});
+  std::string text = Content(File(shards[1]));
+  text[text.size() - 2] = text[text.size() - 2] == '1' ? '2' : '1';
+  std::ofstream(File(shards[1])) << text;
+  const Outcome merge = Merge(shards, "merged.csv");
+  EXPECT_EQ(merge.code, 2);
+  EXPECT_EQ(merge.err,
+            File(shards[1]) + ":3: error: not the line that its sweep has written there\n");
+  EXPECT_FALSE(std::filesystem::exists(File("merged.csv")));
 }
 
 TEST_F(SweepMergeTest, MergesShardsOfWhichSomeHaveNothingToDo) {
@@ -77,11 +90,15 @@ TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
   EXPECT_EQ(Merge(shards, "there.csv").err,
             File("there.csv") + ": error: --out: the file exists; --force replaces it\n");
   EXPECT_EQ(Content(File("there.csv")), "precious");
-  EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "--force", "--out", File("there.csv"),
-                        "--merge", File(shards[0]), File(shards[1])})
-                .code,
-            0);
-  EXPECT_EQ(Lines(Content(File("there.csv"))), 1 + 4);
+  const Words forced{Program("fogline"), "sweep",         "--force", "--merge",
+                     File(shards[0]),    File(shards[1]), "--out"};
+  EXPECT_EQ(RunCommand(forced + Words{File("there.csv")}).err,
+            File("there.csv") +
+                ": error: --out: the file is no sweep and stays as it is, --force or not\n");
+  EXPECT_EQ(Content(File("there.csv")), "precious");
+  Made("sweep.csv", kShort + Words{"--seeds", "7:7"});
+  EXPECT_EQ(RunCommand(forced + Words{File("sweep.csv")}).code, 0);
+  EXPECT_EQ(Lines(Content(File("sweep.csv"))), 1 + 4);
   const Outcome onto_shard =
       RunCommand({Program("fogline"), "sweep", "--force", "--out", File(shards[0]), "--merge",
                   File(shards[0]), File(shards[1])});

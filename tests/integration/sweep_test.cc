@@ -156,6 +156,73 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
   EXPECT_EQ(Content(File("file.csv")), text);
 }
 
+TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
+  const Words sweep = kShort + kThresholds + Words{"--seeds", "1:4"};
+  const std::string whole = Made("file.csv", sweep);
+  // GIVEN a file that ends early, and another digit in the middle of a row, far from its key
+  std::string text = whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1);
+  const std::size_t digit = text.find_last_of("123456789", text.find('\n', text.size() / 2) - 1);
+  text[digit] = text[digit] == '1' ? '2' : '1';
+  std::ofstream(File("file.csv")) << text;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(digit), '\n');
+  const Outcome refused = Sweep("file.csv", sweep);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err, File("file.csv") + ":" + std::to_string(line) +
+                             ": error: --out: not the line that this sweep has written there; "
+                             "--force begins anew\n");
+  EXPECT_EQ(Content(File("file.csv")), text);
+  // AND whatever a copy without its checksums has is believed, and checked from then on
+  std::filesystem::remove(File("file.csv.sums"));
+  EXPECT_EQ(Sweep("file.csv", sweep).code, 0);
+  std::filesystem::resize_file(File("file.csv"), text.size());
+  EXPECT_EQ(Lines(Made("file.csv", sweep)), Lines(whole));
+}
+
+TEST_F(SweepTest, HasTheSameChecksumsWhereverAKillHasTornThem) {
+  const Words sweep = kShort + kThresholds + Words{"--seeds", "1:3", "--jobs", "1"};
+  const std::string whole = Made("torn.csv", sweep);
+  const std::string sums = Content(File("torn.csv.sums"));
+  EXPECT_EQ(Lines(sums), 9);
+  for (std::size_t cut = 1; cut <= sums.size(); cut += 4) {
+    std::filesystem::resize_file(File("torn.csv.sums"), cut);
+    EXPECT_EQ(Made("torn.csv", sweep), whole) << "cut at " << cut;
+    EXPECT_EQ(Content(File("torn.csv.sums")), sums) << "cut at " << cut;
+  }
+}
+
+TEST_F(SweepTest, FailsWhenItsFileIsRemovedMeanwhile) {
+  for (const char* how : {"removed", "replaced"}) {
+    Background sweep(Command("file.csv", kThresholds + Words{"--seeds", "1:100000"}));
+    ASSERT_TRUE(WaitForLines("file.csv", 2));
+    if (std::string(how) == "removed") {
+      std::filesystem::remove(File("file.csv"));
+    } else {
+      std::ofstream(File("other")) << "precious";
+      std::filesystem::rename(File("other"), File("file.csv"));
+    }
+    EXPECT_EQ(sweep.Wait(), 3) << how;
+    EXPECT_THAT(sweep.Err(), HasSubstr("file.csv: the file was removed or replaced while the sweep "
+                                       "wrote it, and its rows are lost"));
+  }
+  EXPECT_EQ(Content(File("file.csv")), "precious");
+}
+
+TEST_F(SweepTest, ChoosesANameOfItsOwnBesideAnotherSweep) {
+  const auto sweep = [&](const Words& more) {
+    const Outcome outcome = RunCommand(
+        Words{"sh", "-c", "cd '" + folder_.path().string() + "' && exec \"$@\"", "sh",
+              Program("fogline"), "sweep", (SourceDirectory() / "scenario/paper.json").string()} +
+        kShort + more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.out.substr(outcome.out.find('\n') + 1);
+  };
+  EXPECT_EQ(sweep({"--seeds", "1:2"}), "paper-sweep.csv\n");
+  EXPECT_EQ(sweep({"--seeds", "1:3"}), "paper-sweep-2.csv\n");
+  EXPECT_EQ(sweep({"--seeds", "1:2"}), "paper-sweep.csv\n") << "it goes on with its own";
+  std::ofstream(File("paper-sweep-3.csv")) << "no sweep";
+  EXPECT_EQ(sweep({"--seeds", "1:4"}), "paper-sweep-4.csv\n");
+}
+
 TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
   const auto error = [&](const Words& more) {
     const Outcome outcome = Sweep("none.csv", more);

@@ -20,6 +20,23 @@ nlohmann::json TableRows(const std::vector<std::string>& more) {
   return nlohmann::json::parse(outcome.out, nullptr, false)["rows"];
 }
 
+TEST(TableTextTest, SaysOnceThatThereIsNoSafetyToImproveWithoutFog) {
+  const Outcome table = RunCommand({Program("fogline"), "table", "scenario/paper.json", "--set",
+                                    "/fog/model=none", "--set", "/steps=310"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.out,
+              testing::EndsWith("\n\nno SI: without traded control the following car never comes "
+                                "too close (no fog?)\n"));
+  EXPECT_THAT(table.out, testing::Not(HasSubstr("0 seeds")));
+}
+
+TEST(TableTextTest, SaysInItsHelpForWhatItObeysTheEnvironment) {
+  EXPECT_THAT(RunCommand({Program("fogline"), "table", "--help"}).out,
+              testing::ContainsRegex("processes for[ \n]+--external go to"));
+  EXPECT_THAT(RunCommand({Program("fogline"), "run", "--help"}).out,
+              testing::Not(testing::ContainsRegex("processes for[ \n]+--external")));
+}
+
 class TableTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(TableTest, MeetsThePublishedOneToAPointWithTheScenariosOwnSeed) {

@@ -1,5 +1,7 @@
 // The scripts in tools/ explain themselves, and do nothing else while they do.
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -57,6 +59,19 @@ TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
     EXPECT_EQ(outcome.err,
               script + ": error: unknown argument --fast; see " + script + " --help\n");
   }
+}
+
+TEST(ToolsTest, BuildSaysWhatTheCompilerSaysWhereErrorsAreLookedFor) {
+  // GIVEN a ninja whose compiler finds a mistake
+  const ScratchFolder folder;
+  const std::string ninja = folder.File("ninja");
+  std::ofstream(ninja) << "#!/bin/sh\necho 'b.cc:1: error: mistake'\nexit 1\n";
+  std::filesystem::permissions(ninja, std::filesystem::perms::owner_all);
+  const Outcome outcome = RunCommand(
+      {"env", "PATH=" + folder.path().string() + ":" + std::getenv("PATH"), "tools/build", "all"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("b.cc:1: error: mistake\n"));
 }
 
 TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {

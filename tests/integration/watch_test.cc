@@ -1,12 +1,18 @@
 // `fogline top` on live traffic and on a log that lcm-logplayer plays; `fogline doctor` on machines
 // with and without a network.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <set>
 
 #include "services/runtime/bus.h"
@@ -41,6 +47,8 @@ class Top {
       : bus_(bus),
         process_({Program("fogline"), "top", "--json", "--interval", "0.2", "--for", "60",
                   "--lcm-url", bus.url()}) {}
+
+  pid_t pid() const { return process_.pid(); }
 
   /// Waits until it shows everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
@@ -277,6 +285,54 @@ TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
                                     " cannot be run  -> ninja -C build fogline_programs\n"));
 }
 
+TEST(TopTest, EndsWhenItsTerminalIsGone) {
+  // GIVEN top on a terminal that is not that of its session: no signal tells it
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(terminal, 0);
+  ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
+  Background top({"sh", "-c", "exec <\"$0\" >\"$0\"; exec \"$@\"", ptsname(terminal),
+                  Program("fogline"), "top", "--interval", "0.2", "--lcm-url",
+                  FreshMulticastUrl()});
+  std::array<char, 64> buffer{};
+  ASSERT_GT(read(terminal, buffer.data(), buffer.size()), 0) << "it draws";
+  // WHEN its window is closed
+  close(terminal);
+  EXPECT_EQ(top.Wait(kPatience), 3);
+  EXPECT_EQ(top.Err(), "fogline top: error: the terminal is gone\n");
+}
+
+/// Resident memory of a process, bytes.
+std::int64_t MemoryOf(pid_t pid) {
+  std::ifstream statm("/proc/" + std::to_string(pid) + "/statm");
+  std::int64_t pages = 0;
+  statm >> pages >> pages;
+  return pages * sysconf(_SC_PAGESIZE);
+}
+
+TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
+  Bus bus(FreshMulticastUrl());
+  Top top(bus);
+  ASSERT_TRUE(top.CatchUp("BEGUN"));
+  const std::int64_t before = MemoryOf(top.pid());
+  // WHEN each message comes on a channel of its own. LCM keeps about 200 bytes of each name.
+  const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> stranger(lcm_create(bus.url().c_str()),
+                                                                &lcm_destroy);
+  constexpr int kBursts = 15;
+  constexpr int kNames = 4000;
+  for (int burst = 0; burst < kBursts; ++burst) {
+    for (int i = 0; i < kNames; ++i) {
+      const std::string name =
+          "INVENTED_" + std::string(40, 'X') + std::to_string(kNames * burst + i);
+      lcm_publish(stranger.get(), name.c_str(), "", 1);
+    }
+    ASSERT_TRUE(top.CatchUp("BURST" + std::to_string(burst)));
+  }
+  // THEN it says how many it has forgotten, and LCM has forgotten them, too
+  EXPECT_GT(top.Last()["forgotten"], kBursts * kNames / 2);
+  EXPECT_LE(top.Last()["others"].size(), 64U);
+  EXPECT_LT(MemoryOf(top.pid()) - before, 6'000'000);
+}
+
 /// Machines without a network, or with one of their own.
 class DoctorOnMachineTest : public testing::Test {
  protected:
@@ -295,7 +351,15 @@ constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const Machine island("island");
-  const Outcome before = Doctor(island, kHere);
+  // Without one LCM's own programs do not work, and no run of several machines.
+  const Outcome here = Doctor(island, kHere);
+  EXPECT_EQ(here.code, 0) << here.err;
+  const json own = json::parse(here.out);
+  EXPECT_EQ(Find(own["findings"], "check", "multicast_route")["level"], "warning");
+  EXPECT_THAT(Find(own["findings"], "check", "multicast_route")["remedy"].get<std::string>(),
+              HasSubstr(std::string(kLoopbackRoute)));
+  EXPECT_EQ(Levels(own, "multicast_loopback"), std::multiset<std::string>{"ok"});
+  const Outcome before = Doctor(island, kEverywhere);
   EXPECT_EQ(before.code, 1) << before.err;
   const json document = json::parse(before.out);
   EXPECT_EQ(document["problems"], 1);
@@ -309,7 +373,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(after.code, 0) << after.out << after.err;
   const json mended = json::parse(after.out);
   EXPECT_EQ(Find(mended["findings"], "check", "multicast_route")["what"],
-            "239.255.76.67 goes through interface lo, and stays on this machine (ttl=0)");
+            "239.255.76.67 goes over loopback and stays on this machine (ttl=0)");
   EXPECT_EQ(Levels(mended, "multicast_loopback"), std::multiset<std::string>{"ok"});
   // THEN it is enough for this machine, but not for others
   const Outcome wider = Doctor(island, kEverywhere);

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -31,6 +33,13 @@ std::string PathOf(int fd) {
 std::int64_t Counted(const std::string& counter) {
   const std::size_t at = counter.find("packets ");
   return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));
+}
+
+/// A shell line from which on UDP datagrams that match are lost on a machine.
+std::string LossOf(const std::string& match) {
+  return "nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
+         " meta l4proto udp " +
+         match + " counter name lost drop; }; }'";
 }
 
 }  // namespace
@@ -89,9 +98,30 @@ std::string Machine::Do(const std::string& script) const {
 }
 
 void Machine::LoseUdp(int per_cent) const {
-  Do("nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
-     " meta l4proto udp numgen random mod 100 < " +
-     std::to_string(per_cent) + " counter name lost drop; }; }'");
+  // nft takes no comparison that is always true.
+  Do(LossOf(per_cent < 100 ? "numgen random mod 100 < " + std::to_string(per_cent) : ""));
+}
+
+void Machine::LoseChannel(const std::string& channel) const {
+  // Behind the headers of UDP and LCM, 8 bytes each.
+  std::ostringstream name;
+  for (const char letter : channel + '\0') {
+    name << std::hex << std::setw(2) << std::setfill('0') << static_cast<int>(letter);
+  }
+  Do(LossOf("@th,128," + std::to_string(8 * (channel.size() + 1)) + " 0x" + name.str()));
+}
+
+void Machine::Enter(const std::function<void()>& function) const {
+  std::exception_ptr failed;
+  std::thread([&] {
+    try {
+      if (setns(network_, CLONE_NEWNET) != 0) ThrowErrno("setns");
+      function();
+    } catch (...) {
+      failed = std::current_exception();
+    }
+  }).join();
+  if (failed) std::rethrow_exception(failed);
 }
 
 std::int64_t Machine::LostUdp() const { return Counted(Do("nft list counter inet loss lost")); }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,14 @@ class Machine {
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
   /// From now on the kernel loses so many of 100 UDP datagrams that arrive here, its own included.
   void LoseUdp(int per_cent) const;
+  /// From now on it loses those of one LCM channel.
+  void LoseChannel(const std::string& channel) const;
   /// How many it has lost.
   std::int64_t LostUdp() const;
+  /// From now on it loses none.
+  void LoseNothing() const { Do("nft delete table inet loss"); }
+  /// Calls a function whose sockets are to be on this machine.
+  void Enter(const std::function<void()>& function) const;
 
  private:
   std::string name_;
@@ -56,6 +63,10 @@ class Lab {
   const Machine& operator[](std::size_t i) const { return machines_[i]; }
   const std::vector<Machine>& machines() const { return machines_; }
 
+  /// Takes a machine's cable out of the switch, and puts it in again.
+  void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
+  void Plug(std::size_t machine) const { SetPort(machine, "up"); }
+
   /// From now on the switch sends so many of 100 UDP datagrams of each machine to the next machine
   /// twice. @throws std::runtime_error where the kernel cannot
   void RepeatUdp(int per_cent) const;
@@ -63,6 +74,10 @@ class Lab {
   std::int64_t RepeatedUdp() const;
 
  private:
+  void SetPort(std::size_t machine, const std::string& state) const {
+    switch_.Do("ip link set port" + std::to_string(machine + 1) + " " + state);
+  }
+
   Machine switch_;
   std::vector<Machine> machines_;
 };

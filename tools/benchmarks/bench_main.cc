@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include "services/runtime/diagnostics.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/present.h"
 
@@ -47,7 +48,7 @@ int Run(const Arguments& arguments) {
   const std::vector<Comparison> wanted = Wanted(arguments);
   std::vector<Finding> findings;
   for (const Comparison& comparison : wanted) {
-    fmt::print(stderr, "{} of {}: {}\n", findings.size() + 1, wanted.size(), comparison.name);
+    Complain(fmt::format("{} of {}: {}", findings.size() + 1, wanted.size(), comparison.name));
     findings.push_back(Compare(comparison, rounds));
   }
   const Occasion occasion = ThisOccasion(rounds);
@@ -88,7 +89,7 @@ int main(int argc, char** argv) {
   try {
     return fogline::Main(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fogline-bench: error: {}\n", error.what());
+    Complain(fmt::format("fogline-bench: error: {}", error.what()));
     return fogline::kFailed;
   }
 }

@@ -145,7 +145,7 @@ std::string FindingsJson(const CalibrationProblem& problem, const Findings& find
   for (std::size_t i = 0; i < problem.target.size(); ++i) {
     json["rows"].push_back(RowJson(problem.target[i], found.best.rows[i]));
   }
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace fogline

@@ -111,9 +111,9 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, MistakeList& mistakes) {
 }  // namespace
 
 std::vector<TargetRow> ReadTarget(const std::filesystem::path& file) {
-  const FileText read = ReadFile(file, kMaxFileBytes);
+  const FileText read = ReadFile(file, kMaxFileBytes, ".json");
   if (!read.error.empty()) {
-    throw InputError(fmt::format("{}: error: --target: {}", file.string(), read.error));
+    throw InputError(fmt::format("{}: error: --target: {}", PathText(file), read.error));
   }
   MistakeList mistakes;
   std::vector<TargetRow> target;
@@ -121,7 +121,7 @@ std::vector<TargetRow> ReadTarget(const std::filesystem::path& file) {
   if (!mistakes.empty()) Throw(mistakes, {{.name = file.string(), .text = read.text}});
   const auto has_number = [](const TargetRow& row) { return row.si_pct || row.rhe_pct; };
   if (std::none_of(target.begin(), target.end(), has_number)) {
-    throw InputError(fmt::format("{}: error: /rows: no row has si_pct or rhe_pct", file.string()));
+    throw InputError(fmt::format("{}: error: /rows: no row has si_pct or rhe_pct", PathText(file)));
   }
   return target;
 }

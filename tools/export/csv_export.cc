@@ -1,12 +1,15 @@
 #include "tools/export/csv_export.h"
 
 #include <deque>
+#include <fstream>
 #include <iterator>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "services/graph.h"
+#include "services/runtime/interrupt.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -52,10 +55,20 @@ void WriteChannel(const ChannelTable& table, WholeFile& file) {
   for (std::size_t row = 0; row < table.messages; ++row) {
     AppendRow(table, row, text);
     if (text.size() < kPieceBytes) continue;
+    if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
     file.Write(text);
     text.clear();
   }
   file.Write(text);
+}
+
+/// The first characters of a file.
+std::string HeadOf(const std::filesystem::path& file, std::size_t size) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(size, '\0');
+  in.read(head.data(), std::ssize(head));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head;
 }
 
 }  // namespace
@@ -69,6 +82,13 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
   return files;
 }
 
+bool IsCsvExport(const std::filesystem::path& file) {
+  // A channel's columns begin with those of its messages' header, a scenario with its version.
+  const std::string_view begin =
+      file.filename() == kScenarioFile ? "{\n  \"version\": " : "header.run_id,header.step,";
+  return HeadOf(file, begin.size()) == begin;
+}
+
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   // Named only when all of them are there, so that no folder has files of two logs.
   std::deque<WholeFile> files;
@@ -77,6 +97,8 @@ void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   }
   files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
   for (WholeFile& file : files) file.Close();
+  if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
+  for (WholeFile& file : files) file.RemoveOld();
   for (WholeFile& file : files) file.Finish();
 }
 

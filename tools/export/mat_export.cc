@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -16,6 +17,8 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/interrupt.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -35,7 +38,7 @@ struct Free {
 using Variable = std::unique_ptr<matvar_t, Free>;
 
 [[noreturn]] void Fail(const std::filesystem::path& file) {
-  throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", file.string()));
+  throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", PathText(file)));
 }
 
 template <class T>
@@ -143,13 +146,20 @@ bool IsWhole(const std::filesystem::path& file, std::size_t variables) {
 
 }  // namespace
 
+bool IsMatExport(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(std::strlen(kHeader), '\0');
+  in.read(head.data(), std::ssize(head));
+  return head == kHeader;
+}
+
 void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
   for (const ChannelTable& table : tables.channels) {
     if (BytesOf(table) < kMaxBytes) continue;
     throw InputError(fmt::format(
         "{}: error: {} has more than the 2 GB that a variable of a MAT-file can have; export the "
         "log as CSV",
-        path.string(), table.name));
+        PathText(path), table.name));
   }
   WholeFile file(path);
   std::unique_ptr<mat_t, Free> mat(Mat_CreateVer(file.part().c_str(), kHeader, MAT_FT_MAT5));
@@ -159,7 +169,10 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
       Fail(path);
     }
   };
-  for (const ChannelTable& table : tables.channels) write(StructOf(table));
+  for (const ChannelTable& table : tables.channels) {
+    if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
+    write(StructOf(table));
+  }
   write(TextVariable("scenario", tables.scenario));
   if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), tables.channels.size() + 1))
     Fail(path);

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/recorder/run_log.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/wire.h"
 
 namespace fogline {
@@ -80,14 +82,15 @@ RunTables ReadRunTables(const std::filesystem::path& log) {
   typename TabulatorsOf<decltype(kGraph)>::Type tabulators;
   try {
     while (const StepMessages* messages = reader.Next()) {
+      if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
       ForEachStepChannel([&]<class M>(std::size_t channel) {
         std::get<Tabulator<M>>(tabulators).Add((*messages)[channel]);
       });
     }
   } catch (const InputError& error) {
     const std::string_view what = error.what();
-    if (what.starts_with(log.string())) throw;
-    throw InputError(fmt::format("{}: error: {}", log.string(), what));
+    if (what.starts_with(PathText(log))) throw;
+    throw InputError(fmt::format("{}: error: {}", PathText(log), what));
   }
   ForEachStepChannel([&]<class M>(std::size_t) {
     tables.channels.push_back(std::move(std::get<Tabulator<M>>(tabulators).table()));

@@ -38,7 +38,7 @@ struct RunTables {
 };
 
 /// Reads a whole log into memory: 0.8 kB for each step with one following car.
-/// @throws InputError if it is none, or has messages that do not fit their channel
+/// @throws InputError if it is none, or has messages that do not fit their channel; Interrupted
 RunTables ReadRunTables(const std::filesystem::path& log);
 
 }  // namespace fogline

@@ -5,13 +5,18 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/file.h"
+#include "scenario/wording.h"
 #include "services/recorder/event_log.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/lcm_url.h"
 #include "tools/report/measure_text.h"
 #include "tools/sweep/whole_file.h"
@@ -24,9 +29,10 @@ namespace {
 bool Reserve(const std::filesystem::path& log) {
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST) return false;
+  if (file < 0) ThrowIfExhausted(errno, PathText(log));
   if (file < 0) {
     throw InputError(
-        fmt::format("{}: error: --log: cannot write: {}", log.string(), std::strerror(errno)));
+        fmt::format("{}: error: --log: cannot write: {}", PathText(log), std::strerror(errno)));
   }
   close(file);
   return true;
@@ -41,56 +47,58 @@ void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_v
   }
 }
 
-void PrepareLog(const std::filesystem::path& log, bool force) {
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   RequireFolderOf(log, "--log");
-  if (Reserve(log)) return;
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(log, ignored)) {
-    throw InputError(fmt::format("{}: error: --log: not a file", log.string()));
+  if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
+    throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
-  // Where another run is writing it, --force is of no use.
-  const FileLock unused(log, FileLock::Kind::kOwn, "--log", "run");
+  // Makes the file if it is missing. Of two runs that begin at once one has it, whichever made it;
+  // where another run is writing it, --force is of no use.
+  auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
+  if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {
     throw InputError(
-        fmt::format("{}: error: --log: the file exists; --force replaces it", log.string()));
+        fmt::format("{}: error: --log: the file exists; --force replaces it", PathText(log)));
   }
   if (!IsEventLogOrEmpty(log)) {
     throw InputError(
         fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
-                    log.string()));
+                    PathText(log)));
   }
+  return {log, std::move(lock)};
 }
 
-LogOfRun::LogOfRun(const std::filesystem::path& log) : log_(log) {
-  if (!log_.empty()) lock_.emplace(log_, FileLock::Kind::kOwn, "--log", "run");
-}
-
-LogOfRun::~LogOfRun() {
-  std::error_code ignored;
-  if (std::filesystem::is_empty(log_, ignored) && !ignored) std::filesystem::remove(log_, ignored);
-}
-
-std::filesystem::path FreshLog(const std::filesystem::path& scenario_file) {
+LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
   std::error_code ignored;  // Reserve() says what is wrong
   std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {
     std::filesystem::path log =
         folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
-    if (Reserve(log)) return log;
+    if (Reserve(log)) return LogOfRun(log);
   }
 }
 
 SeedRange ReadSeeds(const std::string& text) {
   const SeedRange seeds = ParseSeeds(text);
   if (seeds.count() == 1 && seeds.first > 1 && text.find(':') == std::string::npos) {
-    fmt::print(stderr, "--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}\n",
-               seeds.first);
+    Notice(fmt::format("--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}",
+                       seeds.first));
   }
   return seeds;
 }
 
-void PrintJson(const std::string& text) { fmt::print("{}\n", text); }
+void PrintJson(const nlohmann::ordered_json& json, int indent) {
+  PrintJson(json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text)); }
+
+nlohmann::ordered_json BuildJson(BuildId build) {
+  if (build == kUnknownBuild) return nullptr;
+  return BuildText(build);
+}
 
 NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
   verb.add_option("--lcm-url", url_,

@@ -1,7 +1,6 @@
 // Arguments that several verbs share.
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,7 +13,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenario/loader.h"
-#include "services/runtime/file_lock.h"
+#include "services/recorder/log_of_run.h"
+#include "services/runtime/build_id.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/experiment.h"
 #include "tools/sweep/plan.h"
 
@@ -50,29 +51,14 @@ class ScenarioArguments {
   std::string seed_;  // checked where all fields are
 };
 
-/// A log file to write: refuses one that another run is writing, one that exists unless `force`,
-/// and with it whatever is no event log; requires its folder as RequireFolderOf() does.
+/// A log file to write: refuses one that another run is writing, one that has something in it
+/// unless `force`, and with it whatever is no event log; requires its folder as RequireFolderOf()
+/// does.
 /// @throws InputError
-void PrepareLog(const std::filesystem::path& log, bool force);
-
-/// The log of a run, which no other run can have until the end of this object. Removed then if the
-/// run has left it empty, because it never began.
-class LogOfRun {
- public:
-  /// @param log that PrepareLog() or FreshLog() has made; "" for a run without one
-  /// @throws InputError if another run is writing it
-  explicit LogOfRun(const std::filesystem::path& log);
-  ~LogOfRun();
-  LogOfRun(const LogOfRun&) = delete;
-  LogOfRun& operator=(const LogOfRun&) = delete;
-
- private:
-  std::filesystem::path log_;
-  std::optional<FileLock> lock_;
-};
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
 /// "logs/STEM-1.lcm", or the first number that is free.
-std::filesystem::path FreshLog(const std::filesystem::path& scenario_file);
+LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each; one that is no log is named on stderr and left out, and the others
 /// are worked on all the same. Returns whether there was none of that kind.
@@ -83,7 +69,7 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
     try {
       work(log);
     } catch (const InputError& error) {
-      fmt::print(stderr, "{}\n", error.what());
+      Complain(error.what());
       readable = false;
     }
   }
@@ -95,8 +81,13 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
 /// @throws InputError
 SeedRange ReadSeeds(const std::string& text);
 
-/// --json output: `text` and a newline on stdout.
+/// --json output: a document and a newline on stdout. Names that are no UTF-8, which JSON cannot
+/// carry, have U+FFFD there; what a terminal would obey is escaped.
+void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
+
+/// 16 hexadecimal digits, or null for a build that is not known.
+nlohmann::ordered_json BuildJson(BuildId build);
 
 /// --lcm-url of a verb that looks at a network from outside.
 class NetworkArguments {

@@ -3,9 +3,12 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -13,6 +16,7 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/acc/acc.h"
 #include "services/arbitrator/arbitrator.h"
 #include "services/driver/driver.h"
@@ -20,16 +24,19 @@
 #include "services/fusion/fusion.h"
 #include "services/lidar/lidar.h"
 #include "services/radar/radar.h"
-#include "services/recorder/event_log.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/beacon.h"
 #include "services/runtime/conductor.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/fallback_log.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/lcm_url.h"
+#include "services/runtime/runner_watch.h"
 #include "services/runtime/step_node.h"
 #include "services/world/world.h"
+#include "tools/fogline/child.h"
 #include "tools/fogline/external_roles.h"
-#include "tools/fogline/interrupt.h"
+#include "tools/fogline/kept_log.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/relay_process.h"
 #include "tools/fogline/supervisor.h"
@@ -41,24 +48,51 @@ namespace {
 constexpr Duration kJoinLimit = milliseconds(10'000);
 // How often the runner looks after its processes while no message comes.
 constexpr Duration kLookEvery = milliseconds(20);
+// How often it looks whether roles that it waits for are in other runs.
+constexpr Duration kLookForExternal = milliseconds(100);
 // A process that is silent for so long hangs: ten of its signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
 // In real time half of that: whoever needs the process has done without it for long, and a sign of
 // life that is lost is no repair's business.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
-ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options) {
+/// The builds of the programs that take part if none comes from elsewhere.
+RoleBuilds OwnBuilds(bool in_memory) {
+  RoleBuilds builds{};
+  for (const RoleInfo& info : kRoles) {
+    builds[static_cast<std::size_t>(info.role)] =
+        in_memory ? OwnBuildId() : BuildIdOf(ProgramOf(info.role));
+  }
+  return builds;
+}
+
+/// What a runner counts from that takes the place of another one, whose roles may still be there:
+/// they believe the newest. A runner says less than a thing in a microsecond.
+std::int64_t NewerThanEveryRunner() {
+  using std::chrono::microseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<microseconds>(now).count();
+}
+
+ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options,
+                                      bool in_memory) {
   // A slow pace is no stall: a step is expected to take its time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
-  return {.run_id = DrawRunId(),
-          .scenario_text = PrintScenario(scenario),
+  const auto& resume = options.resume;
+  return {.run_id = resume ? resume->front.run_id : DrawRunId(),
+          .scenario_text = resume ? resume->front.parts.Text() : PrintScenario(scenario),
           .steps = scenario.steps,
+          .progress = resume ? resume->remains.steps - 1 : -1,
+          .sequence = resume ? NewerThanEveryRunner() : 0,
           .pace = options.pace,
           .realtime = options.realtime,
+          .period = duration_cast<Duration>(step),
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,
-          .restarts = options.restarts};
+          .restarts = options.restarts,
+          .builds = OwnBuilds(in_memory),
+          .same_build = options.same_build};
 }
 
 // ---- memq --------------------------------------------------------------------------------------
@@ -69,14 +103,14 @@ std::unique_ptr<Node> MakeNode(Bus& bus, std::int64_t run_id) {
 }
 
 void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scenario& scenario,
-                 const std::filesystem::path& log) {
+                 const std::filesystem::path& log, Recorder::Existing existing) {
   std::vector<std::unique_ptr<Node>> nodes;
   for (const auto make :
        {MakeNode<World>, MakeNode<Radar>, MakeNode<Lidar>, MakeNode<Fusion>, MakeNode<Acc>,
         MakeNode<Driver>, MakeNode<Arbitrator>, MakeNode<Follower>}) {
     nodes.push_back(make(bus, run_id));
   }
-  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log));
+  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log, existing));
   Progress progress("step", scenario.steps);
   while (conductor.phase() == Conductor::Phase::kJoining ||
          conductor.phase() == Conductor::Phase::kRunning) {
@@ -92,38 +126,91 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
   bus.Drain();
 }
 
+/// What each process of a role has said last.
+std::vector<status_t> LastWords(const Conductor& conductor, Role role) {
+  const Conductor::Member& member = conductor.member(role);
+  std::vector<status_t> words = member.dead;
+  if (member.status) words.push_back(*member.status);
+  return words;
+}
+
+/// The processes that are, or were, of another build than the runner's.
+std::vector<OtherBuild> OtherBuilds(const Conductor& conductor) {
+  std::vector<OtherBuild> others;
+  for (const RoleInfo& info : kRoles) {
+    for (const status_t& status : LastWords(conductor, info.role)) {
+      auto other = OtherBuildOf(info.role, status, conductor.builds());
+      if (other) others.push_back(std::move(*other));
+    }
+  }
+  return others;
+}
+
 // ---- processes ---------------------------------------------------------------------------------
 
 void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
                        const std::string& external) {
-  fmt::print(stderr, "run {} on {}\n", run_id, bus.url());
-  if (!group.empty()) fmt::print(stderr, "processes: {}\n", group.Describe());
-  fmt::print(stderr, "{}", external);
+  Notice(fmt::format("run {} on {}", run_id, bus.url()));
+  if (!group.empty()) Notice(fmt::format("processes: {}", group.Describe()));
+  if (!external.empty()) Notice(external);
 }
 
-std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_t run_id,
-                                     const Scenario& scenario, const ExperimentOptions& options,
+/// Names once each process that has a role for which the run waits, but is in another run.
+class BusyElsewhere {
+ public:
+  explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+
+  void Look(const Conductor& conductor, TimePoint now) {
+    if (now < look_at_) return;
+    look_at_ = now + kLookForExternal;
+    const std::vector<Role> awaited = conductor.Awaited(now);
+    if (awaited.empty()) return;
+    for (const Stranger& stranger : conductor.strangers().known()) {
+      const std::string who = Describe(stranger);
+      const bool is_awaited = std::ranges::any_of(
+          awaited, [&stranger](Role role) { return NameOf(role) == stranger.role; });
+      if (!is_awaited || !told_.insert(who).second) continue;
+      say_(
+          fmt::format("{} is not free: it comes when that run is over, or when its runner has "
+                      "been silent for {:g} s",
+                      who, Seconds(RunnerWatch::kSilent)));
+    }
+  }
+
+ private:
+  std::function<void(const std::string&)> say_;
+  std::set<std::string> told_;
+  TimePoint look_at_{};
+};
+
+std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProcess* relay,
+                                     std::int64_t run_id, const Scenario& scenario,
+                                     const ExperimentOptions& options,
                                      const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
   Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
   const ExternalRoles external(bus.url(), options.traffic, options.wait);
+  const auto say = [&](const std::string& line) {
+    if (options.announce) progress.Say(line);
+  };
+  BusyElsewhere elsewhere(say);
   Supervisor supervisor(bus, conductor,
                         {.url = bus.url(),
                          .run_id = run_id,
                          .log = log,
+                         .resume = options.resume.has_value(),
                          .arguments = ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,
                          // Whoever hangs is found before the run counts as stalled.
                          .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
                                              options.stall_limit / 2),
-                         .say = [&](const std::string& line) {
-                           if (options.announce) progress.Say(line);
-                         }});
+                         .say = say});
   if (options.announce) {
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
   std::string trouble;
+  bool compared = false;  // the builds
   FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     conductor.OnEveryStatus([&](const status_t& status) {
@@ -141,9 +228,19 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
       }
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
+      if (relay != nullptr) {
+        if (const std::string news = relay->Look(conductor, now); !news.empty()) say(news);
+      }
+      elsewhere.Look(conductor, now);
       external.Check(conductor, now);
       if (beacon.Due(now)) beacon.Send(now, conductor.Awaited(now));
       progress.Show(conductor.step());
+      if (options.announce && !compared && conductor.phase() == Conductor::Phase::kRunning) {
+        compared = true;
+        for (const OtherBuild& other : OtherBuilds(conductor)) {
+          progress.Say("warning: " + other.Text());
+        }
+      }
       if (options.announce && trouble.empty()) {
         trouble = conductor.KeyTrouble();
         if (!trouble.empty()) progress.Say(fmt::format("warning: {}", trouble));
@@ -157,24 +254,17 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, std::int64_
   return supervisor.restarts();
 }
 
-/// Whether a file is the log of a run, which begins with its scenario. A run that is to replace an
-/// older log may end before it has begun to.
-bool IsLogOf(std::int64_t run_id, const std::filesystem::path& file) {
-  try {
-    EventLogReader reader(file);
-    const std::optional<Event> first = reader.Next();
-    return first && first->data.size() >= kHeaderEnd &&
-           ReadInt64(first->data, kRunIdOffset) == run_id;
-  } catch (const InputError&) {
-    return false;
+/// What the recorders of a run, of which all but the last are dead, have told of the log. In real
+/// time a recorder leaves out what its predecessor had begun.
+std::vector<WrittenLog> WrittenBy(const Conductor& conductor, bool realtime) {
+  std::vector<WrittenLog> written;
+  for (const status_t& status : LastWords(conductor, Role::kRecorder)) {
+    if (realtime) written.clear();
+    written.push_back({.begin = status.log_begin,
+                       .bytes = status.log_bytes,
+                       .checksum = static_cast<std::uint32_t>(status.log_checksum)});
   }
-}
-
-/// What a run that ends early has left; "" if it was to leave no log.
-std::string KeptLog(std::int64_t run_id, const std::filesystem::path& log) {
-  if (log.empty()) return "";
-  return IsLogOf(run_id, log) ? fmt::format("the log so far: {}", log.string())
-                              : "no log was written";
+  return written;
 }
 
 std::string UrlOf(const std::string& transport) {
@@ -196,25 +286,47 @@ std::int64_t DrawRunId() {
 }
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
-                const std::filesystem::path& log) {
+                const std::filesystem::path& log, const LogKeeper& keeper) {
   std::optional<RelayProcess> relay;
-  if (options.transport == "tcpq") relay.emplace();
+  if (options.transport == "tcpq") relay.emplace(options.restarts);
   Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const bool in_memory = bus.url().starts_with("memq");
   Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
-  const ConductorOptions conducting = MakeConductorOptions(scenario, options);
+  const ConductorOptions conducting = MakeConductorOptions(scenario, options, in_memory);
   Conductor conductor(bus, conducting);
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
   if (in_memory) {
-    RunInMemory(bus, conductor, conducting.run_id, scenario, log);
+    RunInMemory(bus, conductor, conducting.run_id, scenario, log,
+                options.resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
   } else {
-    restarts = RunAsProcesses(bus, conductor, conducting.run_id, scenario, options, log);
+    restarts = RunAsProcesses(bus, conductor, relay ? &*relay : nullptr, conducting.run_id,
+                              scenario, options, log);
+    if (relay && relay->restarts() > 0) {
+      restarts.push_back({.role = "relay", .count = relay->restarts(), .last = relay->death()});
+    }
   }
-  const std::string kept = KeptLog(conducting.run_id, options.log);
+  BusRun run{.run_id = conducting.run_id,
+             .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
+             .repairs = conductor.Total(&status_t::repairs_asked),
+             .refused = conductor.Refused(),
+             .send_troubles = conductor.SendTroubles(),
+             .strangers = conductor.strangers().known(),
+             .restarts = std::move(restarts)};
+  for (const RoleInfo& info : kRoles) {
+    const auto& status = conductor.member(info.role).status;
+    if (status) run.builds[static_cast<std::size_t>(info.role)] = status->build_id;
+  }
+  run.other_builds = OtherBuilds(conductor);
+  run.written = WrittenBy(conductor, options.realtime);
+  if (conductor.phase() != Conductor::Phase::kDone && !options.log.empty()) {
+    const auto key = KeyOf(options.traffic);
+    keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
+  }
+  const std::string kept = KeptLog(conducting.run_id, options);
   // Said whatever the end: a role that is missing may be one that is bound to another run.
   const std::string strangers = conductor.strangers().Text();
-  if (options.announce && !strangers.empty()) fmt::print(stderr, "{}\n", strangers);
+  if (options.announce && !strangers.empty()) Notice(strangers);
   if (conductor.phase() == Conductor::Phase::kFailed) {
     throw std::runtime_error(conductor.error() + (kept.empty() ? "" : "\n  " + kept));
   }
@@ -224,12 +336,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                                   : conductor.Where();
     throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
   }
-  return {.run_id = conducting.run_id,
-          .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
-          .repairs = conductor.Total(&status_t::repairs_asked),
-          .refused = conductor.Refused(),
-          .strangers = conductor.strangers().known(),
-          .restarts = std::move(restarts)};
+  return run;
 }
 
 }  // namespace fogline

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "services/runtime/refusals.h"
+#include "services/runtime/send_trouble.h"
 #include "services/runtime/strangers.h"
 #include "tools/fogline/experiment.h"
+#include "tools/fogline/log_keeper.h"
 
 namespace fogline {
 
@@ -15,16 +17,21 @@ struct BusRun {
   double wall_s = 0;
   std::int64_t repairs = 0;
   Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;
   std::vector<Restarts> restarts;
+  RoleBuilds builds{};                   // what each role has said of its build
+  std::vector<OtherBuild> other_builds;  // those that are not the runner's
+  std::vector<WrittenLog> written;       // what each recorder has told last of the log
 };
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
 
 /// Runs a scenario to its end and leaves its log.
+/// @param keeper seals the log of a run that is cut off
 /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
-                const std::filesystem::path& log);
+                const std::filesystem::path& log, const LogKeeper& keeper);
 
 }  // namespace fogline

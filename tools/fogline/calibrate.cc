@@ -8,13 +8,15 @@
 
 #include "scenario/file.h"
 #include "scenario/json.h"
+#include "scenario/mistakes.h"
 #include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/calibrate/calibrate.h"
 #include "tools/calibrate/findings.h"
 #include "tools/calibrate/scenario_text.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/own_program.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verb_main.h"
@@ -53,7 +55,7 @@ struct CalibrateArguments {
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     verb.add_option("--out", out, "Write the scenario with the values that were found");
-    verb.add_flag("--force", force, "Replace the file of --out if it exists");
+    verb.add_flag("--force", force, "Replace the file of --out if it is a scenario");
     verb.add_flag("--json", json, "Print as JSON");
     ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
@@ -85,7 +87,7 @@ struct CalibrateArguments {
 };
 
 CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
-  CalibrationProblem problem{.file = arguments.scenario.string(),
+  CalibrationProblem problem{.file = PathText(arguments.scenario),
                              .scenario = LoadScenario(arguments.scenario, arguments.overrides),
                              .fields = ParseFreeFields(arguments.free),
                              .target = {},
@@ -98,9 +100,18 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
       arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
   if (problem.target.empty()) {
     throw InputError(fmt::format("{}: error: /published: no rows to meet; give a --target",
-                                 arguments.scenario.string()));
+                                 PathText(arguments.scenario)));
   }
   return problem;
+}
+
+/// Whether a file is a scenario by its form, whatever its values are.
+bool IsScenario(const std::filesystem::path& file) {
+  const FileText read = ReadFile(file, kMaxFileBytes);
+  MistakeList mistakes;
+  const std::optional<JsonValue> root = ParseJson(read.text, 0, mistakes);
+  const auto* object = root ? root->As<JsonObject>() : nullptr;
+  return object != nullptr && FindMember(*object, "version") != nullptr;
 }
 
 /// Finds out before the search, not after it, that its result could not be kept. Returns the text
@@ -108,15 +119,13 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   namespace fs = std::filesystem;
   const auto refuse = [&](std::string_view why) {
-    throw InputError(fmt::format("{}: error: --out: {}", arguments.out.string(), why));
+    throw InputError(fmt::format("{}: error: --out: {}", PathText(arguments.out), why));
   };
-  if (fs::exists(arguments.out) && !arguments.force) {
-    refuse("the file exists; --force replaces it");
-  }
+  RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
   const fs::path folder = fs::absolute(arguments.out).parent_path();
   RequireWritable(arguments.out, "--out");
   const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
-  if (!read.error.empty()) refuse(fmt::format("{} {}", arguments.scenario.string(), read.error));
+  if (!read.error.empty()) refuse(fmt::format("{} {}", PathText(arguments.scenario), read.error));
   std::string text = read.text;
   for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
   // A recorded leader's file is named relative to the scenario's folder.
@@ -138,7 +147,7 @@ void WriteOut(const std::filesystem::path& file, std::string text,
   WholeFile out(file);
   out.Write(text);
   out.Finish();
-  fmt::print(stderr, "{}: written\n", file.string());
+  Notice(fmt::format("{}: written", PathText(file)));
 }
 
 /// @throws Interrupted if nothing was found before the interrupt
@@ -148,7 +157,7 @@ Findings Search(const CalibrateArguments& arguments, const Objective& objective)
   {
     Progress progress("evaluation", arguments.evaluations);
     found = Calibrate(objective, arguments.evaluations, go_on, [&](int evaluations, double best) {
-      if (evaluations == 1) fmt::print(stderr, "objective at the start: {:.4g}\n", best);
+      if (evaluations == 1) Notice(fmt::format("objective at the start: {:.4g}", best));
       progress.Show(evaluations, fmt::format("objective {:.4g}", best));
     });
   }

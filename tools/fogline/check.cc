@@ -1,5 +1,4 @@
 // fogline check: is this scenario fine, what does it mean in full, what may a field be?
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "tools/fogline/arguments.h"
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
@@ -40,18 +42,15 @@ int CheckFiles(const CheckOptions& options) {
       if (options.print) {
         fmt::print("{}", PrintScenario(scenario));
       } else if (!options.json) {
-        fmt::print("{}: ok\n", file);
+        fmt::print("{}: ok\n", PathText(file));
       }
     } catch (const ScenarioError& error) {
       code = kBadInput;
       for (const Mistake& mistake : error.mistakes()) mistakes.push_back(ToJson(mistake));
-      if (!options.json) fmt::print(stderr, "{}\n", error.what());
+      if (!options.json) Complain(error.what());
     }
   }
-  if (options.json) {
-    using Handler = nlohmann::ordered_json::error_handler_t;
-    fmt::print("{}\n", mistakes.dump(2, ' ', false, Handler::replace));
-  }
+  if (options.json) PrintJson(mistakes);
   return code;
 }
 

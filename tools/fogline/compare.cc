@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <sstream>
 
@@ -17,6 +16,8 @@
 #include "scenario/file.h"
 #include "scenario/json.h"
 #include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
@@ -49,7 +50,7 @@ constexpr double kFarthest_m = 10'000;
 constexpr double kSameLeader_mps = 0.5;
 
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
-  throw InputError(fmt::format("{}: error: {}", file.string(), why));
+  throw InputError(fmt::format("{}: error: {}", PathText(file), why));
 }
 
 std::size_t FindColumn(const std::vector<std::string_view>& header, const std::string& name,
@@ -71,7 +72,7 @@ bool IsNumber(std::string_view text) {
 [[noreturn]] void RefuseCell(const std::filesystem::path& file, const std::string& text,
                              std::uint32_t offset, const std::string& why) {
   const auto line = 1 + std::count(text.begin(), text.begin() + offset, '\n');
-  throw InputError(fmt::format("{}:{}: error: {}", file.string(), line, why));
+  throw InputError(fmt::format("{}:{}: error: {}", PathText(file), line, why));
 }
 
 /// @throws InputError for the first value of the column that is not between the two
@@ -88,7 +89,7 @@ void RequireBetween(double least, double most, const std::string& column,
 
 Recording ReadRecording(const CompareArguments& arguments, const RecordedSection& leader) {
   const std::filesystem::path& file = arguments.recording;
-  const FileText csv = ReadFile(file, kMaxFileBytes);
+  const FileText csv = ReadFile(file, kMaxFileBytes, ".csv");
   if (!csv.error.empty()) Refuse(file, csv.error);
   const std::vector<std::string_view> header = CsvHeader(csv.text);
   if (header.empty()) {
@@ -211,7 +212,7 @@ Comparison Compare(const LoggedRun& run, const Recording& recording, std::ostrea
 }
 
 void PrintText(const CompareArguments& arguments, const Comparison& comparison) {
-  fmt::print("{} beside {}, {} steps\n", arguments.log.string(), arguments.recording.string(),
+  fmt::print("{} beside {}, {} steps\n", PathText(arguments.log), PathText(arguments.recording),
              comparison.speed_mps.steps());
   fmt::print("  {:<12}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "recorded", "RMSE", "spread",
              "largest");
@@ -252,22 +253,24 @@ int RunCompare(const CompareArguments& arguments) {
   CheckTimes(recording.times_s, recorded.start_s + run.result.samples.front().time_s,
              recorded.start_s + run.result.samples.back().time_s, arguments.recording);
   CheckLeader(run, recording, arguments.recording);
-  std::optional<WholeFile> file;
-  if (!arguments.out.empty()) {
-    if (std::filesystem::exists(arguments.out)) {
+  const bool has_out = !arguments.out.empty();
+  if (has_out) {
+    if (IsReplaceable(arguments.out) && std::filesystem::exists(arguments.out)) {
       Refuse(arguments.out, "--out: the file exists and stays as it is");
     }
-    file.emplace(arguments.out);
+    RequireWritable(arguments.out, "--out");
   }
   std::ostringstream out;
-  const Comparison comparison = Compare(run, recording, file ? &out : nullptr);
-  if (file) {
-    file->Write(out.str());
-    file->Finish();
+  const Comparison comparison = Compare(run, recording, has_out ? &out : nullptr);
+  if (has_out) {
+    WatchInterrupts();  // no half of a file is left
+    WholeFile file(arguments.out);
+    file.Write(out.str());
+    file.Finish();
   }
-  if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
+  if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
   if (arguments.json) {
-    PrintJson(ToJson(arguments, comparison).dump(2));
+    PrintJson(ToJson(arguments, comparison));
   } else {
     PrintText(arguments, comparison);
   }

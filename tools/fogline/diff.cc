@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/difference.h"
 #include "tools/fogline/help.h"
@@ -50,18 +52,18 @@ int RunDiff(const DiffArguments& arguments) {
     } else {
       json["steps"] = step;
     }
-    PrintJson(json.dump(2));
+    PrintJson(json);
   } else if (difference) {
     fmt::print("step {}: {} {}: {} in {}, {} in {}\n", difference->step, difference->channel,
-               difference->field, difference->a, arguments.a.string(), difference->b,
-               arguments.b.string());
+               difference->field, difference->a, PathText(arguments.a), difference->b,
+               PathText(arguments.b));
   } else {
     fmt::print("equal: {} steps\n", step);
   }
   for (const RunLogReader* reader : {&reader_a, &reader_b}) {
     if (!difference && !reader->run().note.empty()) {
-      fmt::print(stderr, "{}: {}\n", (reader == &reader_a ? arguments.a : arguments.b).string(),
-                 reader->run().note);
+      Complain(fmt::format("{}: {}", PathText(reader == &reader_a ? arguments.a : arguments.b),
+                           reader->run().note));
     }
   }
   const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);

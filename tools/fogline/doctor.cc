@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/doctor/findings.h"
 #include "tools/fogline/help.h"
@@ -75,13 +76,14 @@ void PrintAsJson(const std::string& url, const Findings& findings) {
                                 {"what", finding.what},
                                 {"remedy", finding.remedy}});
   }
-  PrintJson(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  PrintJson(json);
 }
 
 void PrintAsText(const Findings& findings) {
   for (const Finding& finding : findings) {
-    fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), finding.what,
-               finding.remedy.empty() ? "" : "  -> ", finding.remedy);
+    // Names of processes, too, can be chosen by their users.
+    fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), EscapeControls(finding.what),
+               finding.remedy.empty() ? "" : "  -> ", EscapeControls(finding.remedy));
   }
 }
 

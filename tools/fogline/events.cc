@@ -7,8 +7,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
 #include "services/arbitrator/take_over_log.h"
 #include "services/recorder/run_log.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/verbs.h"
@@ -81,7 +83,7 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
 }
 
 void PrintText(const std::filesystem::path& file, const RunEvents& events) {
-  fmt::print("{}: {}, seed {}\n", file.string(), events.run.scenario.title,
+  fmt::print("{}: {}, seed {}\n", PathText(file), EscapeControls(events.run.scenario.title),
              events.run.scenario.seed);
   for (const TakeOverEntry& entry : events.log.entries()) {
     fmt::print("{:>8}{:>10.2f} s  {:<42}{}", entry.step, static_cast<double>(entry.utime) / 1e6,
@@ -105,7 +107,7 @@ int RunEventsVerb(const EventsArguments& arguments) {
   const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& file) {
     const RunEvents events = ReadEvents(file);
     complete = complete && events.run.complete;
-    if (!events.run.note.empty()) fmt::print(stderr, "{}: {}\n", file.string(), events.run.note);
+    if (!events.run.note.empty()) Complain(fmt::format("{}: {}", PathText(file), events.run.note));
     if (arguments.json) {
       rows.push_back({{"log", file.string()},
                       {"title", events.run.scenario.title},
@@ -117,7 +119,7 @@ int RunEventsVerb(const EventsArguments& arguments) {
       PrintText(file, events);
     }
   });
-  if (arguments.json) PrintJson(rows.dump(2));
+  if (arguments.json) PrintJson(rows);
   if (!readable) return kBadInput;
   return complete ? kDone : kCheckFailed;
 }

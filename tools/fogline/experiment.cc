@@ -10,13 +10,15 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/measures/sample_decoder.h"
-#include "services/recorder/run_log.h"
 #include "services/runtime/digest.h"
-#include "services/runtime/scenario_parts.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/bus_run.h"
-#include "tools/fogline/interrupt.h"
+#include "tools/fogline/direct_log.h"
+#include "tools/fogline/kept_log.h"
+#include "tools/fogline/log_keeper.h"
 
 namespace fogline {
 namespace {
@@ -43,14 +45,10 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-std::size_t PlaceOf(const ChannelInfo& channel) {
-  return static_cast<std::size_t>(&channel - kChannels.data());
-}
-
 /// Adds the messages of a step to a digest and a log, in the order of the graph table.
 class StepWriter {
  public:
-  StepWriter(Digest& digest, EventLogWriter* log) : digest_(digest), log_(log) {}
+  StepWriter(Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
 
   void Add(const StepView& step) {
     step.ForEachMessage([this](const auto& message) { AddOne(message); });
@@ -61,77 +59,149 @@ class StepWriter {
   void AddOne(const M& message) {
     Encode(message, buffer_);
     digest_.Add(buffer_);
-    if (log_ != nullptr) log_->Write(ChannelOf<M>().name, message.header.utime, buffer_);
+    if (log_ == nullptr) return;
+    log_->Add(message.header.step, ChannelOf<M>(), message.header.utime, buffer_);
   }
 
   Digest& digest_;
-  EventLogWriter* log_;
+  DirectLog* log_;
   std::vector<std::uint8_t> buffer_;
 };
 
-void WriteScenarioParts(EventLogWriter& log, std::int64_t run_id, const std::string& text) {
-  const std::vector<std::string> parts = SplitScenario(text);
-  std::vector<std::uint8_t> buffer;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    Encode(MakeRunPart(run_id, run_t::PREPARE, 0, HashOf(text), parts, i), buffer);
-    log.Write(ChannelOf<run_t>().name, 0, buffer);
-  }
-}
-
-ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
-  const std::int64_t run_id = DrawRunId();
-  std::optional<EventLogWriter> log;
-  if (!options.log.empty()) {
-    log.emplace(options.log);
-    WriteScenarioParts(*log, run_id, PrintScenario(scenario));
-  }
+ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& options,
+                         std::int64_t run_id) {
+  std::optional<DirectLog> log;
+  if (!options.log.empty()) log.emplace(options, run_id, scenario);
   ExperimentResult result;
   Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
   MeasureAccumulator measures(scenario);
   FollowerAccumulator followers;
-  result.samples.reserve(static_cast<std::size_t>(scenario.steps));
   const TimePoint began = Clock::now();
   ClosedLoop loop(scenario);
   loop.Run(run_id, [&](const StepView& step) {
     writer.Add(step);
-    result.samples.push_back(step.ToSample());
-    measures.Add(result.samples.back());
+    const Sample sample = step.ToSample();
+    measures.Add(sample);
     followers.Add(step.truth, step.follower);
-    if (WasInterrupted()) throw Interrupted("interrupted");
+    if (options.samples) result.samples.push_back(sample);
+    ++result.steps;
+    if (!WasInterrupted()) return;
+    if (log) log->CutOff();
+    throw Interrupted(fmt::format("interrupted at step {}", sample.step));
   });
   if (log) log->Flush();
   result.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   result.seed = scenario.seed;
-  result.steps = static_cast<std::int64_t>(result.samples.size());
   result.digest = digest.Hex();
   result.measures = measures.Result();
   result.followers = followers.Result();
   result.log = options.log;
+  if (log) log->End(result);
   return result;
+}
+
+ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
+  const std::int64_t run_id = options.resume ? options.resume->front.run_id : DrawRunId();
+  try {
+    return Compute(scenario, options, run_id);
+  } catch (const Interrupted& interrupted) {
+    const std::string kept = KeptLog(run_id, options);
+    throw Interrupted(fmt::format("{}{}{}", interrupted.what(), kept.empty() ? "" : "; ", kept));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    const std::string kept = KeptLog(run_id, options);
+    throw std::runtime_error(fmt::format("{}{}{}", error.what(), kept.empty() ? "" : "\n  ", kept));
+  }
+}
+
+std::size_t PlaceOf(const ChannelInfo& channel) {
+  return static_cast<std::size_t>(&channel - kChannels.data());
+}
+
+/// A run as its log tells it, but for its measures.
+/// @param use is called with the sample of each step
+template <class Use>
+LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
+  LoggedRun logged;
+  FollowerAccumulator followers;
+  SampleDecoder decoder;
+  RunLogReader reader(log);
+  while (const StepMessages* messages = reader.Next()) {
+    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
+      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
+    });
+    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
+    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
+    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
+    if (sample == nullptr) {
+      throw InputError(
+          fmt::format("{}: error: step {} does not decode: was it recorded with other "
+                      "message types?",
+                      PathText(log), reader.run().steps - 1));
+    }
+    use(*sample);
+    followers.Add(decoder.truth(), decoder.follower());
+  }
+  static_cast<RunLog&>(logged) = reader.run();
+  logged.result.seed = logged.scenario.seed;
+  logged.result.steps = logged.steps;
+  logged.result.digest = logged.digest;
+  logged.result.log = log;
+  logged.result.followers = followers.Result();
+  logged.result.realtime = logged.realtime;
+  return logged;
+}
+
+/// Compares the log with what the recorder has told, and reads it.
+LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
+                     const Scenario& scenario, const ExperimentOptions& options) {
+  const auto read = [&] {
+    LoggedRun logged = options.samples ? ReadLoggedRun(log) : MeasureLoggedRun(log, scenario);
+    if (logged.run_id == run.run_id) return logged;
+    throw std::runtime_error(
+        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
+                    PathText(log), logged.run_id, run.run_id));
+  };
+  try {
+    keeper.Check(run.written);
+  } catch (const std::runtime_error&) {
+    read();  // if it is that of another run, this says more
+    throw;
+  }
+  LoggedRun logged = read();
+  if (logged.complete) return logged;
+  throw std::runtime_error(
+      fmt::format("{}: the log is not complete: {}", PathText(log), logged.note));
 }
 
 ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
-  BusRun run = RunOnBus(scenario, options, log);
-  LoggedRun logged = ReadLoggedRun(log);
-  if (logged.run_id != run.run_id) {
-    throw std::runtime_error(
-        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
-                    log.string(), logged.run_id, run.run_id));
-  }
-  if (!logged.complete) {
-    throw std::runtime_error(
-        fmt::format("{}: the log is not complete: {}", log.string(), logged.note));
+  const LogKeeper keeper(log);
+  BusRun run = RunOnBus(scenario, options, log, keeper);
+  LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
+  const bool checked = keeper.HasAllTold(run.written);
+  if (!checked && !options.realtime) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log on disk is not what the recorder wrote: it is longer", PathText(log)));
   }
   ExperimentResult result = std::move(logged.result);
+  if (options.verify) result.verification = VerifyRun(log, logged, run.other_builds);
+  if (checked && !options.log.empty()) {
+    const auto key = KeyOf(options.traffic);
+    keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
+  }
+  result.checked = checked;
   result.wall_s = run.wall_s;
   result.repairs = run.repairs;
   result.refused = run.refused;
+  result.send_troubles = std::move(run.send_troubles);
   result.strangers = run.strangers;
   result.restarts = std::move(run.restarts);
+  result.other_builds = std::move(run.other_builds);
   result.log = options.log;
   return result;
 }
@@ -146,7 +216,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
     const std::string what = error.what();
     const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
     const bool field = colon != std::string::npos;
-    throw ScenarioError(fmt::format("{}: error: {}", file.string(), what),
+    throw ScenarioError(fmt::format("{}: error: {}", PathText(file), what),
                         {{.file = file.string(),
                           .pointer = field ? what.substr(0, colon) : "",
                           .rule = "impossible",
@@ -162,44 +232,17 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 }
 
 LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
-  LoggedRun logged;
-  Digest digest;
-  FollowerAccumulator followers;
-  std::vector<Sample>& samples = logged.result.samples;
-  SampleDecoder decoder;
-  RunLogReader reader(log);
-  while (const StepMessages* messages = reader.Next()) {
-    for (const Bytes message : *messages) {
-      if (!message.empty()) digest.Add(message);
-    }
-    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
-      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
-    });
-    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
-    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
-    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
-    if (sample == nullptr) {
-      throw InputError(
-          fmt::format("{}: error: step {} does not decode: was it recorded with other "
-                      "message types?",
-                      log.string(), reader.run().steps - 1));
-    }
-    samples.push_back(*sample);
-    followers.Add(decoder.truth(), decoder.follower());
-  }
-  const RunLog& run = reader.run();
-  logged.run_id = run.run_id;
-  logged.result.seed = run.scenario.seed;
-  logged.result.steps = run.steps;
-  logged.result.digest = digest.Hex();
-  logged.result.log = log;
-  logged.result.measures = Measure(samples, run.scenario);
-  logged.result.followers = followers.Result();
-  logged.scenario = run.scenario;
-  logged.scenario_text = run.scenario_text;
-  logged.result.realtime = run.realtime;
-  logged.complete = run.complete;
-  logged.note = run.note;
+  std::vector<Sample> samples;
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { samples.push_back(sample); });
+  logged.result.measures = Measure(samples, logged.scenario);
+  logged.result.samples = std::move(samples);
+  return logged;
+}
+
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
+  MeasureAccumulator measures(scenario);
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { measures.Add(sample); });
+  logged.result.measures = measures.Result();
   return logged;
 }
 

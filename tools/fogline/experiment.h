@@ -12,13 +12,23 @@
 #include "services/measures/follower_measures.h"
 #include "services/measures/measures.h"
 #include "services/measures/sample.h"
-#include "services/recorder/realtime_figures.h"
+#include "services/recorder/remains.h"
+#include "services/recorder/run_log.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/other_build.h"
 #include "services/runtime/refusals.h"
+#include "services/runtime/send_trouble.h"
 #include "services/runtime/strangers.h"
 #include "services/runtime/traffic_options.h"
+#include "tools/fogline/role_check.h"
 
 namespace fogline {
+
+/// The run that a log has a part of.
+struct Resumption {
+  LogFront front;
+  Remains remains;
+};
 
 struct ExperimentOptions {
   /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
@@ -27,20 +37,25 @@ struct ExperimentOptions {
   std::string transport = "udpm";
   /// Event log to write. Empty: a temporary one, or with direct none at all.
   std::filesystem::path log;
+  /// What is in the log already, if the run is to go on with it.
+  std::optional<Resumption> resume;
   double pace = 0;                       // simulated seconds per second; 0: as fast as it goes
   bool realtime = false;                 // at that pace by the wall clock, whoever keeps up
   std::vector<Role> external;            // roles that somebody else starts
   Duration wait = milliseconds(60'000);  // for these to be ready; 0: for ever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  int restarts = 10;        // of each role that is killed or hangs; 0: that ends the run
+  bool verify = false;      // compute the roles' steps again from the log, and compare
+  bool same_build = false;  // end the run if a role is of another build than the runner's
   TrafficOptions traffic;
-  std::string remark;     // for the user: where the run does not go where it was asked to go
-  bool announce = false;  // say on stderr where the run is and which processes take part
+  bool announce = false;         // say on stderr where the run is and which processes take part
+  bool samples = false;          // keep those of every step in the result
+  std::string command_to_go_on;  // for the user, if the run ends early
 };
 
-/// How often a role was started again.
+/// How often a process was started again.
 struct Restarts {
-  Role role;
+  std::string role;  // or "relay", the run's own
   int count;
   std::string last;  // how the last one before the present one ended
 };
@@ -53,12 +68,16 @@ struct ExperimentResult {
   double wall_s = 0;
   std::int64_t repairs = 0;  // requests to publish something again
   Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;  // of other runs, on the same network
   std::vector<Restarts> restarts;
+  std::vector<OtherBuild> other_builds;  // roles that are not of the runner's build
+  std::optional<Verification> verification;
+  bool checked = true;        // the log is in all its bytes what the recorder has told
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<FollowerMeasures> followers;  // nearest to the host first
-  std::vector<Sample> samples;
+  std::vector<Sample> samples;              // if they were wanted
   std::optional<RealtimeFigures> realtime;  // of a run in real time
 };
 
@@ -74,15 +93,15 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 ///     readable
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
 
-/// A run as its log tells it. @throws InputError
-struct LoggedRun {
-  std::int64_t run_id = 0;
+/// A run as its log tells it.
+struct LoggedRun : RunLog {
   ExperimentResult result;
-  Scenario scenario;
-  std::string scenario_text;
-  bool complete = false;
-  std::string note;
 };
+/// With the samples of all its steps. @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
+/// Without them, in memory that does not grow with the run.
+/// @param scenario that is in the log
+/// @throws InputError
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
 
 }  // namespace fogline

@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
 #include "tools/fogline/arguments.h"
@@ -26,21 +29,21 @@ struct ExportArguments {
 
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
-/// What will be written; nothing of it may be there without --force. @throws InputError
+/// What will be written; nothing of it may be there without --force, and with it only what an
+/// export has written. @throws InputError
 std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =
       is_mat ? std::vector{arguments.out} : CsvFiles(arguments.out);
   for (const std::filesystem::path& file : files) {
-    if (arguments.force || !std::filesystem::exists(file)) continue;
-    throw InputError(
-        fmt::format("{}: error: --out: the file exists; --force replaces it", file.string()));
+    RefuseToReplace(file, "--out", arguments.force, "export", is_mat ? IsMatExport : IsCsvExport);
   }
   return files;
 }
 
 int RunExport(const ExportArguments& arguments) {
   const std::vector<std::filesystem::path> files = FilesOf(arguments);
+  WatchInterrupts();
   // Before anything is made: of a log that is none there shall be no folder.
   const RunTables tables = ReadRunTables(arguments.log);
   const bool is_mat = IsMat(arguments.out);
@@ -52,11 +55,11 @@ int RunExport(const ExportArguments& arguments) {
                                 {"complete", tables.complete},
                                 {"files", nlohmann::ordered_json::array()}};
     for (const std::filesystem::path& file : files) json["files"].push_back(file.string());
-    PrintJson(json.dump(2));
+    PrintJson(json);
   } else {
-    for (const std::filesystem::path& file : files) fmt::print("{}\n", file.string());
+    for (const std::filesystem::path& file : files) fmt::print("{}\n", PathText(file));
   }
-  if (!tables.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), tables.note);
+  if (!tables.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), tables.note));
   return tables.complete ? kDone : kCheckFailed;
 }
 
@@ -71,9 +74,9 @@ void AddExport(CLI::App& app, Action& action) {
           "FILE.mat: one MAT-file of level 5. Else a folder: CHANNEL.csv for each channel, "
           "and scenario.json")
       ->required();
-  verb->add_flag("--force", arguments->force, "Replace files that exist");
+  verb->add_flag("--force", arguments->force, "Replace files of an export that exist");
   verb->add_flag("--json", arguments->json, "Print the names of the files as JSON");
-  ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
+  ShowExitCodes(*verb, {.check_failed = "the log is not complete", .interruptible = true});
   verb->footer(
       "Everything that the log has, to the last bit, in the units of the messages (lcmtypes); the\n"
       "columns of a list are state.0, state.1 and so on, a matrix row by row. Time is "
@@ -82,9 +85,9 @@ void AddExport(CLI::App& app, Action& action) {
       "each\n"
       "message. Of a log that is not complete, all that it has is written.\n\n"
       "Examples:\n"
-      "  fogline export logs/paper-1.lcm --out paper-1\n"
-      "  fogline export logs/paper-1.lcm --out paper-1.mat\n"
-      "  octave --eval 'load paper-1.mat; plot(double(TRUTH.header.utime)/1e6, TRUTH.host_gap_m)'");
+      "  fogline export logs/paper-1.lcm --out logs/paper-1\n"
+      "  fogline export logs/paper-1.lcm --out logs/paper-1.mat\n"
+      "  octave --eval 'load logs/paper-1.mat; plot(TRUTH.header.step, TRUTH.host_gap_m)'");
   verb->callback([&action, arguments] { action = [arguments] { return RunExport(*arguments); }; });
 }
 

@@ -68,7 +68,7 @@ void PrintAsJson() {
                                 {"logged", info.Logged()},
                                 {"what", info.what}});
   });
-  PrintJson(json.dump(2));
+  PrintJson(json);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct KeygenArguments {
 
 int Keygen(const KeygenArguments& arguments) {
   SealKey::Create(arguments.file);
-  if (arguments.json) PrintJson(nlohmann::ordered_json{{"file", arguments.file}}.dump(2));
+  if (arguments.json) PrintJson(nlohmann::ordered_json{{"file", arguments.file}});
   return kDone;
 }
 
@@ -36,9 +36,9 @@ void AddKeygen(CLI::App& app, Action& action) {
       "The file has mode 0600; one that others can read or change is refused. Every process\n"
       "of a run needs the same key, on every machine.\n\n"
       "Examples:\n"
-      "  fogline keygen lab.key\n"
-      "  fogline run scenario/paper.json --key lab.key\n"
-      "  FOGLINE_KEY=lab.key fogline-driver");
+      "  fogline keygen ~/lab.key\n"
+      "  fogline run scenario/paper.json --key ~/lab.key\n"
+      "  FOGLINE_KEY=~/lab.key fogline-driver");
   verb->callback([&action, arguments] { action = [arguments] { return Keygen(*arguments); }; });
 }
 

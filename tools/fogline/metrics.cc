@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/pairing.h"
@@ -28,7 +30,7 @@ int RunMetrics(const MetricsArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const LoggedRun& run = runs[i];
-    if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", run.result.log.string(), run.note);
+    if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(run.result.log), run.note));
     if (arguments.json) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
@@ -39,14 +41,17 @@ int RunMetrics(const MetricsArguments& arguments) {
       rows.push_back(std::move(row));
       continue;
     }
-    fmt::print("{}: {}, seed {}\n", run.result.log.string(), run.scenario.title, run.result.seed);
+    const std::string collision = CollisionText(run.result.measures);
+    fmt::print("{}: {}, seed {}{}{}\n", PathText(run.result.log),
+               EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
+               collision);
     if (run.result.realtime) fmt::print("{}", RealtimeText(*run.result.realtime));
     if (improvements[i]) {
       fmt::print("  {:<32}{:>12} %\n", "si_pct", MeasureText("si_pct", *improvements[i], "%"));
     }
     fmt::print("{}", MeasuresText(run.result));
   }
-  if (arguments.json) PrintJson(rows.dump(2));
+  if (arguments.json) PrintJson(rows);
   if (!readable) return kBadInput;
   return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
 }

@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/child.h"
 
 namespace fogline {
@@ -33,8 +34,8 @@ void BecomeOwnProgram(int argc, char** argv) {
   argv[1] = name.data();
   if (help) argv[2] = option.data();
   execv(program.c_str(), argv + 1);
-  fmt::print(stderr, "fogline {}: error: {}: {}{}\n", verb, program, std::strerror(errno),
-             errno == ENOENT ? "; it is built by: ninja -C build " + name : "");
+  Complain(fmt::format("fogline {}: error: {}: {}{}", verb, program, std::strerror(errno),
+                       errno == ENOENT ? "; it is built by: ninja -C build " + name : ""));
   std::exit(kRunFailed);
 }
 

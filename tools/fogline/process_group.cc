@@ -5,37 +5,15 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "tools/fogline/child.h"
 
 namespace fogline {
-namespace {
-
-[[noreturn]] void Become(const char* program, char* const* arguments, int output, pid_t parent) {
-  BecomeChild(parent, output);
-  dup2(output, STDERR_FILENO);
-  execv(program, arguments);
-  constexpr char kText[] = "cannot be started\n";
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText, sizeof(kText) - 1);
-  _exit(127);
-}
-
-std::string HowItEnded(int status) {
-  if (WIFSIGNALED(status)) {
-    return fmt::format("was killed by signal {} ({})", WTERMSIG(status),
-                       strsignal(WTERMSIG(status)));
-  }
-  return fmt::format("exited with code {}", WEXITSTATUS(status));
-}
-
-}  // namespace
 
 ProcessGroup::~ProcessGroup() {
   Signal(SIGKILL);
@@ -47,26 +25,11 @@ ProcessGroup::~ProcessGroup() {
 
 pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
                           const std::vector<std::string>& arguments) {
-  // Inherited as ignored, it would keep the ends of processes from us.
-  std::signal(SIGCHLD, SIG_DFL);
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-  }
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  const std::string path = program.string();
-  std::vector<char*> argv{const_cast<char*>(path.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  const pid_t parent = getpid();
-  const pid_t pid = fork();
-  if (pid == 0) Become(path.c_str(), argv.data(), ends[1], parent);
-  close(ends[1]);
-  if (pid < 0) {
-    close(ends[0]);
-    throw std::runtime_error(fmt::format("cannot start {}: {}", path, std::strerror(errno)));
-  }
-  processes_.push_back({.role = role, .pid = pid, .output = ends[0], .printed = {}});
+  Pipe output;
+  fcntl(output.read, F_SETFL, O_NONBLOCK);
+  const pid_t pid = StartChild(program, arguments, output.write, output.write);
+  processes_.push_back(
+      {.role = role, .pid = pid, .output = std::exchange(output.read, -1), .printed = {}});
   return pid;
 }
 

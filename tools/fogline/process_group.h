@@ -23,7 +23,7 @@ class ProcessGroup {
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
   /// Starts a program for a role; what it prints is kept.
-  /// @return its process id @throws std::runtime_error
+  /// @return its process id @throws std::runtime_error as StartChild()
   pid_t Start(Role role, const std::filesystem::path& program,
               const std::vector<std::string>& arguments);
 

@@ -3,10 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
+
+#include "services/runtime/diagnostics.h"
 
 namespace fogline {
 namespace {
@@ -14,6 +16,7 @@ namespace {
 constexpr Duration kShowAfter = milliseconds(2000);
 constexpr Duration kShowEvery = milliseconds(100);
 constexpr int kBarWidth = 30;
+constexpr const char* kErase = "\r\033[K";
 
 }  // namespace
 
@@ -25,7 +28,7 @@ Progress::Progress(std::string what, std::int64_t total)
       next_(began_ + kShowAfter) {}
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) Draw(kErase);
 }
 
 void Progress::Show(std::int64_t done, std::string_view note) {
@@ -38,16 +41,17 @@ void Progress::Show(std::int64_t done, std::string_view note) {
       std::clamp(static_cast<double>(done) / static_cast<double>(total_), 0.0, 1.0);
   const double spent = std::chrono::duration<double>(now - began_).count();
   const auto filled = static_cast<int>(share * kBarWidth);
-  fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {:3.0f} %  {} {}/{}  {:.0f}/s", "", filled, "",
-             kBarWidth - filled, 100 * share, what_, done, total_,
-             static_cast<double>(done) / spent);
-  if (share > 0) fmt::print(stderr, "  {:.0f} s left", spent * (1 - share) / share);
-  if (!note.empty()) fmt::print(stderr, "  {}", note);
-  std::fflush(stderr);
+  std::string bar = fmt::format("{}[{:=<{}}{: <{}}] {:3.0f} %  {} {}/{}  {:.0f}/s", kErase, "",
+                                filled, "", kBarWidth - filled, 100 * share, what_, done, total_,
+                                static_cast<double>(done) / spent);
+  if (share > 0) bar += fmt::format("  {:.0f} s left", spent * (1 - share) / share);
+  if (!note.empty()) bar += fmt::format("  {}", note);
+  Draw(bar);
 }
 
 void Progress::Say(std::string_view line) {
-  fmt::print(stderr, "{}{}\n", shown_ ? "\r\033[K" : "", line);
+  if (shown_) Draw(kErase);
+  Notice(line);
 }
 
 }  // namespace fogline

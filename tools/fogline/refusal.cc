@@ -96,7 +96,7 @@ std::string Misfit(const CLI::App& app, const CLI::App& command,
 
 std::string OneLine(std::string text) {
   std::ranges::replace(text, '\n', ' ');
-  return text;
+  return EscapeControls(text);
 }
 
 }  // namespace
@@ -110,6 +110,12 @@ std::string NoSuchVerb(const CLI::App& app, const std::string& word) {
   std::vector<std::string_view> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
   return fmt::format("no verb {}{}", QuoteShort(word), DidYouMean(Nearest(word, verbs)));
+}
+
+std::string UnknownVerb(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (!app.get_subcommands().empty() || words.empty()) return "";
+  return fmt::format("{0}: error: {1} (see {0} --help)", app.get_name(), Misfit(app, app, words));
 }
 
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {

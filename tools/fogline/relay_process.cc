@@ -6,13 +6,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "services/runtime/clock.h"
 #include "tools/fogline/child.h"
 
@@ -21,12 +22,7 @@ namespace {
 
 constexpr Duration kListenLimit = milliseconds(5000);
 
-/// It names on our stderr whom it disconnects.
-[[noreturn]] void Become(const char* program, int output, pid_t parent) {
-  BecomeChild(parent, output);
-  execl(program, program, "--listen", "127.0.0.1:0", "--quiet", nullptr);
-  _exit(127);
-}
+constexpr std::string_view kHere = "127.0.0.1";
 
 /// The line that it prints when it listens; "" if it does not.
 std::string FirstLine(int output) {
@@ -47,29 +43,52 @@ std::string FirstLine(int output) {
 
 }  // namespace
 
-RelayProcess::RelayProcess() {
-  const std::string program = ProgramBeside("fogline-relay").string();
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-  }
-  const pid_t parent = getpid();
-  pid_ = fork();
-  if (pid_ == 0) Become(program.c_str(), ends[1], parent);
-  close(ends[1]);
-  if (pid_ > 0) url_ = FirstLine(ends[0]);
-  close(ends[0]);
-  if (!url_.empty()) return;
-  if (pid_ > 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  throw std::runtime_error(fmt::format("cannot start {}", program));
+RelayProcess::RelayProcess(int restarts)
+    : policy_(restarts), url_(Start(fmt::format("{}:0", kHere))) {}
+
+RelayProcess::~RelayProcess() { End(); }
+
+std::string RelayProcess::Start(const std::string& place) {
+  const std::filesystem::path program = ProgramBeside("fogline-relay");
+  Pipe output;
+  // It names on our stderr whom it disconnects.
+  pid_ = StartChild(program, {"--listen", place, "--quiet"}, output.write);
+  close(std::exchange(output.write, -1));
+  std::string url = FirstLine(output.read);
+  if (!url.empty()) return url;
+  End();
+  throw std::runtime_error(fmt::format("cannot start {}: it does not listen", program.string()));
 }
 
-RelayProcess::~RelayProcess() {
+void RelayProcess::End() {
+  if (pid_ < 0) return;
   kill(pid_, SIGKILL);  // it keeps nothing
   waitpid(pid_, nullptr, 0);
+  pid_ = -1;
+}
+
+std::string RelayProcess::Look(const Conductor& run, TimePoint now) {
+  int status = 0;
+  if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+    dead_ = std::exchange(pid_, -1);
+    death_ = fmt::format("{} {}", HowItEnded(status), run.Where());
+    const auto wait = policy_.OnDeath(run.step());
+    if (!wait) {
+      throw std::runtime_error(fmt::format("relay (pid {}) {}, after {} restarts (--restarts)",
+                                           dead_, death_, policy_.restarts()));
+    }
+    start_at_ = now + *wait;
+  }
+  if (!start_at_ || now < *start_at_) return "";
+  try {
+    Start(url_.substr(url_.find("//") + 2));  // where the others look for it
+  } catch (const std::runtime_error&) {
+    start_at_ = now + policy_.OnFailedStart();
+    return "";
+  }
+  start_at_.reset();
+  return fmt::format("relay (pid {}) {}; started again as pid {} ({} of {})", dead_, death_, pid_,
+                     policy_.restarts(), policy_.limit());
 }
 
 }  // namespace fogline

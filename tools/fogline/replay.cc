@@ -3,16 +3,16 @@
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/role_replay.h"
+#include "tools/fogline/role_check.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -25,16 +25,8 @@ struct ReplayArguments {
   bool json = false;
 };
 
-/// A role, and what has come of it so far.
-struct Replayed {
-  Role role;
-  std::unique_ptr<RoleReplay> replay;
-  std::int64_t steps_that_differ = 0;
-  std::optional<Difference> first;  // `a` in the log, `b` computed here
-};
-
 [[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
-  throw InputError(fmt::format("{}: error: {}", log.string(), why));
+  throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
 /// The run that a log holds, without its steps. @throws InputError for a run in real time
@@ -52,41 +44,18 @@ RunLog ReadRun(const std::filesystem::path& log) {
 }
 
 /// @throws InputError for a role that is none, or computes nothing
-std::vector<Replayed> ChosenRoles(const ReplayArguments& arguments, const RunLog& run) {
-  std::vector<Replayed> chosen;
+std::vector<RoleCheck> ChosenRoles(const ReplayArguments& arguments, const RunLog& run) {
+  std::vector<RoleCheck> roles = MakeRoleChecks(run);
   std::vector<std::string_view> names;
-  for (const RoleInfo& info : kRoles) {
-    auto replay = MakeRoleReplay(info.role, run);
-    if (replay == nullptr) continue;
-    names.push_back(info.name);
-    if (!arguments.all && info.name != arguments.role) continue;
-    chosen.push_back({.role = info.role, .replay = std::move(replay)});
-  }
-  if (!chosen.empty()) return chosen;
+  for (const RoleCheck& one : roles) names.push_back(NameOf(one.role));
+  if (arguments.all) return roles;
+  std::erase_if(roles, [&](const RoleCheck& one) { return NameOf(one.role) != arguments.role; });
+  if (!roles.empty()) return roles;
   throw InputError(fmt::format("error: --role {}: not one of {}{}", Shown(arguments.role),
                                Shown(Names(names)), DidYouMean(Nearest(arguments.role, names))));
 }
 
-void Replay(const std::filesystem::path& log, std::vector<Replayed>& roles) {
-  RunLogReader reader(log);
-  StepMessages before{};  // its bytes live as long as the reader
-  std::int64_t step = 0;
-  try {
-    for (; const StepMessages* messages = reader.Next(); ++step) {
-      for (Replayed& one : roles) {
-        std::optional<Difference> difference = one.replay->Step(step, *messages, before);
-        if (!difference) continue;
-        ++one.steps_that_differ;
-        if (!one.first) one.first = std::move(difference);
-      }
-      before = *messages;
-    }
-  } catch (const InputError& error) {
-    Refuse(log, error.what());
-  }
-}
-
-nlohmann::ordered_json ToJson(const Replayed& one) {
+nlohmann::ordered_json ToJson(const RoleCheck& one) {
   nlohmann::ordered_json json{{"role", NameOf(one.role)},
                               {"same", !one.first},
                               {"steps_that_differ", one.steps_that_differ}};
@@ -99,7 +68,7 @@ nlohmann::ordered_json ToJson(const Replayed& one) {
   return json;
 }
 
-void PrintText(const Replayed& one, std::int64_t steps) {
+void PrintText(const RoleCheck& one, std::int64_t steps) {
   if (!one.first) {
     fmt::print("{:<11} same: {} steps\n", NameOf(one.role), steps);
     return;
@@ -114,22 +83,27 @@ int RunReplay(const ReplayArguments& arguments) {
     throw InputError("error: give one of --role and --all");
   }
   const RunLog run = ReadRun(arguments.log);
-  std::vector<Replayed> roles = ChosenRoles(arguments, run);
-  Replay(arguments.log, roles);
+  std::vector<RoleCheck> roles = ChosenRoles(arguments, run);
+  RunLogReader reader(arguments.log);
+  try {
+    CheckRoles(reader, roles);
+  } catch (const InputError& error) {
+    Refuse(arguments.log, error.what());
+  }
   const bool same =
-      std::ranges::all_of(roles, [](const Replayed& one) { return !one.first.has_value(); });
+      std::ranges::all_of(roles, [](const RoleCheck& one) { return !one.first.has_value(); });
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
                                 {"steps", run.steps},
                                 {"complete", run.complete},
                                 {"same", same},
                                 {"roles", nlohmann::ordered_json::array()}};
-    for (const Replayed& one : roles) json["roles"].push_back(ToJson(one));
-    PrintJson(json.dump(2));
+    for (const RoleCheck& one : roles) json["roles"].push_back(ToJson(one));
+    PrintJson(json);
   } else {
-    for (const Replayed& one : roles) PrintText(one, run.steps);
+    for (const RoleCheck& one : roles) PrintText(one, run.steps);
   }
-  if (!run.note.empty()) fmt::print(stderr, "{}: {}\n", arguments.log.string(), run.note);
+  if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
   return same && run.complete ? kDone : kCheckFailed;
 }
 

@@ -19,9 +19,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/threshold_rows.h"
 #include "tools/fogline/verbs.h"
@@ -64,6 +66,7 @@ constexpr std::array kFigureOptions{
 
 /// Only a page may be replaced: "-o *.lcm" must not cost a log. @throws InputError
 void RefuseToReplaceOther(const std::filesystem::path& output) {
+  if (!IsReplaceable(output)) return;
   std::ifstream file(output, std::ios::binary);
   if (!file.is_open() || file.peek() == std::ifstream::traits_type::eof()) return;
   std::string head(kDocumentType.size(), '\0');
@@ -73,7 +76,7 @@ void RefuseToReplaceOther(const std::filesystem::path& output) {
   };
   if (!std::ranges::equal(head, kDocumentType, same)) {
     throw InputError(fmt::format("{}: error: --output: the file is no HTML page and stays as it is",
-                                 output.string()));
+                                 PathText(output)));
   }
 }
 
@@ -160,7 +163,7 @@ std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   for (const std::filesystem::path& log : logs) {
     runs.push_back(ReadLoggedRun(log));
     if (!runs.back().note.empty()) {
-      fmt::print(stderr, "{}: {}\n", log.string(), runs.back().note);
+      Complain(fmt::format("{}: {}", PathText(log), runs.back().note));
     }
   }
   std::stable_partition(runs.begin(), runs.end(), [](const LoggedRun& run) {
@@ -240,6 +243,7 @@ int RunReport(const ReportArguments& arguments) {
   }
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
+  WatchInterrupts();  // no half of a file is left
   WholeFile file(arguments.output);
   file.Write(MakeReport(pages, table, curves));
   file.Finish();
@@ -250,9 +254,9 @@ int RunReport(const ReportArguments& arguments) {
     if (curves) WriteCurveFigures(folder, option.format, *curves);
   }
   if (arguments.json) {
-    PrintJson(ToJson(arguments, runs).dump(2));
-  } else {
-    fmt::print("{}\n", arguments.output.string());
+    PrintJson(ToJson(arguments, runs));
+  } else if (!IsStdout(arguments.output)) {
+    fmt::print("{}\n", PathText(arguments.output));
   }
   return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
 }
@@ -278,7 +282,7 @@ void AddReport(CLI::App& app, Action& action) {
       ->needs(curves)
       ->allow_extra_args(false);
   verb->add_option("-o,--output", arguments->output,
-                   "HTML file to write; replaces a page, and no other file")
+                   "HTML file to write; replaces a page, and no other file; or /dev/stdout")
       ->capture_default_str();
   for (const FigureOption& option : kFigureOptions) {
     verb->add_option(option.name, *arguments.*option.folder, option.help);

@@ -1,14 +1,22 @@
 // fogline run: one run of a scenario.
-#include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
+#include "services/runtime/scenario_parts.h"
+#include "services/runtime/step_ring.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
+#include "tools/fogline/kept_log.h"
+#include "tools/fogline/resumed_log.h"
+#include "tools/fogline/run_outcome.h"
 #include "tools/fogline/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 
@@ -19,38 +27,42 @@ constexpr const char* kExamples =
     R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
 otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
 its log, and gives exit code 130. A process that is killed or hangs is started
-again and catches up, and the result is the same. A run has a port of its own
-unless LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without
---lcm-url find it on this machine.
+again and catches up, and the result is the same. So is that of a run that has
+ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
+are those of the log; transport, pace, key and the roles that are started
+elsewhere are chosen anew. A run has a port of its own unless LCM_DEFAULT_URL
+names another; fogline top, spy, doctor and roles without --lcm-url find it on
+this machine.
 
 Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
   fogline run scenario/paper.json --pace 1       in real speed, for fogline top or spy
   fogline run scenario/paper.json --transport memq --json
+  fogline run --resume logs/paper-1.lcm          goes on with a run that has ended early
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// A step of 0.1 s then takes 100 s.
-constexpr double kMinPace = 1e-3;
 // Nine processes must pass on a step in this time, and their signs of life be heard in 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
+    verb.get_option("SCENARIO")->required(false);  // unless a log has it
+    verb.add_option("--resume", resume, "Go on with the run in this log, which has its scenario");
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
-        ->check(NumberIn(0, 1000))
+        ->check(NumberIn(0, kMaxSpeed))
         ->capture_default_str();
     CLI::Option* realtime = verb.add_flag(
         "--realtime", options.realtime,
         "Tick on the wall clock and wait for no process: inputs that fail are noticed by their "
         "age, and another driver takes over or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
-        ->check(NumberIn(kMinPace, 1000))
+        ->check(NumberIn(kMinSpeed, kMaxSpeed))
         ->needs(realtime)
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
@@ -66,50 +78,20 @@ struct RunArguments {
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
-    ShowExitCodes(verb, {.interruptible = true});
+    ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(kExamples);
   }
 
   ScenarioArguments scenario;
   TransportArguments transport;
   ExperimentOptions options;
+  std::filesystem::path resume;
   double speed = 1.0;
   double stall_s = 4.0;
   bool force = false;
   bool json = false;
   bool quiet = false;
 };
-
-std::string ToJson(const std::filesystem::path& scenario, const ExperimentResult& result) {
-  nlohmann::ordered_json json;
-  json["scenario"] = scenario.string();
-  json["seed"] = result.seed;
-  json["transport"] = result.transport;
-  json["steps"] = result.steps;
-  json["digest"] = result.digest;
-  json["wall_s"] = result.wall_s;
-  json["log"] = nullptr;
-  if (!result.log.empty()) json["log"] = result.log.string();
-  json["repairs"] = result.repairs;
-  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
-    json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
-  }
-  json["strangers"] = nlohmann::ordered_json::array();
-  for (const Stranger& stranger : result.strangers) {
-    json["strangers"].push_back({{"role", stranger.role},
-                                 {"pid", stranger.pid},
-                                 {"host", stranger.host},
-                                 {"run_id", stranger.run_id}});
-  }
-  json["restarts"] = nlohmann::ordered_json::array();
-  for (const Restarts& role : result.restarts) {
-    json["restarts"].push_back(
-        {{"role", NameOf(role.role)}, {"count", role.count}, {"last", role.last}});
-  }
-  if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
-  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
-  return json.dump(2);
-}
 
 /// @throws InputError if real time cannot go together with the other options
 void ApplyRealtime(RunArguments& arguments) {
@@ -125,13 +107,37 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
-int Run(RunArguments& arguments) {
+/// The exit code of a run that has ended; says on stderr why it is not kDone.
+/// @throws std::runtime_error if the log of a run in real time lacks what was published
+int Ended(const ExperimentResult& result) {
+  if (result.realtime && result.realtime->unlogged_messages > 0) {
+    throw std::runtime_error(fmt::format(
+        "the log is not complete: at least {} messages that were published are not in it: the "
+        "recorder can have the last {} steps again, and did not hear for longer",
+        result.realtime->unlogged_messages, kMaxAhead));
+  }
+  if (!result.verification || result.verification->Holds()) return kDone;
+  Complain("fogline run: error: " + result.verification->Trouble());
+  return kCheckFailed;
+}
+
+int Print(const RunArguments& arguments, const RunOutcome& outcome) {
+  if (arguments.json) {
+    PrintJson(ToJson(outcome));
+  } else {
+    fmt::print("{}", ToText(outcome));
+  }
+  return Ended(outcome.result);
+}
+
+/// What is the same for a new run and one that goes on. @throws InputError
+void ApplyOptions(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
-  if (!(options.pace == 0 || options.pace >= kMinPace)) {
-    throw InputError(
-        fmt::format("error: --pace {}: neither 0 nor from {} to 1000", options.pace, kMinPace));
+  if (!(options.pace == 0 || IsSpeed(options.pace))) {
+    throw InputError(fmt::format("error: --pace {}: neither 0 nor from {} to {}", options.pace,
+                                 kMinSpeed, kMaxSpeed));
   }
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
@@ -139,7 +145,10 @@ int Run(RunArguments& arguments) {
   if (options.realtime) ApplyRealtime(arguments);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
-  if (options.announce && !options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
+}
+
+int RunAnew(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
@@ -147,36 +156,59 @@ int Run(RunArguments& arguments) {
         "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock, at least {:g}",
         arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
   }
-  if (!options.log.empty()) {
-    PrepareLog(options.log, arguments.force);
-  } else if (!direct) {
-    options.log = FreshLog(arguments.scenario.file());
-  }
-  const LogOfRun log(options.log);
+  const bool has_log = !options.log.empty() || options.transport != "direct";
+  const LogOfRun log = !has_log              ? LogOfRun()
+                       : options.log.empty() ? FreshLog(arguments.scenario.file())
+                                             : PrepareLog(options.log, arguments.force);
+  options.log = log.path();
+  options.command_to_go_on = CommandToGoOn(options);
   WatchInterrupts();
-  const ExperimentResult result = RunExperiment(scenario, options);
-  if (arguments.json) {
-    PrintJson(ToJson(arguments.scenario.file(), result));
-    return kDone;
+  return Print(arguments, {.file = arguments.scenario.file(),
+                           .steps = scenario.steps,
+                           .result = RunExperiment(scenario, options),
+                           .resumed = std::nullopt});
+}
+
+/// The run in a log to its end. A log that has it is not computed again: what is done once is done.
+int Resume(RunArguments& arguments) {
+  ExperimentOptions& options = arguments.options;
+  const ResumedLog log(arguments.resume);
+  options.log = arguments.resume;
+  options.resume = log.resumption();
+  options.command_to_go_on = CommandToGoOn(options);
+  WatchInterrupts();
+  RunOutcome outcome{.file = arguments.resume,
+                     .steps = log.scenario().steps,
+                     .result = {},
+                     .resumed = log.resumption().remains.steps,
+                     .computed = !log.complete()};
+  if (outcome.computed) {
+    outcome.result = RunExperiment(log.scenario(), options);
+    return Print(arguments, outcome);
   }
-  fmt::print("{}: {} steps in {:.2f} s over {}, {} repairs\n", arguments.scenario.file().string(),
-             result.steps, result.wall_s, result.transport, result.repairs);
-  std::string refused;
-  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
-    if (result.refused[i] == 0) continue;
-    refused +=
-        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
+  if (options.announce) Notice(PathText(options.log) + ": the run is complete");
+  LoggedRun run = MeasureLoggedRun(options.log, log.scenario());
+  if (!run.complete) {
+    throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
-  if (!refused.empty()) fmt::print("refused messages: {}\n", refused);
-  for (const Restarts& role : result.restarts) {
-    fmt::print("{} was started again {}: {}\n", NameOf(role.role),
-               role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
+  outcome.result = std::move(run.result);
+  return Print(arguments, outcome);
+}
+
+/// @throws CLI::ParseError for what cannot go together with --resume, or is missing without it
+void CheckResume(const CLI::App& verb) {
+  if (verb.get_option("--resume")->count() == 0) {
+    if (verb.get_option("SCENARIO")->count() == 0) throw CLI::RequiredError("SCENARIO");
+    return;
   }
-  if (result.realtime) fmt::print("{}", RealtimeText(*result.realtime));
-  fmt::print("digest {}\n", result.digest);
-  if (!result.log.empty()) fmt::print("log    {}\n", result.log.string());
-  fmt::print("{}", MeasuresText(result));
-  return kDone;
+  for (const char* of_the_log : {"SCENARIO", "--seed", "--set", "--log", "--force"}) {
+    if (verb.get_option(of_the_log)->count() == 0) continue;
+    throw CLI::ValidationError(
+        fmt::format("{}: --resume goes on with the scenario and the log of its run", of_the_log));
+  }
+  if (verb.get_option("--realtime")->count() > 0) {
+    throw CLI::ValidationError("--realtime: a run in real time does not go on, see --resume");
+  }
 }
 
 }  // namespace
@@ -184,7 +216,13 @@ int Run(RunArguments& arguments) {
 void AddRun(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("run", "Run a scenario, one process for each role");
   const auto arguments = std::make_shared<RunArguments>(*verb);
-  verb->callback([&action, arguments] { action = [arguments] { return Run(*arguments); }; });
+  verb->callback([&action, arguments, verb] {
+    CheckResume(*verb);
+    action = [arguments] {
+      ApplyOptions(*arguments);
+      return arguments->resume.empty() ? RunAnew(*arguments) : Resume(*arguments);
+    };
+  });
 }
 
 }  // namespace fogline

@@ -1,24 +1,25 @@
 // fogline spy: LCM's own lcm-spy with our message types. Debian's /usr/bin/lcm-spy cannot show
 // them: it passes an option that Java has not known since version 14, and a class path without our
 // types.
-#include <poll.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
 #include "services/runtime/beacon.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/spy_parts.h"
 #include "tools/fogline/verbs.h"
 #include "tools/watch/traffic_statistics.h"
@@ -28,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExplanation =
+constexpr const char* kSpyExplanation =
     R"(A window with a table of every channel: type, rate, jitter, undecodable messages. A double click
 shows a channel's fields; a click on a number's sparkline, its chart. lcm-spy cannot change its
 network: without --lcm-url it starts as soon as a run is announced, on the network of the newest, or
@@ -48,7 +49,7 @@ struct SpyArguments {
                     "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
                     "/usr/local/share/java)");
     ShowExitCodes(verb, {.done = "window closed", .interruptible = true});
-    verb.footer(kExplanation);
+    verb.footer(kSpyExplanation);
   }
 
   NetworkArguments network;
@@ -63,7 +64,7 @@ fs::path JarOf(const SpyArguments& arguments, const std::string& name, const cha
   if (access(jar.c_str(), R_OK) == 0) return jar;
   const fs::path folder = arguments.jars.empty() ? "/usr/share/java" : arguments.jars;
   throw std::runtime_error(
-      fmt::format("there is no {}: apt-get install {}", (folder / name).string(), package));
+      fmt::format("there is no {}: apt-get install {}", PathText(folder / name), package));
 }
 
 /// @throws std::runtime_error that says how to make it
@@ -72,12 +73,12 @@ fs::path TypesOf(const SpyArguments& arguments) {
   const fs::path types = arguments.types.empty() ? TypesJar(programs) : arguments.types;
   if (access(types.c_str(), R_OK) == 0) return types;
   if (!arguments.types.empty()) {
-    throw std::runtime_error(fmt::format("there are no message types at {}", types.string()));
+    throw std::runtime_error(fmt::format("there are no message types at {}", PathText(types)));
   }
   throw std::runtime_error(fmt::format(
       "there are no message types beside {}: apt-get install default-jdk, then cmake -S "
       ". -B build && ninja -C build fogline_lcmtypes_java",
-      programs.string()));
+      PathText(programs)));
 }
 
 /// The command line of lcm-spy without its network. @throws std::runtime_error if it cannot run
@@ -87,7 +88,7 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
   if (!OpensWindows(java)) {
     throw std::runtime_error(
         fmt::format("{} cannot open windows (default-jre-headless?): apt-get install default-jre",
-                    java.string()));
+                    PathText(java)));
   }
   const fs::path lcm = JarOf(arguments, "lcm.jar", "liblcm-java");
   const fs::path charts = JarOf(arguments, "jchart2d.jar", "libjchart2d-java");
@@ -117,15 +118,15 @@ std::string FindNetwork(const SpyArguments& arguments) {
     bus.Drain();
     beacons.Look();
     if (const auto runs = beacons.Runs(); !runs.empty()) {
-      fmt::print(stderr, "{}\n", runs.front().Text());
+      Notice(runs.front().Text());
       return runs.front().url;
     }
     const Duration waited = Clock::now() - began;
     if (waited < kDiscovery) continue;
     if (traffic) return bus.url();
     if (!std::exchange(said, true)) {
-      fmt::print(stderr, "waiting for a run on {}; start one with: fogline run SCENARIO --pace 1\n",
-                 bus.url());
+      Notice(fmt::format("waiting for a run on {}; start one with: fogline run SCENARIO --pace 1",
+                         bus.url()));
     }
     if (arguments.wait_s > 0 && waited > std::chrono::duration<double>(arguments.wait_s)) {
       throw std::runtime_error(
@@ -135,6 +136,15 @@ std::string FindNetwork(const SpyArguments& arguments) {
     }
   }
   throw Interrupted("interrupted before a run came");
+}
+
+/// lcm-spy is to hear what stays on this machine.
+void PreloadHearLoopback() {
+  const fs::path library = HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
+  if (library.empty()) return;  // it hears what goes over other interfaces
+  std::string preload = library.string();
+  if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
+  setenv("LD_PRELOAD", preload.c_str(), 1);
 }
 
 int Spy(const SpyArguments& arguments) {
@@ -148,6 +158,7 @@ int Spy(const SpyArguments& arguments) {
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());
   argv.push_back(nullptr);
+  PreloadHearLoopback();
   execv(argv.front(), argv.data());
   throw std::runtime_error(
       fmt::format("{} cannot be started: {}", command.front(), std::strerror(errno)));

@@ -52,4 +52,9 @@ fs::path TypesJar(const fs::path& programs) {
   return {};
 }
 
+fs::path HearLoopback(const fs::path& programs) {
+  const fs::path library = (programs / "../lib/libfogline_hear_loopback.so").lexically_normal();
+  return Readable(library) ? library : fs::path();
+}
+
 }  // namespace fogline

@@ -1,5 +1,5 @@
-// What LCM's lcm-spy is made of on this machine: a Java that opens windows, LCM's jars, and the jar
-// of our message types.
+// What LCM's lcm-spy is made of on this machine: a Java that opens windows, LCM's jars, the jar of
+// our message types, and what lets Java hear loopback.
 #pragma once
 
 #include <filesystem>
@@ -23,5 +23,9 @@ std::filesystem::path InstalledJar(const std::string& name);
 /// there is none.
 /// @param programs folder of the program
 std::filesystem::path TypesJar(const std::filesystem::path& programs);
+
+/// What lets a Java program hear a run that stays on this machine (tools/spy), of the build or the
+/// installation that a program belongs to; "" if there is none.
+std::filesystem::path HearLoopback(const std::filesystem::path& programs);
 
 }  // namespace fogline

@@ -10,9 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/own_program.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verb_main.h"
@@ -59,7 +60,7 @@ void RequireScenarios(const std::filesystem::path& folder) {
     throw InputError(
         fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
                     "with paper.json and dense_fog.json, in Fogline's sources scenario/",
-                    file.string()));
+                    PathText(file)));
   }
 }
 
@@ -121,8 +122,9 @@ std::string CommandOf(const StudyArguments& arguments) {
   return command;
 }
 
-std::string ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
-                   const std::filesystem::path& page, const std::filesystem::path& text) {
+nlohmann::ordered_json ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
+                              const std::filesystem::path& page,
+                              const std::filesystem::path& text) {
   nlohmann::ordered_json json{{"command", CommandOf(arguments)},
                               {"report", page.string()},
                               {"text", text.string()},
@@ -138,14 +140,14 @@ std::string ToJson(const StudyArguments& arguments, const std::vector<Made>& all
                                {"findings", made.result.section.findings},
                                {"files", std::move(files)}});
   }
-  return json.dump(2);
+  return json;
 }
 
 void PrintText(const StudyArguments& arguments, const Made& made) {
   fmt::print("{} ({} runs)\n", made.study->title, made.result.runs);
   for (const std::string& finding : made.result.section.findings) fmt::print("  {}\n", finding);
   for (const StudyFile& file : made.result.files) {
-    fmt::print("{}\n", (arguments.out / file.name).string());
+    fmt::print("{}\n", PathText(arguments.out / file.name));
   }
 }
 
@@ -192,7 +194,7 @@ int RunStudy(const StudyArguments& arguments) {
   if (arguments.json) {
     PrintJson(ToJson(arguments, all, page, text));
   } else {
-    fmt::print("{}\n{}\n", page.string(), text.string());
+    fmt::print("{}\n{}\n", PathText(page), PathText(text));
   }
   return kDone;
 }

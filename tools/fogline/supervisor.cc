@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <fstream>
 #include <utility>
 
 #include <fmt/core.h>
@@ -18,9 +19,23 @@ constexpr Duration kLookEvery = milliseconds(20);
 constexpr int kStopRepeats = 5;
 // A process that is not heard of for so long after its start hangs.
 constexpr Duration kStartLimit = milliseconds(5000);
+// A process that runs and is not heard counts as alive unless this is less likely: so few are
+// killed in vain that it happens in one of some thousand runs on a network that loses a lot.
+constexpr double kUnlikely = 1e-6;
 
-std::filesystem::path ProgramOf(Role role) {
-  return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
+/// How often a process has begun to wait, or was made to; nothing if it cannot be known. Whoever
+/// lives does so many times a second.
+std::optional<std::int64_t> ActivityOf(pid_t pid) {
+  std::ifstream status(fmt::format("/proc/{}/status", pid));
+  std::int64_t sum = 0;
+  bool known = false;
+  for (std::string key; status >> key;) {
+    if (!key.ends_with("voluntary_ctxt_switches:")) continue;
+    std::int64_t count = 0;
+    known = static_cast<bool>(status >> count);
+    sum += count;
+  }
+  return known ? std::optional(sum) : std::nullopt;
 }
 
 }  // namespace
@@ -42,12 +57,14 @@ void Supervisor::Start(Child& child, TimePoint now) {
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
     // Only if it is the log of this run: before that it may be an old one that is to be replaced.
-    if (conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
+    if (options_.resume || conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
   child.started = now;
   child.start_at.reset();
-  child.hung.clear();
+  child.activity.reset();
+  child.killed_for.clear();
+  child.deaf = false;
   conductor_.Launched(child.role, child.pid, now);
 }
 
@@ -62,20 +79,32 @@ void Supervisor::Look(TimePoint now) {
   for (const ProcessGroup::Exit& exit : exits) OnExit(exit, now);
   for (Child& child : children_) {
     if (child.start_at && now >= *child.start_at) {
-      const pid_t before = child.pid;
-      Start(child, now);
-      options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})",
-                               NameOf(child.role), before, child.death, child.pid,
-                               child.policy.restarts(), child.policy.limit()));
+      StartAgain(child, now);
     } else if (!child.start_at && !child.gone && options_.restarts > 0) {
       KillIfItHangs(child, now);
+      KillIfItIsDeaf(child);
     }
   }
+  NameTheDeaf();
+}
+
+void Supervisor::StartAgain(Child& child, TimePoint now) {
+  const pid_t before = child.pid;
+  try {
+    Start(child, now);
+  } catch (const std::runtime_error& error) {  // for now, perhaps: the stall timeout decides
+    child.start_at = now + child.policy.OnFailedStart();
+    conductor_.Hinder(child.role, error.what());
+    return;
+  }
+  options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})", NameOf(child.role),
+                           before, child.death, child.pid, child.policy.restarts(),
+                           child.policy.limit()));
 }
 
 void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
-  const std::string how = child->hung.empty() ? exit.how : child->hung;
+  const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, conductor_.Where());
   const auto wait = exit.killed ? child->policy.OnDeath(conductor_.step()) : std::nullopt;
   if (wait) {
@@ -88,7 +117,7 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
   if (exit.killed && options_.restarts > 0) {
     text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
   }
-  const bool goes_on = options_.restarts > 0 && conductor_.GoesOnWithout(exit.role);
+  const bool goes_on = options_.restarts > 0 && conductor_.GoesOnWithout(exit.role) && !child->deaf;
   if (goes_on) text += "; the run goes on without it";
   for (const std::string& line : exit.lines) {
     text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
@@ -103,10 +132,45 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   const Conductor::Member& member = conductor_.member(child.role);
   const bool met = member.status && member.status->pid == child.pid;
   const Duration silent = conductor_.HeldAgainst(met ? member.heard : child.started, now);
-  if (!child.hung.empty() || silent < (met ? options_.silence : kStartLimit)) return;
-  child.hung = fmt::format("was silent for {:.1f} s and was killed",
-                           std::chrono::duration<double>(silent).count());
+  const Duration limit = met ? options_.silence : kStartLimit;
+  if (silent < limit / 2) child.activity.reset();
+  if (silent < limit / 2 || !child.killed_for.empty()) return;
+  if (!child.activity) child.activity = ActivityOf(child.pid);
+  if (silent < limit) return;
+  // One that runs may be one that is not heard.
+  if (ActivityOf(child.pid) != child.activity &&
+      conductor_.ChanceOfLife(child.role, silent) > kUnlikely) {
+    return;
+  }
+  Kill(child, fmt::format("was silent for {:.1f} s and was killed", Seconds(silent)));
+}
+
+void Supervisor::KillIfItIsDeaf(Child& child) {
+  const auto deaf = conductor_.Deaf(child.role);
+  if (!deaf || !child.killed_for.empty()) return;
+  child.deaf = true;
+  Kill(child, Text(*deaf) + ", and was killed");
+}
+
+void Supervisor::Kill(Child& child, std::string why) {
+  child.killed_for = std::move(why);
   kill(child.pid, SIGKILL);
+}
+
+void Supervisor::NameTheDeaf() {
+  for (const RoleInfo& info : kRoles) {
+    const auto deaf = conductor_.Deaf(info.role);
+    if (!deaf) {
+      deaf_.erase(info.role);
+      continue;
+    }
+    const bool ours = std::ranges::find(children_, info.role, &Child::role) != children_.end();
+    if ((ours && options_.restarts > 0) || !deaf_.insert(info.role).second) continue;
+    const auto& status = conductor_.member(info.role).status;
+    if (!status) continue;
+    options_.say(fmt::format("warning: {} (pid {} on {}) is deaf: it {}", info.name, status->pid,
+                             status->host, Text(*deaf)));
+  }
 }
 
 void Supervisor::End() {
@@ -121,6 +185,7 @@ void Supervisor::End() {
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }
+  bus_.Drain();  // what the last of them has said
 }
 
 std::vector<Restarts> Supervisor::restarts() const {
@@ -130,12 +195,13 @@ std::vector<Restarts> Supervisor::restarts() const {
     const Conductor::Member& member = conductor_.member(info.role);
     if (child != children_.end()) {
       if (child->policy.restarts() == 0) continue;
-      restarts.push_back(
-          {.role = info.role, .count = child->policy.restarts(), .last = child->death});
+      restarts.push_back({.role = std::string(info.name),
+                          .count = child->policy.restarts(),
+                          .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
       // The last one may have come too late in the run to be sure that the one before it is dead.
       const status_t& dead = member.rival ? *member.status : member.dead.back();
-      restarts.push_back({.role = info.role,
+      restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,
                           .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,
                                               dead.host, dead.header.step)});

@@ -5,13 +5,17 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/csv.h"
+#include "tools/sweep/description.h"
 #include "tools/sweep/merge.h"
+#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -26,7 +30,10 @@ struct SweepArguments {
         ->allow_extra_args(false);
     verb.add_option("--seeds", seeds, "Seeds A:B, both included (default: the scenario's own)");
     verb.add_option("--jobs", jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
-    verb.add_option("--out", out, "CSV file (default: SCENARIO-sweep.csv in this folder)");
+    verb.add_option("--out", out,
+                    "CSV file; a pipe or /dev/stdout gets the rows alone (default: "
+                    "SCENARIO-sweep.csv in this folder, or -sweep-2.csv and so on beside other "
+                    "sweeps)");
     verb.add_option("--shard", shard, "Only part I of N equal parts, as I/N");
     CLI::Option* put_together =
         verb.add_option("--merge", merge, "Put the files of all shards together into --out");
@@ -70,17 +77,39 @@ SweepPlan MakePlan(const SweepArguments& arguments) {
   for (const std::string& axis : arguments.grid) axes.push_back(ParseAxis(axis));
   const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
                                                   : ReadSeeds(arguments.seeds);
-  return SweepPlan(std::move(scenario), std::move(axes), seeds, arguments.scenario.string());
+  return SweepPlan(std::move(scenario), std::move(axes), seeds, PathText(arguments.scenario));
+}
+
+/// What has been done, on stdout unless the rows go there.
+void PrintSummary(const std::filesystem::path& out, const std::string& text) {
+  if (IsStdout(out)) return Complain(text);
+  fmt::print("{}\n{}\n", text, PathText(out));
+}
+
+/// Where the rows go if the command line does not say it: a sweep that is called again finds its
+/// file, and leaves that of another one.
+std::filesystem::path DefaultOut(const SweepArguments& arguments, const SweepPlan& plan,
+                                 const Shard& shard) {
+  const std::string stem = arguments.scenario.stem().native() + "-sweep";
+  const Description description = Describe(plan, shard);
+  std::error_code missing;
+  for (int number = 1;; ++number) {
+    const std::filesystem::path out =
+        number == 1 ? stem + ".csv" : fmt::format("{}-{}.csv", stem, number);
+    if (arguments.force || std::filesystem::file_size(out, missing) == 0 || missing) return out;
+    if (IsSweep(out) && ReadDescription(out) == description) return out;
+  }
 }
 
 int Merge(const SweepArguments& arguments) {
   if (arguments.out.empty()) throw InputError("error: --merge needs --out");
+  WatchInterrupts();
   const std::int64_t rows = MergeShards(arguments.merge, arguments.out, arguments.force);
   if (arguments.json) {
     const nlohmann::ordered_json json{{"rows", rows}, {"out", arguments.out.string()}};
-    PrintJson(json.dump(2));
+    PrintJson(json);
   } else {
-    fmt::print("{} rows\n{}\n", rows, arguments.out.string());
+    PrintSummary(arguments.out, fmt::format("{} rows", rows));
   }
   return kDone;
 }
@@ -92,15 +121,15 @@ int RunSweepVerb(const SweepArguments& arguments) {
   Scenario first = plan.base();  // what cannot be is refused before a file is there
   plan.Configure(plan.ShardBegin(shard), 0, first);
   CheckPossible(first, arguments.scenario);
-  std::filesystem::path out = arguments.out;
-  if (out.empty()) out = fmt::format("{}-sweep.csv", arguments.scenario.stem().string());
+  const std::filesystem::path out =
+      arguments.out.empty() ? DefaultOut(arguments, plan, shard) : arguments.out;
   SweepFile file(out, plan, shard, arguments.force);
   const std::int64_t begin = file.next_unit();
   const std::int64_t end = plan.ShardEnd(shard);
   if (begin > plan.ShardBegin(shard) && !arguments.json) {
-    fmt::print(stderr, "{}: {} of {} rows are there\n", out.string(),
-               (begin - plan.ShardBegin(shard)) * plan.rows_per_unit(),
-               (end - plan.ShardBegin(shard)) * plan.rows_per_unit());
+    Notice(fmt::format("{}: {} of {} rows are there", PathText(out),
+                       (begin - plan.ShardBegin(shard)) * plan.rows_per_unit(),
+                       (end - plan.ShardBegin(shard)) * plan.rows_per_unit()));
   }
   WatchInterrupts();
   Progress progress("row", (end - begin) * plan.rows_per_unit());
@@ -121,10 +150,10 @@ int RunSweepVerb(const SweepArguments& arguments) {
   if (arguments.json) {
     const nlohmann::ordered_json json{
         {"runs", rows}, {"wall_s", wall_s}, {"runs_per_s_per_core", rate}, {"out", out.string()}};
-    PrintJson(json.dump(2));
+    PrintJson(json);
   } else {
-    fmt::print("{} rows in {:.2f} s, {:.0f} rows per second and core\n{}\n", rows, wall_s, rate,
-               out.string());
+    PrintSummary(out, fmt::format("{} rows in {:.2f} s, {:.0f} rows per second and core", rows,
+                                  wall_s, rate));
   }
   return kDone;
 }

@@ -1,4 +1,5 @@
 // fogline table: safety improvement against redundant human engagement, by threshold.
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -8,10 +9,12 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/external_roles.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/pairing.h"
 #include "tools/fogline/progress.h"
 #include "tools/fogline/threshold_rows.h"
@@ -31,7 +34,7 @@ struct TableArguments {
         ->excludes("--seed");
     verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
-    ShowExitCodes(verb, {.interruptible = true});
+    ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(
         "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
         "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
@@ -55,8 +58,8 @@ struct TableArguments {
 /// @throws InputError
 ExperimentOptions OptionsOf(const TableArguments& arguments) {
   ExperimentOptions options;
+  options.samples = true;
   arguments.transport.Apply(options);
-  if (!options.remark.empty()) fmt::print(stderr, "{}\n", options.remark);
   const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
   if (!options.external.empty() && own_port) {
     throw InputError(
@@ -73,8 +76,13 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
                                                arguments.scenario.file().stem().string(),
                                                scenario.seed, name);
   }
-  const LogOfRun log(options.log);
-  return RunExperiment(scenario, options);
+  const LogOfRun log = options.log.empty() ? LogOfRun() : LogOfRun(options.log);
+  ExperimentResult result = RunExperiment(scenario, options);
+  if (result.verification && !result.verification->Holds()) {
+    throw CheckFailed(
+        fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
+  }
+  return result;
 }
 
 /// Runs every pair on a transport, with logs if wanted.
@@ -83,9 +91,9 @@ std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                      std::span<const double> thresholds, const SeedRange& seeds) {
   const ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
-    fmt::print(stderr, "each of {} runs waits for the {} ({}): start it for each with: {}\n",
-               seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
-               external.Command(role));
+    Notice(fmt::format("each of {} runs waits for the {} ({}): start it for each with: {}",
+                       seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
+                       external.Command(role)));
   }
   std::vector<ThresholdRow> rows;
   for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});
@@ -126,9 +134,9 @@ const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
   return nullptr;
 }
 
-std::string ToJson(const std::filesystem::path& file, const std::string& transport,
-                   const Scenario& scenario, const SeedRange& seeds,
-                   const std::vector<ThresholdRow>& rows) {
+nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::string& transport,
+                              const Scenario& scenario, const SeedRange& seeds,
+                              const std::vector<ThresholdRow>& rows) {
   nlohmann::ordered_json json{
       {"scenario", file.string()}, {"transport", transport},
       {"seeds", seeds.count()},    {"first_seed", seeds.first},
@@ -149,7 +157,7 @@ std::string ToJson(const std::filesystem::path& file, const std::string& transpo
     }
     json["rows"].push_back(std::move(out));
   }
-  return json.dump(2);
+  return json;
 }
 
 void PrintText(const Scenario& scenario, const SeedRange& seeds,
@@ -161,7 +169,7 @@ void PrintText(const Scenario& scenario, const SeedRange& seeds,
     return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
                         : cell(of.mean);
   };
-  fmt::print("{}\n", scenario.title);
+  fmt::print("{}\n", EscapeControls(scenario.title));
   if (seeds.count() == 1) {
     fmt::print("seed {}\n\n", seeds.first);
   } else {
@@ -175,10 +183,15 @@ void PrintText(const Scenario& scenario, const SeedRange& seeds,
     fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
                spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
                published ? cell(published->rhe_pct) : "-", row.collisions);
-    if (si.count < seeds.count()) {
+    if (si.count > 0 && si.count < seeds.count()) {
       fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
                  si.count);
     }
+  }
+  const auto has_si = [](const ThresholdRow& row) { return row.si_pct.Result().count > 0; };
+  if (std::ranges::none_of(rows, has_si)) {
+    fmt::print(
+        "\nno SI: without traded control the following car never comes too close (no fog?)\n");
   }
 }
 

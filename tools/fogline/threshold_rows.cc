@@ -1,6 +1,6 @@
 #include "tools/fogline/threshold_rows.h"
 
-#include "tools/fogline/interrupt.h"
+#include "services/runtime/interrupt.h"
 #include "tools/fogline/progress.h"
 #include "tools/sweep/engine.h"
 

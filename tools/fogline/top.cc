@@ -6,16 +6,18 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/runtime/beacon.h"
 #include "services/runtime/bus.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/lcm_url.h"
 #include "tools/fogline/arguments.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/verbs.h"
 #include "tools/watch/announced.h"
 #include "tools/watch/terminal.h"
@@ -25,7 +27,7 @@
 namespace fogline {
 namespace {
 
-constexpr const char* kExplanation =
+constexpr const char* kTopExplanation =
     R"(Per channel and run: messages since top listens; rate and bandwidth (payload) of the last
 interval; jitter, the standard deviation of the times between messages in it; age of the last
 message; steps that have not come within the next 64 (lost), came behind a newer one (late), or
@@ -53,7 +55,7 @@ struct TopArguments {
     verb.add_flag("--once", once, "Print what was seen in one interval, and quit");
     verb.add_flag("--json", json, "Print a JSON document for every interval instead of a table");
     ShowExitCodes(verb, {.interruptible = true});
-    verb.footer(kExplanation);
+    verb.footer(kTopExplanation);
   }
 
   NetworkArguments network;
@@ -69,6 +71,9 @@ constexpr Duration kLookEvery = milliseconds(50);
 constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine has announced itself in this time.
 constexpr Duration kDiscovery = 2 * kBeaconEvery;
+// LCM remembers every channel name that it has heard for as long as it is open: some 300 bytes
+// each. It is opened anew after so many.
+constexpr std::int64_t kMostNames = 10'000;
 // Announced runs on networks that cannot be opened: so many are remembered.
 constexpr std::size_t kMaxUnreachable = 64;
 
@@ -79,9 +84,9 @@ Duration FromSeconds(double seconds) {
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
-      : arguments_(arguments), bus_(arguments.network.Url()), statistics_(Clock::now()) {
-    Watch(bus_);
-    if (arguments.network.Follows()) listener_.emplace(bus_.url());
+      : arguments_(arguments), url_(arguments.network.Url()), statistics_(Clock::now()) {
+    Open();
+    if (arguments.network.Follows()) listener_.emplace(bus_->url());
     if (isatty(STDOUT_FILENO) == 1 && !arguments.once && !arguments.json) terminal_.emplace();
   }
 
@@ -98,12 +103,28 @@ class Top {
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
       if (!whole) return kInterrupted;
       Show();
+      if (terminal_ && terminal_->gone()) throw std::runtime_error("the terminal is gone");
       if (arguments_.once) return kDone;
     }
     return kDone;
   }
 
  private:
+  void Open() {
+    bus_.reset();
+    bus_.emplace(url_);
+    Watch(*bus_);
+    names_ = statistics_.unknown_names();
+  }
+
+  /// Has LCM forget the names of channels when there are too many. Follow() opens the network of
+  /// the run again.
+  void ForgetNames() {
+    if (statistics_.unknown_names() - names_ < kMostNames) return;
+    followed_.reset();
+    Open();
+  }
+
   void Watch(Bus& bus) {
     bus.SubscribeAll([this](std::string_view channel, Bytes bytes) {
       if (!IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
@@ -132,7 +153,7 @@ class Top {
     const Announcement& run = runs_.front();
     if (followed_ && SameNetwork(followed_->url(), run.url)) return;
     followed_.reset();
-    if (SameNetwork(bus_.url(), run.url)) return;
+    if (SameNetwork(bus_->url(), run.url)) return;
     try {
       followed_.emplace(run.url);
       Watch(*followed_);
@@ -164,14 +185,15 @@ class Top {
       const TimePoint now = Clock::now();
       if (now >= until) return true;
       std::array<pollfd, 3> waited{
-          pollfd{.fd = bus_.fd(), .events = POLLIN, .revents = 0},
+          pollfd{.fd = bus_->fd(), .events = POLLIN, .revents = 0},
           pollfd{.fd = followed_ ? followed_->fd() : -1, .events = POLLIN, .revents = 0},
           pollfd{.fd = terminal_ ? terminal_->fd() : -1, .events = POLLIN, .revents = 0}};
       const Duration wait = std::min(until - now, kLookEvery);
       poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(wait)) + 1);
       if (WasInterrupted()) return false;
-      bus_.Drain();
+      bus_->Drain();
       DrainFollowed();
+      ForgetNames();
       Follow(now);
       if (terminal_ && terminal_->Key() == 'q') return false;
     }
@@ -181,8 +203,7 @@ class Top {
     const TrafficView view = statistics_.Observe(Clock::now());
     if (terminal_) return terminal_->Draw(Lines(view));
     if (arguments_.json) {
-      PrintJson(Json(view).dump(arguments_.once ? 2 : -1, ' ', false,
-                                nlohmann::json::error_handler_t::replace));
+      PrintJson(Json(view), arguments_.once ? 2 : -1);
     } else {
       for (const Line& line : Lines(view)) fmt::print("{}\n", line.text);
       if (!arguments_.once) fmt::print("\n");
@@ -191,7 +212,7 @@ class Top {
   }
 
   /// The network of the run that is followed, else the one that was to be looked at.
-  const std::string& url() const { return followed_ ? followed_->url() : bus_.url(); }
+  const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
 
   std::vector<Line> Lines(const TrafficView& view) const {
     std::vector<Line> lines = TrafficLines(view, url());
@@ -207,8 +228,10 @@ class Top {
   }
 
   const TopArguments& arguments_;
-  Bus bus_;
+  std::string url_;
+  std::optional<Bus> bus_;
   TrafficStatistics statistics_;
+  std::int64_t names_ = 0;                  // unknown ones when bus_ was opened
   std::optional<BeaconListener> listener_;  // where runs are to be followed
   std::vector<Announcement> runs_;          // that are announced; first the one to be followed
   std::optional<Bus> followed_;             // its network

@@ -8,7 +8,6 @@
 #include "scenario/loader.h"
 #include "services/graph.h"
 #include "services/runtime/lcm_url.h"
-#include "services/runtime/multicast_route.h"
 #include "tools/fogline/help.h"
 
 namespace fogline {
@@ -30,9 +29,10 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
                       "one process per role on a multicast port of its own; tcpq: the same over "
                       "TCP, through a fogline-relay of its own; or an LCM URL")
           ->capture_default_str();
-  verb.add_option(
-          "--lcm-url", url_,
-          "The same as --transport URL (without either, processes go to $LCM_DEFAULT_URL, if set)")
+  verb.add_option("--lcm-url", url_,
+                  fmt::format("The same as --transport URL (without either, processes{} go to "
+                              "$LCM_DEFAULT_URL, if set)",
+                              transport_ == "direct" ? " for --external" : ""))
       ->excludes(said_);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
@@ -40,6 +40,14 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   verb.add_option("--wait", wait_s_, "Wait so long for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();
+  verb.add_flag(
+      "--same-build", same_build_,
+      "End the run if a role is of another build than this one, or does not say of which");
+  CLI::Option* verify = verb.add_flag(
+      "--verify", verify_,
+      "Compute every role's steps again from the log and compare (default with --external); roles "
+      "of another build and runs in real time are left out");
+  verb.add_flag("--no-verify", no_verify_, "Do not, with --external either")->excludes(verify);
   AddTrafficOptions(verb, traffic_);
 }
 
@@ -60,12 +68,6 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
         fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_, kLcmDefaultUrl));
   }
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
-  if (options.transport == "udpm" && !WhyNoMulticast(kLcmDefaultUrl).empty()) {
-    options.transport = "tcpq";
-    options.remark =
-        "this machine has no route for multicast: messages go over TCP on loopback, as with "
-        "--transport tcpq, and other programs need --lcm-url";
-  }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   // A wrong key is refused, also for a run without messages to sign.
@@ -79,6 +81,8 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
       options.external.push_back(info.role);
     }
   }
+  options.verify = verify_ || (!external_.empty() && !no_verify_);
+  options.same_build = same_build_;
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(

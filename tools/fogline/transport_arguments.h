@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// --transport, --lcm-url, --external, --wait, --key and --faults.
+/// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
 class TransportArguments {
  public:
   /// @param transport where runs go unless something else is said. A run whose roles are
@@ -18,7 +18,6 @@ class TransportArguments {
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, what is asked of its traffic, and the roles that are started elsewhere.
-  /// Where the machine has no route for multicast, tcpq takes the place of udpm, with a remark.
   /// @throws InputError if these cannot go together
   void Apply(ExperimentOptions& options) const;
 
@@ -31,6 +30,9 @@ class TransportArguments {
   std::string url_;
   std::vector<std::string> external_;
   double wait_s_ = 60;
+  bool same_build_ = false;
+  bool verify_ = false;
+  bool no_verify_ = false;
   TrafficOptions traffic_;
 };
 

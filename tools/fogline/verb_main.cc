@@ -11,9 +11,12 @@
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
+#include "services/runtime/this_process.h"
 #include "services/runtime/version.h"
 #include "tools/fogline/help.h"
-#include "tools/fogline/interrupt.h"
 #include "tools/fogline/refusal.h"
 
 namespace fogline {
@@ -31,19 +34,24 @@ int Run(const CLI::App& app, const Action& action) {
   } catch (const InputError& error) {
     // A mistake in a file begins with its place, one in the arguments with "error:".
     const std::string_view what = error.what();
-    fmt::print(stderr, "{}{}\n", what.starts_with("error:") ? name + ": " : "", what);
+    Complain(what.starts_with("error:") ? fmt::format("{}: {}", name, EscapeControls(what))
+                                        : std::string(what));
     return kBadInput;
   } catch (const Interrupted& interrupted) {
-    fmt::print(stderr, "{}: {}\n", name, interrupted.what());
+    Complain(fmt::format("{}: {}", name, interrupted.what()));
     return kInterrupted;
-  } catch (const std::exception& error) {
+  } catch (const CheckFailed& error) {
     fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    return kCheckFailed;
+  } catch (const std::exception& error) {
+    Complain(fmt::format("{}: error: {}", name, error.what()));
     return kRunFailed;
   }
 }
 
 /// @param arguments without the program's name, the last one first
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
+  FailWritesBeyondTheSizeLimit();
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
   app.set_version_flag("--version", VersionText());
   app.require_subcommand(0, 1);
@@ -59,9 +67,13 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked) {  // --help, --version
+    if (const std::string misfit = UnknownVerb(app); !misfit.empty()) {
+      Complain(misfit);
+      return kBadInput;
+    }
     action = [&app, asked] { return app.exit(asked); };
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}\n", Refusal(app, error));
+    Complain(Refusal(app, error));
     return kBadInput;
   }
   if (!action) {  // no verb: the help, and exit code 0, as cargo does
@@ -82,10 +94,12 @@ std::vector<std::string> Reversed(int argc, char** argv) {
 }  // namespace
 
 int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs) {
+  TakeStandardDescriptors();
   return Main(Reversed(argc, argv), verbs);
 }
 
 int RunOneVerb(int argc, char** argv, AddVerb verb) {
+  TakeStandardDescriptors();
   if (argc == 2 && std::string_view(argv[1]) == "--version") return RunVerbs(argc, argv, {verb});
   CLI::App probe;
   Action ignored;

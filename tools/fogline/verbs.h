@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
@@ -18,6 +19,12 @@ enum ExitCode : int {
   kBadInput = 2,
   kRunFailed = 3,
   kInterrupted = 130
+};
+
+/// Ends a verb with kCheckFailed.
+class CheckFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 void AddRun(CLI::App& app, Action& action);

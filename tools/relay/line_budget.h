@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include <fmt/core.h>
 
 #include "services/runtime/clock.h"
+#include "services/runtime/diagnostics.h"
 
 namespace fogline {
 
@@ -18,13 +18,13 @@ class LineBudget {
     const TimePoint now = Clock::now();
     if (now - began_ > kPeriod) {
       began_ = now;
-      if (unsaid_ > 0) fmt::print(stderr, "fogline-relay: {} such lines not shown\n", unsaid_);
+      if (unsaid_ > 0) Notice(fmt::format("fogline-relay: {} such lines not shown", unsaid_));
       said_ = 0;
       unsaid_ = 0;
     }
     if (said_ < kLines) {
       ++said_;
-      fmt::print(stderr, "fogline-relay: {}\n", line);
+      Notice(fmt::format("fogline-relay: {}", line));
     } else {
       ++unsaid_;
     }

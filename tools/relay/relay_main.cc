@@ -1,6 +1,5 @@
 // fogline-relay: carries LCM's messages over TCP where multicast is blocked. It knows nothing of
 // Fogline's messages or runs.
-#include <csignal>
 #include <cstdio>
 
 #include <fmt/core.h>
@@ -8,6 +7,8 @@
 #include <boost/asio/signal_set.hpp>
 
 #include "scenario/loader.h"
+#include "services/runtime/diagnostics.h"
+#include "services/runtime/interrupt.h"
 #include "services/runtime/tcpq_url.h"
 #include "tools/relay/relay.h"
 
@@ -20,7 +21,7 @@ enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3 };
 
 constexpr const char* kFooter =
     R"(Prints its URL on stdout, whom it disconnects and why on stderr, and a summary
-at the end. Ctrl-C or SIGTERM ends it. Nothing checks who connects: listen
+at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Nothing checks who connects: listen
 on 127.0.0.1 or on a network that you trust.
 
 Exit codes: 0 stopped, 2 bad usage, 3 cannot listen.
@@ -78,17 +79,19 @@ int RunRelay(const Arguments& arguments) {
     throw std::runtime_error(
         fmt::format("cannot listen on {}: {}", listen.ToString(), error.code().message()));
   }
-  asio::signal_set signals(context, SIGINT, SIGTERM);
+  asio::signal_set signals(context);
+  for (const int signal : EndingSignals()) signals.add(signal);
   signals.async_wait([&relay](boost::system::error_code, int) { relay->Stop(); });
   const tcpq::Endpoint here{listen.address, relay->endpoint().port()};
   fmt::print("{}\n", here.Url());
   std::fflush(stdout);
   context.run();
-  if (!arguments.quiet) fmt::print(stderr, "fogline-relay: {}\n", relay->Summary());
+  if (!arguments.quiet) Complain(fmt::format("fogline-relay: {}", relay->Summary()));
   return kStopped;
 }
 
 int Main(int argc, char** argv) {
+  TakeStandardDescriptors();
   CLI::App app{"Carries LCM messages over TCP (tcpq://) where multicast is blocked.",
                "fogline-relay"};
   app.set_version_flag("--version", FOGLINE_VERSION);
@@ -99,16 +102,16 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "fogline-relay: error: {} (see fogline-relay --help)\n", error.what());
+    Complain(fmt::format("fogline-relay: error: {} (see fogline-relay --help)", error.what()));
     return kBadUsage;
   }
   try {
     return RunRelay(arguments);
   } catch (const InputError& error) {
-    fmt::print(stderr, "fogline-relay: {}\n", error.what());
+    Complain(fmt::format("fogline-relay: {}", error.what()));
     return kBadUsage;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fogline-relay: error: {}\n", error.what());
+    Complain(fmt::format("fogline-relay: error: {}", error.what()));
     return kFailed;
   }
 }

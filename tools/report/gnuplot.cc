@@ -15,6 +15,9 @@
 
 #include <fmt/format.h>
 
+#include "services/runtime/interrupt.h"
+#include "tools/sweep/whole_file.h"
+
 extern char** environ;
 
 namespace fogline {
@@ -58,8 +61,8 @@ class Streams {
   Streams(const Streams&) = delete;
   Streams& operator=(const Streams&) = delete;
 
-  void Connect(int descriptor, std::FILE* file) {
-    posix_spawn_file_actions_adddup2(&actions_, fileno(file), descriptor);
+  void Connect(int descriptor, int to) {
+    posix_spawn_file_actions_adddup2(&actions_, to, descriptor);
   }
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
@@ -117,23 +120,19 @@ const FormatRow& RowOf(FigureFormat format) {
 void RunGnuplot(const std::string& script, const std::filesystem::path& output) {
   const File input = NamelessFile();
   const File words = NamelessFile();
-  File picture(std::fopen(output.c_str(), "wb"));
-  if (picture == nullptr) Fail(output.string(), std::strerror(errno));
+  WholeFile picture(output);
   std::fwrite(script.data(), 1, script.size(), input.get());
   if (std::fflush(input.get()) != 0) Fail("temporary file", std::strerror(errno));
 
   Streams streams;
-  streams.Connect(STDIN_FILENO, input.get());
-  streams.Connect(STDOUT_FILENO, picture.get());
-  streams.Connect(STDERR_FILENO, words.get());
-  try {
-    if (StatusOfGnuplot(streams) != 0) Fail("gnuplot", TextOf(words.get()));
-  } catch (...) {
-    picture.reset();
-    std::error_code ignored;
-    std::filesystem::remove(output, ignored);
-    throw;
-  }
+  streams.Connect(STDIN_FILENO, fileno(input.get()));
+  streams.Connect(STDOUT_FILENO, picture.descriptor());
+  streams.Connect(STDERR_FILENO, fileno(words.get()));
+  const int status = StatusOfGnuplot(streams);
+  // Ctrl-C reaches gnuplot, too.
+  if (WasInterrupted()) throw Interrupted("interrupted; not all figures are written");
+  if (status != 0) Fail("gnuplot", TextOf(words.get()));
+  picture.Finish();
 }
 
 std::string FigureFile(FigureFormat format, std::string_view name) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "scenario/wording.h"
+
 namespace fogline {
 namespace {
 
@@ -42,6 +44,15 @@ std::string MeasureText(std::string_view name, double value, std::string_view un
     decimals = std::clamp(kSignificant - 1 - magnitude, 0, decimals);
   }
   return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string CollisionText(const RunMeasures& measures) {
+  if (!measures.collision_time_s) return "";
+  return fmt::format("{} at {} s",
+                     measures.collision == truth_t::COLLISION_HOST
+                         ? "the host hit the preceding car"
+                         : "a following car hit the car ahead",
+                     TimeText(*measures.collision_time_s));
 }
 
 }  // namespace fogline

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "services/measures/measures.h"
+
 namespace fogline {
 
 /// The longest time to collision that is printed as a number, s. It grows without bound as two
@@ -21,5 +23,8 @@ bool IsTimeToCollision(std::string_view name);
 /// "> -0.001". A time to collision above kLongestTtc_s is "> 1000".
 /// @param name as in VisitMeasures()
 std::string MeasureText(std::string_view name, double value, std::string_view unit);
+
+/// "the host hit the preceding car at 12.3 s"; "" without a collision.
+std::string CollisionText(const RunMeasures& measures);
 
 }  // namespace fogline

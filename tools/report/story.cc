@@ -14,6 +14,7 @@
 #include "services/measures/detection.h"
 #include "services/measures/measures.h"
 #include "tools/report/figures.h"
+#include "tools/report/measure_text.h"
 #include "tools/report/tables.h"
 
 namespace fogline {
@@ -146,16 +147,6 @@ std::string FogSentence(const Group& group) {
     effects.push_back(fmt::format("was never more than {} wrong", LengthText(tolerance_m)));
   }
   return fmt::format("{} the LiDAR {}", fog, Listed(effects, ", "));
-}
-
-/// "the host hit the preceding car at 12.3 s"; "" without a collision.
-std::string CollisionText(const RunMeasures& measures) {
-  if (!measures.collision_time_s) return "";
-  return fmt::format("{} at {} s",
-                     measures.collision == truth_t::COLLISION_HOST
-                         ? "the host hit the preceding car"
-                         : "a following car hit the car ahead",
-                     TimeText(*measures.collision_time_s));
 }
 
 /// How safe a run was by itself.

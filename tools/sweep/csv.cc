@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,15 +10,23 @@
 #include <fstream>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "tools/sweep/description.h"
+#include "tools/sweep/row_sums.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
+
+constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC;
+// Bytes that are worth a call of the operating system.
+constexpr std::size_t kSumBytesAtOnce = 1 << 16;
 
 std::string HeaderLine(const SweepPlan& plan) {
   std::string line;
@@ -56,18 +65,13 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
   text += '\n';
 }
 
-/// Whether a file is that of this shard, by its description.
-/// What the sweep in a file is; nothing if there is none in it.
-std::optional<Description> SweepIn(const std::filesystem::path& file) {
-  try {
-    return ReadDescription(file);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
+[[noreturn]] void Refuse(const std::filesystem::path& file, std::string_view why) {
+  throw InputError(fmt::format("{}: error: --out: {}", PathText(file), why));
 }
 
-InputError CannotOpen(const std::filesystem::path& file, const char* why) {
-  return InputError(fmt::format("{}: error: --out: cannot write: {}", file.string(), why));
+[[noreturn]] void ThrowCannotWrite(const std::filesystem::path& file, int error) {
+  ThrowIfExhausted(error, PathText(file));
+  Refuse(file, fmt::format("cannot write: {}", std::strerror(error)));
 }
 
 }  // namespace
@@ -75,26 +79,22 @@ InputError CannotOpen(const std::filesystem::path& file, const char* why) {
 SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
                      bool force)
     : path_(file), plan_(plan), next_unit_(plan.ShardBegin(shard)) {
-  RequireFolderOf(path_, "--out");
-  Open();
-  const bool empty = lseek(file_.fd, 0, SEEK_END) == 0;
-  const std::optional<Description> there = SweepIn(path_);
-  if (!empty && !there) {
-    throw InputError(
-        fmt::format("{}: error: --out: the file is no sweep and stays as it is, --force or not",
-                    path_.string()));
-  }
-  if (!empty && !force && there != Describe(plan, shard)) {
-    throw InputError(
-        fmt::format("{}: error: --out: the file is there and is not of this sweep; "
-                    "--force replaces it",
-                    path_.string()));
-  }
-  if (empty || force) {
-    Start(shard);
+  if (IsReplaceable(path_)) {
+    RequireFolderOf(path_, "--out");
+    Open();
+    IsToBeReplaced(shard, force) ? Start(shard) : Resume(shard);
   } else {
-    Resume(shard);
+    file_.fd = OpenStream(path_, "--out");
+    Write(HeaderLine(plan_), file_);
   }
+}
+
+bool SweepFile::IsToBeReplaced(const Shard& shard, bool force) const {
+  if (lseek(file_.fd, 0, SEEK_END) == 0) return true;
+  if (!IsSweep(path_)) Refuse(path_, "the file is no sweep and stays as it is, --force or not");
+  if (force) return true;
+  if (ReadDescription(path_) == Describe(plan_, shard)) return false;
+  Refuse(path_, "the file is there and is not of this sweep; --force replaces it");
 }
 
 SweepFile::Handle::~Handle() {
@@ -104,24 +104,31 @@ SweepFile::Handle::~Handle() {
 // One writer at a time: two that append would mix their rows. A job that a cluster has started
 // again, while its first incarnation was only cut off, is told so.
 void SweepFile::Open() {
-  file_.fd = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (file_.fd < 0) throw CannotOpen(path_, std::strerror(errno));
+  file_.fd = open(path_.c_str(), kFlags, 0666);
+  if (file_.fd < 0) ThrowCannotWrite(path_, errno);
   if (flock(file_.fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    throw CannotOpen(path_, "another sweep is writing it");
+    Refuse(path_, "cannot write: another sweep is writing it");
   }
 }
 
-void SweepFile::Cut(std::int64_t size) {
-  if (lseek(file_.fd, 0, SEEK_END) != size && ftruncate(file_.fd, size) != 0) {
-    throw CannotOpen(path_, std::strerror(errno));
+void SweepFile::OpenSums() {
+  sums_.fd = open(SumsFile(path_).c_str(), kFlags | O_NOFOLLOW, 0666);
+  if (sums_.fd < 0) ThrowCannotWrite(SumsFile(path_), errno);
+}
+
+void SweepFile::Cut(std::int64_t size, const Handle& file) const {
+  if (lseek(file.fd, 0, SEEK_END) != size && ftruncate(file.fd, size) != 0) {
+    ThrowCannotWrite(path_, errno);
   }
 }
 
 // The description comes while the file is empty, so no row is ever taken for one of another sweep.
 void SweepFile::Start(const Shard& shard) {
-  Cut(0);
+  if (sums_.fd < 0) OpenSums();
+  Cut(0, file_);
+  Cut(0, sums_);
   WriteDescription(path_, Describe(plan_, shard));
-  Write(HeaderLine(plan_));
+  Write(HeaderLine(plan_), file_);
 }
 
 void SweepFile::Resume(const Shard& shard) {
@@ -129,6 +136,7 @@ void SweepFile::Resume(const Shard& shard) {
       (plan_.ShardEnd(shard) - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
   // Line by line, so that a file of any size takes no memory.
   std::ifstream in(path_, std::ios::binary);
+  RowChecker checker(path_);
   std::string line;
   std::int64_t whole = 0;  // end of the last whole unit, or of the header
   std::int64_t position = 0;
@@ -142,40 +150,79 @@ void SweepFile::Resume(const Shard& shard) {
     } else if (row < all_rows) {
       AppendKey(plan_, next_unit_, index, text_);
     }
-    if (text_.empty() || !line.starts_with(text_)) {
+    const bool has_key = !text_.empty() && line.starts_with(text_);
+    const auto verdict =
+        row < 0 || !checker.has_sums() ? RowChecker::Verdict::kSame : checker.Check(line);
+    if (verdict == RowChecker::Verdict::kNoSum) break;  // computed again
+    if (!has_key || verdict == RowChecker::Verdict::kOther) {
       throw InputError(
-          fmt::format("{}:{}: error: --out: not the line that this sweep writes there; "
+          fmt::format("{}:{}: error: --out: not the line that this sweep {} there; "
                       "--force begins anew",
-                      path_.string(), row + 2));
+                      PathText(path_), row + 2, has_key ? "has written" : "writes"));
     }
     position += static_cast<std::int64_t>(line.size()) + 1;
     if (row >= 0 && ++index == plan_.rows_per_unit()) ++next_unit_;
     if (row < 0 || index == plan_.rows_per_unit()) whole = position;
   }
-  if (row < 0) return Start(shard);
-  Cut(whole);
+  OpenSums();
+  if (position == 0) return Start(shard);
+  Cut(whole, file_);
+  const std::int64_t rows = (next_unit_ - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
+  if (checker.has_sums()) {
+    Cut(rows * kSumLineBytes, sums_);
+  } else {
+    SumRows();
+  }
+}
+
+void SweepFile::SumRows() {
+  std::ifstream in(path_, std::ios::binary);
+  std::string line;
+  std::getline(in, line);  // the header
+  text_.clear();
+  while (std::getline(in, line)) {
+    text_ += SumLine(line);
+    if (text_.size() < kSumBytesAtOnce) continue;
+    Write(text_, sums_);
+    text_.clear();
+  }
+  Write(text_, sums_);
 }
 
 void SweepFile::Append(const std::vector<SweepRow>& rows) {
   text_.clear();
+  std::string sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t begin = text_.size();
     AppendRow(plan_, next_unit_, static_cast<std::int64_t>(i), rows[i], text_);
+    sums += SumLine(std::string_view(text_).substr(begin, text_.size() - begin - 1));
   }
-  Write(text_);
+  Write(text_, file_);
   ++next_unit_;
+  if (sums_.fd < 0) return;  // a stream, which nothing reads again
+  Write(sums, sums_);
+  RequireInPlace();
 }
 
-void SweepFile::Write(const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(file_.fd, text.data() + done, text.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw std::runtime_error(
-          fmt::format("{}: cannot write: {}; call it again to go on where the file ends",
-                      path_.string(), std::strerror(errno)));
-    }
-    done += static_cast<std::size_t>(written);
+void SweepFile::RequireInPlace() const {
+  struct stat named {};
+  struct stat written {};
+  if (stat(path_.c_str(), &named) == 0 && fstat(file_.fd, &written) == 0 &&
+      named.st_dev == written.st_dev && named.st_ino == written.st_ino) {
+    return;
   }
+  throw std::runtime_error(
+      fmt::format("{}: the file was removed or replaced while the sweep wrote it, and its rows are "
+                  "lost; call it again to begin anew",
+                  PathText(path_)));
+}
+
+void SweepFile::Write(std::string_view text, const Handle& file) const {
+  const int error = WriteAll(file.fd, text);
+  if (error == 0) return;
+  throw std::runtime_error(
+      fmt::format("{}: cannot write: {}; call it again to go on where the file ends",
+                  PathText(path_), std::strerror(error)));
 }
 
 }  // namespace fogline

@@ -1,10 +1,12 @@
 // The file of a sweep: a CSV that grows row by row in a defined order, and beside it FILE.json,
-// which says what the sweep is. A sweep that was killed goes on where its file ends.
+// which says what the sweep is, and FILE.sums with checksums of its rows. A sweep that was killed
+// goes on where its file ends. A pipe or device gets the rows alone, and cannot be gone on with.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/sweep/engine.h"
@@ -24,7 +26,8 @@ class SweepFile {
   /// First unit that is not in the file yet; the shard's end if it is complete.
   std::int64_t next_unit() const { return next_unit_; }
 
-  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full
+  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the
+  /// file has been removed
   void Append(const std::vector<SweepRow>& rows);
 
  private:
@@ -38,17 +41,24 @@ class SweepFile {
   };
 
   void Open();
-  void Cut(std::int64_t size);
+  void OpenSums();
+  /// Whether to begin anew. @throws InputError if what is there must stay
+  bool IsToBeReplaced(const Shard& shard, bool force) const;
+  void Cut(std::int64_t size, const Handle& file) const;
   void Start(const Shard& shard);
   /// Checks the rows that are there, cuts off what follows the last whole unit.
   void Resume(const Shard& shard);
-  void Write(const std::string& text);
+  /// Makes the checksums of all rows that are there.
+  void SumRows();
+  void RequireInPlace() const;
+  void Write(std::string_view text, const Handle& file) const;
 
   std::filesystem::path path_;
   const SweepPlan& plan_;
   std::int64_t next_unit_;
   std::string text_;
   Handle file_;
+  Handle sums_;  // none of a pipe or device
 };
 
 }  // namespace fogline

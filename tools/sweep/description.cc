@@ -1,12 +1,12 @@
 #include "tools/sweep/description.h"
 
-#include <fstream>
-#include <iterator>
-
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/file.h"
+#include "scenario/json.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -35,14 +35,23 @@ Description Describe(const SweepPlan& plan, const Shard& shard) {
 }
 
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv) {
-  return csv.string() + ".json";
+  return std::filesystem::path(csv) += ".json";
+}
+
+bool IsSweep(const std::filesystem::path& csv) {
+  try {
+    ReadDescription(csv);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 Description ReadDescription(const std::filesystem::path& csv) {
   const std::filesystem::path file = DescriptionFile(csv);
-  std::ifstream in(file, std::ios::binary);
+  const FileText read = ReadFile(file, kMaxFileBytes);
   try {
-    const Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    const Json json = Json::parse(read.text);
     const Json& sweep = json.at("sweep");
     const Json& shard = json.at("shard");
     return {.sweep = sweep.dump(),
@@ -50,8 +59,8 @@ Description ReadDescription(const std::filesystem::path& csv) {
             .rows = json.at("shard_rows"),
             .all_rows = sweep.at("rows")};
   } catch (const Json::exception&) {
-    throw InputError(fmt::format("{}: error: no sweep: {} {}", csv.string(), file.string(),
-                                 in.is_open() ? "is damaged" : "is missing"));
+    throw InputError(fmt::format("{}: error: no sweep: {} {}", PathText(csv), PathText(file),
+                                 read.error.empty() ? "is damaged" : "is missing"));
   }
 }
 

@@ -24,6 +24,9 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
+/// Whether a file is that of a sweep: there is a description beside it.
+bool IsSweep(const std::filesystem::path& csv);
+
 /// The description beside a sweep's file.
 /// @throws InputError if there is none, or it is damaged
 Description ReadDescription(const std::filesystem::path& csv);

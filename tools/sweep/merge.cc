@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/interrupt.h"
 #include "tools/sweep/description.h"
+#include "tools/sweep/row_sums.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -25,21 +30,24 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   std::map<std::int64_t, ShardFile> ordered;
   std::int64_t count = 0;
   for (const std::filesystem::path& path : shards) {
+    if (const std::string why = WhyNoRegularFile(path); !why.empty()) {
+      throw InputError(fmt::format("{}: error: no sweep: {}", PathText(path), why));
+    }
     const ShardFile file{path, ReadDescription(path)};
     const Shard& shard = file.description.shard;
     if (count == 0) count = shard.count;
     if (!ordered.empty() && ordered.begin()->second.description.sweep != file.description.sweep) {
-      throw InputError(fmt::format("{}: error: not of the same sweep as {}", path.string(),
-                                   shards.front().string()));
+      throw InputError(fmt::format("{}: error: not of the same sweep as {}", PathText(path),
+                                   PathText(shards.front())));
     }
     if (shard.count != count) {
-      throw InputError(fmt::format("{}: error: shard {} of {}, but {} is one of {}", path.string(),
-                                   shard.index, shard.count, shards.front().string(), count));
+      throw InputError(fmt::format("{}: error: shard {} of {}, but {} is one of {}", PathText(path),
+                                   shard.index, shard.count, PathText(shards.front()), count));
     }
     const auto [place, is_new] = ordered.emplace(shard.index, file);
     if (!is_new) {
-      throw InputError(fmt::format("{}: error: shard {} of {}, as {}", path.string(), shard.index,
-                                   count, place->second.path.string()));
+      throw InputError(fmt::format("{}: error: shard {} of {}, as {}", PathText(path), shard.index,
+                                   count, PathText(place->second.path)));
     }
   }
   for (std::int64_t index = 1; index <= count; ++index) {
@@ -50,12 +58,19 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   return ordered;
 }
 
-/// Copies the rows of a shard. `header` is empty before the first one, which sets and writes it.
-void Copy(const ShardFile& shard, std::string& header, WholeFile& out) {
+/// Copies the rows of a shard, with the header if it is the first one.
+void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
+  RowChecker checker(shard.path);
   std::string line;
   std::int64_t rows = -1;  // the header is none
   for (; std::getline(in, line) && !in.eof(); ++rows) {
+    if (WasInterrupted()) throw Interrupted("interrupted; nothing is merged");
+    if (rows >= 0 && checker.has_sums() && checker.Check(line) == RowChecker::Verdict::kOther) {
+      throw InputError(fmt::format("{}:{}: error: not the line that its sweep has written there",
+                                   PathText(shard.path), rows + 2));
+    }
+    if (rows >= 0 && sums != nullptr) sums->Write(SumLine(line));
     line += '\n';
     if (rows >= 0) {
       out.Write(line);
@@ -64,16 +79,16 @@ void Copy(const ShardFile& shard, std::string& header, WholeFile& out) {
       out.Write(header);
     } else if (line != header) {
       throw InputError(
-          fmt::format("{}:1: error: other columns than the first shard's", shard.path.string()));
+          fmt::format("{}:1: error: other columns than the first shard's", PathText(shard.path)));
     }
   }
   if (rows != shard.description.rows || !line.empty()) {
     if (rows >= shard.description.rows) {
-      throw InputError(fmt::format("{}: error: has more than its {} rows", shard.path.string(),
+      throw InputError(fmt::format("{}: error: has more than its {} rows", PathText(shard.path),
                                    shard.description.rows));
     }
     throw InputError(fmt::format("{}: error: has {} of {} rows; run its sweep again to finish it",
-                                 shard.path.string(), std::max<std::int64_t>(0, rows),
+                                 PathText(shard.path), std::max<std::int64_t>(0, rows),
                                  shard.description.rows));
   }
 }
@@ -82,14 +97,11 @@ void Copy(const ShardFile& shard, std::string& header, WholeFile& out) {
 
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force) {
-  if (std::filesystem::exists(merged) && !force) {
-    throw InputError(
-        fmt::format("{}: error: --out: the file exists; --force replaces it", merged.string()));
-  }
+  RefuseToReplace(merged, "--out", force, "sweep", IsSweep);
   for (const std::filesystem::path& shard : shards) {
     std::error_code ignored;
     if (std::filesystem::equivalent(shard, merged, ignored)) {
-      throw InputError(fmt::format("{}: error: --out: is one of the shards", merged.string()));
+      throw InputError(fmt::format("{}: error: --out: is one of the shards", PathText(merged)));
     }
   }
   const std::map<std::int64_t, ShardFile> ordered = Ordered(shards);
@@ -97,13 +109,19 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   whole.shard = {.index = 1, .count = 1};
   whole.rows = whole.all_rows;
 
-  RequireFolderOf(merged, "--out");
+  const bool replaceable = IsReplaceable(merged);
+  if (replaceable) RequireFolderOf(merged, "--out");
   WholeFile out(merged);
+  std::optional<WholeFile> sums;
+  if (replaceable) sums.emplace(SumsFile(merged));
   std::string header;
-  for (const auto& [index, shard] : ordered) Copy(shard, header, out);
-  // At no moment is a file there with another one's description.
-  std::filesystem::remove(merged);
-  WriteDescription(merged, whole);
+  for (const auto& [index, shard] : ordered) Copy(shard, header, out, sums ? &*sums : nullptr);
+  if (replaceable) {
+    // At no moment is a file there with another one's description.
+    out.RemoveOld();
+    WriteDescription(merged, whole);
+    sums->Finish();
+  }
   out.Finish();
   return whole.rows;
 }

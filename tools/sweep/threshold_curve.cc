@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "scenario/loader.h"
+#include "scenario/wording.h"
 #include "services/policies/policies.h"
 #include "tools/sweep/engine.h"
 
@@ -19,7 +20,7 @@ void RequireThreshold(const Scenario& scenario, const std::filesystem::path& fil
   }
   throw InputError(
       fmt::format("{}: error: /arbitrator/policy is {}: no threshold matters; one does with {}",
-                  file.string(), policy.name, others));
+                  PathText(file), policy.name, others));
 }
 
 std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -22,16 +23,12 @@ constexpr const char* kBold = "\033[1m";
 constexpr const char* kRed = "\033[31m";
 constexpr const char* kNormal = "\033[0m";
 
-void Write(const std::string& text) {
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
-}
-
 }  // namespace
 
 Terminal::Terminal() {
   if (isatty(STDIN_FILENO) == 1 && tcgetattr(STDIN_FILENO, &before_) == 0) {
     fd_ = STDIN_FILENO;
+    has_keys_ = true;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // stopped, it would leave the shell without echo
@@ -65,8 +62,16 @@ void Terminal::Draw(std::vector<Line> lines) {
 std::optional<char> Terminal::Key() {
   pollfd keys{.fd = fd_, .events = POLLIN, .revents = 0};
   char key = 0;
-  if (fd_ < 0 || poll(&keys, 1, 0) <= 0 || read(fd_, &key, 1) != 1) return std::nullopt;
-  return key;
+  if (!has_keys_ || poll(&keys, 1, 0) <= 0) return std::nullopt;
+  const ssize_t size = read(fd_, &key, 1);
+  if (size == 1) return key;
+  // At its end, it would be readable for ever.
+  if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
+  return std::nullopt;
+}
+
+void Terminal::Write(const std::string& text) {
+  gone_ = std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0;
 }
 
 }  // namespace fogline

@@ -5,6 +5,7 @@
 #include <termios.h>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/watch/traffic_text.h"
@@ -23,13 +24,20 @@ class Terminal {
   /// Replaces what is shown, as much of it as fits.
   void Draw(std::vector<Line> lines);
 
+  /// Whether the terminal takes nothing more, such as when its window was closed.
+  bool gone() const { return gone_; }
+
   /// To be waited on for keys, -1 if there are none.
-  int fd() const { return fd_; }
+  int fd() const { return has_keys_ ? fd_ : -1; }
   /// The next key that was pressed, if any.
   std::optional<char> Key();
 
  private:
+  void Write(const std::string& text);
+
   int fd_ = -1;
+  bool has_keys_ = false;
+  bool gone_ = false;
   termios before_{};
 };
 

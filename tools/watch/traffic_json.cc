@@ -53,6 +53,8 @@ Json RoleJson(const RoleView& role) {
             {"repairs_served", status.repairs_served},
             {"duplicates", status.duplicates},
             {"refused", Json::object()},
+            {"sends_failed", status.sends_failed},
+            {"send_error", status.send_error},
             {"cpu_percent", OrNull(role.cpu_percent)},
             {"cpu_ms", status.cpu_ms},
             {"rss_bytes", status.rss_bytes},

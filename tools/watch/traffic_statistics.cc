@@ -146,6 +146,7 @@ TrafficStatistics::RunRecord& TrafficStatistics::RunOf(std::int64_t run_id) {
 
 TrafficStatistics::ChannelRecord& TrafficStatistics::OtherOf(std::string_view channel) {
   if (const auto other = others_.find(channel); other != others_.end()) return other->second;
+  ++unknown_names_;
   if (others_.size() == kMaxOthers) {
     others_.erase(std::ranges::min_element(
         others_, {}, [](const auto& other) { return other.second.arrivals.last(); }));
@@ -205,8 +206,10 @@ std::vector<RoleView> TrafficStatistics::ObserveRoles(RunRecord& run, TimePoint 
   std::vector<RoleView> views;
   for (RoleRecord& role : run.roles) {
     if (role.heard > role.base) {
-      role.cpu_percent = 100 * 1e-3 * static_cast<double>(role.status.cpu_ms - role.base_cpu_ms) /
-                         Seconds(role.heard - role.base);
+      // In double: the counters come from the network, and their difference may not fit.
+      const double cpu_ms =
+          static_cast<double>(role.status.cpu_ms) - static_cast<double>(role.base_cpu_ms);
+      role.cpu_percent = 100 * 1e-3 * cpu_ms / Seconds(role.heard - role.base);
       role.base = role.heard;
       role.base_cpu_ms = role.status.cpu_ms;
     }

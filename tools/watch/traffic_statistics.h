@@ -73,6 +73,9 @@ class TrafficStatistics {
   /// What there is to see; ends an interval of observation and begins the next.
   TrafficView Observe(TimePoint now);
 
+  /// How often a message came on a channel whose name was not known, or known no more.
+  std::int64_t unknown_names() const { return unknown_names_; }
+
   /// A role that has not sent STATUS for so long is silent: five heartbeats.
   static constexpr Duration kSilent = milliseconds(1000);
   /// An instance of a role that another one has followed is forgotten when it is silent so long.
@@ -122,6 +125,7 @@ class TrafficStatistics {
   std::vector<RunRecord> runs_;
   std::map<std::string, ChannelRecord, std::less<>> others_;
   std::int64_t forgotten_ = 0;
+  std::int64_t unknown_names_ = 0;
 };
 
 }  // namespace fogline

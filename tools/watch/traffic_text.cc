@@ -80,6 +80,9 @@ std::string Remarks(const RoleView& role) {
     const std::int64_t count = status.*kind.counter;
     if (count != 0) add(fmt::format("refused {} {}", count, kind.what));
   }
+  if (status.sends_failed != 0) {
+    add(fmt::format("could not send {} ({})", status.sends_failed, Printable(status.send_error)));
+  }
   return text;
 }
 
@@ -172,6 +175,8 @@ std::string_view StateName(std::int8_t state) {
       return "DONE";
     case status_t::FAILED:
       return "FAILED";
+    case status_t::LEFT:
+      return "LEFT";
     default:
       return "?";
   }

@@ -30,6 +30,57 @@ TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
   EXPECT_EQ(figures.Result().ticks, 37);
 }
 
+/// A log of ten steps of which some lack what radar or world have published.
+class UnloggedMessagesTest : public testing::Test {
+ protected:
+  void AddSteps(int steps, const ChannelSet& there) {
+    for (int i = 0; i < steps; ++i) figures_.AddStep(there);
+  }
+  static ChannelSet AllBut(std::initializer_list<std::size_t> channels) {
+    ChannelSet there;
+    there.set();
+    for (const std::size_t channel : channels) there.reset(channel);
+    return there;
+  }
+  void AddRadar(std::int64_t instance, std::int64_t ticks) {
+    status_t radar = Said("radar", instance, 1);
+    radar.ticks = ticks;
+    figures_.Add(radar);
+  }
+  RealtimeAccumulator figures_{1, kStep_us, 10};
+};
+
+TEST_F(UnloggedMessagesTest, AreThoseThatTheirProducerHasCountedAndTheLogHasNot) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>()}));
+  AddRadar(1, 9);
+  EXPECT_EQ(figures_.Result().missed_messages, 4);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 3) << "one was never published";
+}
+
+TEST_F(UnloggedMessagesTest, AreNotThoseThatCameWhenTheirStepWasWritten) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>()}));
+  AddRadar(1, 9);
+  status_t recorder = Said("recorder", 1, 1);
+  recorder.num_inputs = 1;
+  recorder.input = {"RADAR"};
+  recorder.input_state = {status_t::INPUT_OK};
+  recorder.input_age_us = {0};
+  recorder.input_rate_hz = {0};
+  recorder.input_late = {2};
+  figures_.Add(recorder);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 1);
+}
+
+TEST_F(UnloggedMessagesTest, CannotBeCountedOfARoleThatWasStartedAgainUnlessItIsTheWorld) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>(), IndexOf<truth_t>()}));
+  AddRadar(1, 9);
+  AddRadar(2, 5);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 4) << "the world leaves no step out";
+}
+
 TEST(RealtimeFiguresTest, IgnoresNumbersThatNoProcessCanHaveCounted) {
   constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
   RealtimeAccumulator figures(1, kStep_us, 1000);

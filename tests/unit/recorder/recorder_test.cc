@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <fstream>
 
@@ -48,6 +49,14 @@ class RecorderTest : public testing::Test {
     for (std::int64_t step = 0; step < kSteps; ++step) SayStep(script, step);
     recorder->Leave();
   }
+  /// Has it hand out all that it was asked for, some of it in each turn.
+  void AnswerAll(Recorder& recorder) {
+    constexpr int kTurns = 100;
+    for (int i = 0; i < kTurns; ++i) {
+      recorder.Poll(Clock::now());
+      script_.bus().Drain();
+    }
+  }
   /// The log of the whole run.
   std::string WholeLog() {
     RecordAll("whole", Recorder::Existing::kReplace);
@@ -80,6 +89,7 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
   truths_.clear();
   script_.AskFor("TRUTH", 10, 63);
+  AnswerAll(*recorder);
   // 10 to 72 are asked for, 0 to 67 are older than kMaxAhead steps.
   ASSERT_EQ(truths_.size(), 58U);
   for (std::size_t i = 0; i < truths_.size(); ++i) {
@@ -90,6 +100,7 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   script_.AskFor("TRUTH", 1000, 10);
   script_.AskFor("TRUTH", -5, 10);
   script_.AskFor("TRUTHS", 0, 10);
+  AnswerAll(*recorder);
   EXPECT_TRUE(truths_.empty());
 }
 
@@ -100,6 +111,7 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   constexpr int kRequests = 500;
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
+  AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
   // Of 32,000 that were asked for each step once, and again after 2 ms.
   EXPECT_GE(truths_.size(), static_cast<std::size_t>(kRingSteps));
@@ -112,6 +124,7 @@ TEST_F(RecorderTest, AnswersForWhatItsPredecessorHasWritten) {
   EXPECT_EQ(status_.back().header.step, kSteps - 1);
   truths_.clear();
   script_.AskFor("TRUTH", 0, 2);
+  AnswerAll(*recorder);
   ASSERT_EQ(truths_.size(), 2U);
   EXPECT_EQ(truths_[1].header.step, 1);
 }
@@ -159,11 +172,91 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 369 were in it"));
 }
 
+TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
+  // GIVEN a log of 30 MB that does not end as a recorder leaves it
+  constexpr std::int64_t kMany = 20'000;
+  const std::string file = folder_.File("long");
+  {
+    EventLogWriter log(file);
+    const std::vector<std::string> parts = SplitScenario(script_.text());
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Encode(MakeRunPart(Script::kRunId, run_t::GO, 0, HashOf(script_.text()), parts, i), bytes);
+      log.Write(ChannelOf<run_t>().name, 0, bytes);
+    }
+    for (std::int64_t step = 0; step < kMany; ++step) {
+      ForEachStepChannel([&]<class M>(std::size_t channel) {
+        Encode(Script::Of<M>(step), bytes);
+        log.Write(kChannels[channel].name, step * 100'000, bytes);
+      });
+    }
+  }
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * kTailBytes);
+  // WHEN a recorder goes on with it
+  const auto recorder = Record(script_, "long", Recorder::Existing::kResume);
+  EXPECT_EQ(recorder->error(), "");
+  // THEN it has said meanwhile how far it was, and then that it is ready
+  std::vector<std::int64_t> steps;
+  for (const status_t& status : status_) {
+    if (status.state == status_t::WAITING) steps.push_back(status.header.step);
+  }
+  ASSERT_GE(steps.size(), 2U);
+  EXPECT_TRUE(std::ranges::is_sorted(steps));
+  EXPECT_GT(steps.front(), 0);
+  EXPECT_EQ(status_.back().state, status_t::READY);
+  EXPECT_EQ(status_.back().header.step, kMany - 1);
+}
+
+TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
+  WholeLog();
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  SayStep(script_, kSteps - 2);
+  EXPECT_EQ(recorder->error(), "");
+  auto command = Script::Of<driver_command_t>(kSteps - 2);
+  command.acceleration_mps2 = 1;
+  script_.Say(command);
+  EXPECT_EQ(recorder->error(),
+            "step 148: DRIVER_COMMAND is not what the log has: driver is another program, or "
+            "another version, than the one that was recorded");
+}
+
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
   Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
   script_.SayRun(run_t::GO, -1);
   EXPECT_THAT(recorder.error(), HasSubstr("cannot write to /dev/full: No space left on device"));
   EXPECT_EQ(status_.back().state, status_t::FAILED);
+}
+
+/// CRC-32 of the first bytes of a text.
+std::int64_t ChecksumOf(const std::string& text, std::int64_t bytes) {
+  return static_cast<std::int64_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()),
+                                           static_cast<std::size_t>(bytes)));
+}
+
+TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
+  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
+  const status_t acknowledged = status_.back();
+  EXPECT_EQ(acknowledged.header.step, 95);
+  const std::string content = Content(folder_.File("log"));
+  EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
+  EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
+  // WHEN it leaves with a step that is not complete, THEN it tells that, too
+  truth_t truth = Script::Of<truth_t>(100);
+  script_.Say(truth);
+  recorder->Leave();
+  script_.bus().Drain();
+  const std::string whole = Content(folder_.File("log"));
+  EXPECT_GT(whole.size(), content.size());
+  EXPECT_EQ(status_.back().log_bytes, std::ssize(whole));
+  EXPECT_EQ(status_.back().log_checksum, ChecksumOf(whole, std::ssize(whole)));
+}
+
+TEST_F(RecorderTest, TellsOfALogThatItGoesOnWithWhatItHasFound) {
+  const std::string whole = WholeLog();
+  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  EXPECT_EQ(status_.back().log_bytes, std::ssize(whole));
+  EXPECT_EQ(status_.back().log_checksum, ChecksumOf(whole, std::ssize(whole)));
 }
 
 }  // namespace

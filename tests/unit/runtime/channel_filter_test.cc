@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <lcm/lcm.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -186,33 +185,6 @@ TEST(AttachFilterTest, RefusesAProgramLongerThanTheKernelTakes) {
   std::vector<Wanted> many;
   for (int i = 0; i < 2000; ++i) many.push_back({std::to_string(i)});
   EXPECT_THROW((void)AttachFilter(-1, ChannelFilter(many)), std::logic_error);
-}
-
-TEST(FilterFromTheStartTest, KnowsWhetherEverySocketHasIt) {
-  FilterFromTheStart filter(ChannelFilter({}));
-  EXPECT_FALSE(filter.on_all()) << "there is none";
-  const FilteredSocket good(ChannelFilter({}));
-  filter.Take(good.receiver());
-  EXPECT_TRUE(filter.on_all());
-  filter.Take(-1);
-  filter.Take(good.receiver());
-  EXPECT_FALSE(filter.on_all());
-}
-
-TEST(FilterFromTheStartTest, IsOnEverySocketThatLcmBindsInThisThread) {
-  const FilterFromTheStart filter(ChannelFilter({{"LCM_SELF_TEST"}}));
-  const Bus memory("memq://");
-  EXPECT_TRUE(filter.sockets().empty());
-  lcm_t* network = lcm_create(FreshMulticastUrl().c_str());
-  ASSERT_NE(network, nullptr);
-  EXPECT_GE(lcm_get_fileno(network), 0);
-  ASSERT_FALSE(filter.sockets().empty());
-  for (const int socket : filter.sockets()) {
-    socklen_t instructions = 0;
-    EXPECT_EQ(getsockopt(socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions), 0);
-    EXPECT_GT(instructions, 0U);
-  }
-  lcm_destroy(network);
 }
 
 }  // namespace

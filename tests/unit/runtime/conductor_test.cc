@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "services/runtime/digest.h"
 #include "services/runtime/this_process.h"
@@ -242,6 +243,126 @@ TEST_F(ConductorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
       HasSubstr("step 7: driver waits for HOST_COMMAND from arbitrator (last heard: step 5"));
 }
 
+TEST_F(ConductorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .steps = 500,
+                                      .pace = 1,
+                                      .realtime = true,
+                                      .period = std::chrono::hours(1)});
+  const auto say = [&](std::int64_t step) {
+    role(Role::kRadar).header.step = step;
+    SayStatus(Role::kRadar);
+    conductor.Poll(Clock::now());
+  };
+  BeAtStep(-1);
+  say(400);
+  EXPECT_EQ(conductor.step(), -1);
+  say(std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(conductor.step(), -1);
+  say(1);
+  EXPECT_EQ(conductor.step(), 1);
+}
+
+/// A run whose driver is started elsewhere.
+class ExternalDriverTest : public ConductorTest {
+ protected:
+  /// What the run says of who is its driver.
+  std::int64_t Holder() {
+    PassTime(milliseconds(300));  // it repeats itself in less
+    script_.bus().Drain();
+    EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
+    return said_.back().holder.at(0);
+  }
+  /// Lets time pass for the runner.
+  void PassTime(milliseconds time) {
+    PollUntil(external_, Clock::now() + later_ + time);
+    later_ += time;
+  }
+  status_t OtherDriver() {
+    status_t other = role(Role::kDriver);
+    other.instance += 1000;
+    other.pid += 1000;
+    other.state = status_t::READY;
+    return other;
+  }
+
+  Conductor external_{script_.bus(),
+                      {.run_id = Script::kRunId,
+                       .scenario_text = script_.text(),
+                       .stall_limit = milliseconds(60'000),
+                       .external = {Role::kDriver},
+                       .restarts = 10}};
+  Duration later_{};
+};
+
+TEST_F(ExternalDriverTest, HasItsPlaceFromItsFirstWordUntilItIsSilent) {
+  EXPECT_EQ(Holder(), 0);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  PassTime(milliseconds(1100));
+  EXPECT_EQ(Holder(), 0);
+  EXPECT_EQ(said_.back().stall_ms, 60'000);
+}
+
+TEST_F(ExternalDriverTest, IsOneWhenTheOtherLeavesThatHearsSo) {
+  BeAtStep(-1);
+  status_t other = OtherDriver();
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE) << "two of them: the run does not begin";
+  other.state = status_t::LEFT;
+  ++other.sequence;
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  EXPECT_EQ(external_.member(Role::kDriver).replaced, 0);
+}
+
+TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
+  BeAtStep(-1);
+  role(Role::kDriver).state = status_t::LEFT;
+  role(Role::kDriver).error = "went to run 8";
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), 0);
+  script_.Say(OtherDriver());
+  EXPECT_EQ(Holder(), OtherDriver().instance);
+}
+
+TEST_F(ConductorTest, SaysWithTheCulpritWhyItCannotBeStartedAgain) {
+  Conductor hasty(script_.bus(), {.run_id = Script::kRunId,
+                                  .scenario_text = script_.text(),
+                                  .stall_limit = milliseconds(100)});
+  BeAtStep(-1);
+  hasty.Poll(Clock::now());
+  hasty.Bury(Role::kWorld, role(Role::kWorld).pid, Clock::now());
+  hasty.Hinder(Role::kWorld, "cannot start fogline-world: Resource temporarily unavailable");
+  hasty.Poll(Clock::now() + milliseconds(150));
+  EXPECT_THAT(hasty.error(), HasSubstr("world is silent"));
+  EXPECT_THAT(hasty.error(),
+              HasSubstr("; cannot start fogline-world: Resource temporarily unavailable"));
+}
+
+TEST_F(ConductorTest, TellsWhatRolesCouldNotSendTheDeadIncluded) {
+  role(Role::kFusion).sends_failed = 3;
+  role(Role::kFusion).send_error = "Operation not permitted";
+  BeAtStep(-1);
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  role(Role::kFusion).sends_failed = 4;
+  role(Role::kFusion).send_error = "Network is unreachable";
+  SayStatus(Role::kFusion);
+  const std::vector<SendTrouble> troubles = conductor_.SendTroubles();
+  ASSERT_EQ(troubles.size(), 1U);
+  EXPECT_EQ(troubles[0].role, "fusion");
+  EXPECT_EQ(troubles[0].count, 7);
+  EXPECT_EQ(troubles[0].error, "Network is unreachable");
+  conductor_.Fail("the error");
+  EXPECT_EQ(conductor_.error(),
+            "the error\n  messages that could not be sent: fusion 7 (Network is unreachable)");
+}
+
 TEST_F(ConductorTest, CountsWhatItRefusesItself) {
   auto foreign = role(Role::kRadar);
   foreign.header.run_id = Script::kRunId + 1;
@@ -273,6 +394,62 @@ TEST_F(ConductorTest, SaysWithItsErrorWhatIsWrongWithTheKeys) {
   EXPECT_EQ(conductor_.error(),
             "the error\n  4211 messages with a wrong signature were refused: do all processes have "
             "the same key?");
+}
+
+TEST_F(ConductorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLastStep) {
+  std::vector<resend_t>& requests = script_.Listen<resend_t>();
+  BeAtStep(-1);
+  BeAtStep(40);
+  role(Role::kWorld).header.step = 48;
+  role(Role::kWorld).state = status_t::DONE;
+  SayStatus(Role::kWorld);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
+  // WHEN the word of the recorder was lost, THEN it is asked for
+  PollUntil(conductor_, Clock::now() + milliseconds(40));
+  script_.bus().Drain();
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.front().channel, "STATUS");
+  EXPECT_EQ(requests.front().header.step, 48);
+  role(Role::kRecorder).header.step = 48;
+  role(Role::kRecorder).log_bytes = 4711;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kDone);
+  // AND what it says when it leaves counts
+  role(Role::kRecorder).log_bytes = 4712;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(conductor_.member(Role::kRecorder).status->log_bytes, 4712);
+}
+
+TEST_F(ConductorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  for (const bool wanted : {false, true}) {
+    Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                        .scenario_text = script_.text(),
+                                        .builds = builds,
+                                        .same_build = wanted});
+    role(Role::kAcc).build_id = 4711;
+    SayStatus(Role::kAcc);
+    EXPECT_EQ(conductor.phase(), Conductor::Phase::kJoining) << conductor.error();
+    role(Role::kDriver).build_id = 17;
+    SayStatus(Role::kDriver);
+    EXPECT_EQ(conductor.phase() == Conductor::Phase::kFailed, wanted) << conductor.error();
+    if (!wanted) continue;
+    EXPECT_THAT(conductor.error(), HasSubstr("driver (pid "));
+    EXPECT_THAT(conductor.error(), HasSubstr(" is of build 0000000000000011, that of the runner is "
+                                             "0000000000001267 (--same-build)"));
+  }
+}
+
+TEST_F(ConductorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .builds = builds,
+                                      .same_build = true});
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(conductor.error(), HasSubstr("does not say of which build it is (--same-build)"));
 }
 
 }  // namespace

@@ -71,6 +71,10 @@ TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
   EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.67:7668"));
   EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.68:7667"));
   EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1:7700", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(SameNetwork("tcpq://", "tcpq://127.0.0.1:7700"));
+  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7701"));
+  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:x", "tcpq://127.0.0.1:y"));
   EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:7700", "udpm://"));
 }
 

@@ -39,6 +39,23 @@ TEST(MulticastRouteTest, HasNoInterfaceWithoutARoute) {
   EXPECT_EQ(RouteInterface(std::string(kHeading) + "eth0\ttorn", kGroup), "");
 }
 
+TEST(MulticastRouteTest, FindsWhichInterfaceHasAGroup) {
+  // As the kernel prints it in /proc/net/igmp.
+  constexpr const char* kTable =
+      "Idx\tDevice    : Count Querier\tGroup    Users Timer\tReporter\n"
+      "1\tlo        :     2      V3\n"
+      "\t\t\t\t434CFFEF     1 0:00000000\t\t0\n"
+      "\t\t\t\t010000E0     1 0:00000000\t\t0\n"
+      "4\teth0      :     1      V3\n"
+      "\t\t\t\t010000E0     1 0:00000000\t\t0\n";
+  EXPECT_TRUE(HasGroup(kTable, "lo", kGroup));
+  EXPECT_FALSE(HasGroup(kTable, "eth0", kGroup));
+  EXPECT_TRUE(HasGroup(kTable, "eth0", "224.0.0.1"));
+  EXPECT_FALSE(HasGroup(kTable, "eth", "224.0.0.1"));
+  EXPECT_FALSE(HasGroup(kTable, "lo", "no address"));
+  EXPECT_FALSE(HasGroup("", "lo", kGroup));
+}
+
 TEST(MulticastRouteTest, TellsAnAddressOfOneMachineFromAGroup) {
   EXPECT_TRUE(IsMulticast("224.0.0.1"));
   EXPECT_TRUE(IsMulticast("239.255.255.255"));

@@ -1,8 +1,11 @@
 // A node's part in a run, by the example of the driver: TRUTH in, DRIVER_COMMAND out.
 #include "services/runtime/node.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 
+#include <csignal>
 #include <limits>
 
 #include "services/driver/driver.h"
@@ -243,12 +246,104 @@ TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioI
   Script other;
   StepNode<Driver> node(other.bus(), std::nullopt);
   const std::vector<std::string> parts{"{", "}"};
-  other.Say(MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, HashOf("{}"), parts, 0));
+  other.Say(Script::WithDriver(
+      MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, HashOf("{}"), parts, 0), 0));
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_TRUE(node.Waits());
-  other.Poll(node, Clock::now() + milliseconds(6000));
+  other.Poll(node);
+  other.PollUpTo(node, Clock::now() + milliseconds(6000));
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_FALSE(node.Waits());
+}
+
+/// A driver that was started by hand, in the run that waited for it.
+class ExternalNodeTest : public testing::Test {
+ protected:
+  ExternalNodeTest() {
+    script_.SayRun(run_t::PREPARE, -1);
+    script_.Poll(node_);
+    EXPECT_FALSE(node_.Waits());
+  }
+
+  /// The runner says who is the driver.
+  void SayHolder(std::int64_t run_id, std::int64_t holder) {
+    const std::vector<std::string> parts = SplitScenario(script_.text());
+    script_.Say(Script::WithDriver(
+        MakeRunPart(run_id, run_t::PREPARE, 0, HashOf(script_.text()), parts, 0), holder));
+  }
+  std::int64_t instance() const { return status_.back().instance; }
+
+  Script script_;
+  std::vector<status_t>& status_ = script_.Listen<status_t>();
+  StepNode<Driver> node_{script_.bus(), std::nullopt};
+};
+
+TEST_F(ExternalNodeTest, JoinsNoRunThatHasItsRoleOrStartsItItself) {
+  Script other;
+  const std::vector<status_t>& said = other.Listen<status_t>();
+  StepNode<Driver> node(other.bus(), std::nullopt);
+  const std::vector<std::string> parts = SplitScenario(other.text());
+  const run_t run = MakeRunPart(Script::kRunId, run_t::PREPARE, 0, HashOf(other.text()), parts, 0);
+  for (int i = 0; i < 2; ++i) {
+    other.Say(i == 0 ? run : Script::WithDriver(run, 4711));
+    other.Poll(node, Clock::now() + milliseconds(300));
+    EXPECT_TRUE(said.empty());
+  }
+  other.SayRun(run_t::PREPARE, -1);
+  EXPECT_FALSE(node.Waits());
+}
+
+TEST_F(ExternalNodeTest, GoesWhenAnotherProcessHasItsPlace) {
+  SayHolder(Script::kRunId, 0);
+  SayHolder(Script::kRunId, instance());
+  EXPECT_FALSE(node_.released());
+  SayHolder(Script::kRunId, instance() + 1);
+  EXPECT_TRUE(node_.released());
+  EXPECT_EQ(status_.back().state, status_t::LEFT);
+  EXPECT_EQ(node_.error(), "another process is the driver of run 7");
+  // AND it says nothing more
+  const std::size_t said = status_.size();
+  script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
+  EXPECT_EQ(status_.size(), said);
+}
+
+TEST_F(ExternalNodeTest, GoesToARunThatWaitsForItOnlyWhenItsOwnRunnerIsSilent) {
+  const std::int64_t another = Script::kRunId + 1;
+  script_.PollUpTo(node_, Clock::now() + milliseconds(1900));
+  SayHolder(another, 0);
+  EXPECT_FALSE(node_.released()) << "the runner may be there";
+  script_.PollUpTo(node_, Clock::now() + milliseconds(2100));
+  SayHolder(another, 4711);
+  EXPECT_FALSE(node_.released()) << "that run has a driver";
+  SayHolder(another, 0);
+  EXPECT_TRUE(node_.released());
+  EXPECT_THAT(node_.error(), testing::MatchesRegex("the runner of run 7 has been silent for "
+                                                   "[0-9.]+ s; run 8 waits for the driver"));
+}
+
+TEST_F(ExternalNodeTest, HoldsItsOwnPauseAgainstNoRunner) {
+  const TimePoint now = Clock::now();
+  script_.Poll(node_, now + milliseconds(20'000));
+  EXPECT_FALSE(node_.left()) << node_.error();
+  script_.PollUpTo(node_, now + milliseconds(38'000));
+  EXPECT_FALSE(node_.left()) << node_.error();
+  script_.PollUpTo(node_, now + milliseconds(39'500));
+  EXPECT_TRUE(node_.left());
+  EXPECT_EQ(node_.error(), "the runner has been silent for 19 s");
+}
+
+TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
+  // GIVEN a process that dies with its parent
+  int before = 0;
+  ASSERT_EQ(prctl(PR_GET_PDEATHSIG, &before), 0);
+  ASSERT_EQ(prctl(PR_SET_PDEATHSIG, SIGKILL), 0);
+  Script other;
+  StepNode<Driver> started(other.bus(), Script::kRunId);
+  ASSERT_EQ(prctl(PR_SET_PDEATHSIG, before), 0);
+  other.SayRun(run_t::GO, -1);
+  other.Poll(started);
+  other.PollUpTo(started, Clock::now() + milliseconds(25'000));
+  EXPECT_FALSE(started.left()) << started.error();
 }
 
 TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {

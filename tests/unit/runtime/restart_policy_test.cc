@@ -28,5 +28,14 @@ TEST(RestartPolicyTest, CountsEveryRestartWhetherItHelpsOrNot) {
   EXPECT_FALSE(RestartPolicy(0).OnDeath(0));
 }
 
+TEST(RestartPolicyTest, TriesAgainEverLaterWhatCannotBeStartedAndCountsThatForNothing) {
+  RestartPolicy policy(1);
+  EXPECT_EQ(policy.OnDeath(1), milliseconds(10));
+  for (const int wait_ms : {20, 40, 80, 160, 320, 640, 1000, 1000}) {
+    EXPECT_EQ(policy.OnFailedStart(), milliseconds(wait_ms));
+  }
+  EXPECT_EQ(policy.restarts(), 1);
+}
+
 }  // namespace
 }  // namespace fogline

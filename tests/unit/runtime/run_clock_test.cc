@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace fogline {
 namespace {
 
@@ -14,7 +16,7 @@ class RunClockTest : public testing::Test {
  protected:
   // The world's steps 0, 1, ... from 1000 ms on, in its rhythm.
   void Tick(std::int64_t steps) {
-    for (std::int64_t k = 0; k < steps; ++k) clock_.Tick(k, At(1000 + 100 * k));
+    for (std::int64_t k = 0; k < steps; ++k) clock_.Heard(k, At(1000 + 100 * k));
   }
   RunClock clock_{kPeriod, kBegan};
 };
@@ -22,7 +24,7 @@ class RunClockTest : public testing::Test {
 TEST_F(RunClockTest, StandsAtItsBeginningUntilTheFirstTick) {
   EXPECT_FALSE(clock_.started());
   EXPECT_EQ(clock_.At(At(700)), kBegan);
-  clock_.Tick(0, At(1000));
+  clock_.Heard(0, At(1000));
   EXPECT_TRUE(clock_.started());
   EXPECT_EQ(clock_.At(At(1000)), kBegan);
 }
@@ -45,15 +47,38 @@ TEST_F(RunClockTest, StandsStillFromAQuarterPeriodAfterATickIsOverdue) {
 
 TEST_F(RunClockTest, GoesOnWhereItStoodWhenTheWorldDoes) {
   Tick(5);
-  clock_.Tick(5, At(9000));
+  clock_.Heard(5, At(9000));
   EXPECT_EQ(clock_.At(At(9000)), At(525));
   EXPECT_EQ(clock_.At(At(9050)), At(575));
 }
 
-TEST_F(RunClockTest, TakesTicksThatWereNotHeardForNoPause) {
+TEST_F(RunClockTest, TakesStepsThatWereNotHeardForNoPause) {
   Tick(5);
-  clock_.Tick(8, At(1800));
+  clock_.Heard(8, At(1800));
   EXPECT_EQ(clock_.At(At(1800)), At(800));
+}
+
+TEST_F(RunClockTest, TakesAMessageThatComesLateForNoPause) {
+  Tick(5);
+  // GIVEN a second in which nothing is heard, and then first what was sent again
+  clock_.Heard(9, At(2391));
+  clock_.Heard(11, At(2392));
+  // THEN with the step that is under way it is as late as if those had not come
+  clock_.Heard(14, At(2400));
+  EXPECT_EQ(clock_.At(At(2400)), At(1400));
+  EXPECT_EQ(clock_.At(At(2450)), At(1450));
+}
+
+TEST_F(RunClockTest, GoesNoFasterThanTheWallWhenTicksComeEarlyAndLate) {
+  for (std::int64_t k = 0; k < 1000; ++k) clock_.Heard(k, At(1000 + 100 * k + (k % 3) * 10));
+  EXPECT_LE(clock_.At(At(101'000)), At(100'000));
+  EXPECT_GE(clock_.At(At(101'000)), At(99'900));
+}
+
+TEST_F(RunClockTest, IsNotAheadOfTheWallWhateverStepSomebodyClaims) {
+  Tick(5);
+  clock_.Heard(std::numeric_limits<std::int64_t>::max(), At(1500));
+  EXPECT_LE(clock_.At(At(1600)), At(1600));
 }
 
 TEST_F(RunClockTest, NeverGoesBackwards) {
@@ -62,7 +87,7 @@ TEST_F(RunClockTest, NeverGoesBackwards) {
   std::int64_t step = 5;
   for (std::int64_t ms = 1400; ms < 4000; ms += 7) {
     // A tick now and then, from too early to far too late, and some that are known.
-    if (ms % 3 == 0 && ms % 5 != 0) clock_.Tick(ms % 2 == 0 ? step++ : step - 1, At(ms));
+    if (ms % 3 == 0 && ms % 5 != 0) clock_.Heard(ms % 2 == 0 ? step++ : step - 1, At(ms));
     EXPECT_GE(clock_.At(At(ms)), last) << ms;
     last = clock_.At(At(ms));
   }
@@ -70,8 +95,8 @@ TEST_F(RunClockTest, NeverGoesBackwards) {
 
 TEST_F(RunClockTest, IgnoresATickThatIsKnown) {
   Tick(5);
-  clock_.Tick(4, At(1450));
-  clock_.Tick(2, At(1460));
+  clock_.Heard(4, At(1450));
+  clock_.Heard(2, At(1460));
   EXPECT_EQ(clock_.At(At(9000)), At(525));
 }
 

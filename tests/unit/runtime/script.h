@@ -62,8 +62,17 @@ class Script {
       run.progress = progress;
       run.realtime = speed > 0 ? 1 : 0;
       run.pace = speed;
-      Say(run);
+      Say(WithDriver(std::move(run), 0));
     }
+  }
+
+  /// What the runner says if the driver is started elsewhere.
+  /// @param holder instance of the process that is the driver of the run, 0 if it waits for one
+  static run_t WithDriver(run_t run, std::int64_t holder) {
+    run.num_external = 1;
+    run.external = {"driver"};
+    run.holder = {holder};
+    return run;
   }
 
   void AskFor(std::string_view channel, std::int64_t first, std::int32_t count) {

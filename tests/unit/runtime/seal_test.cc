@@ -175,11 +175,18 @@ TEST(SealKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
   }
   for (const std::string& bad :
        {std::string(), digits + "a", digits + digits, digits.substr(1), "x" + digits.substr(1),
-        " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32)}) {
+        " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32), std::string(64, '0')}) {
     EXPECT_THROW(load(bad), InputError) << bad;
   }
   EXPECT_THROW(SealKey::Load(folder.File("none")), InputError);
   EXPECT_THROW(SealKey::Load(folder.path()), InputError);
+}
+
+TEST(SealKeyTest, IsNotReadFromAPipeWhichMayHaveNoWriter) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.File("key");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(SealKey::Load(pipe), InputError);
 }
 
 /// What is said of a key file, "" if it is taken.

@@ -1,11 +1,16 @@
 #include "scenario/file.h"
 
+#include <sys/stat.h>
+
+#include <cerrno>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scenario/loader.h"
 #include "tests/support/command.h"
 
 namespace fogline {
@@ -53,8 +58,49 @@ TEST_F(FileTest, SuggestsNothingWhereThereIsNoFolder) {
 TEST_F(FileTest, HasTheSuggestionInTheErrorOfAFileThatIsNotThereOnly) {
   EXPECT_THAT(ReadFile(Path("papr.json"), 100).error,
               EndsWith("No such file or directory" + Meant("paper.json")));
-  EXPECT_THAT(ReadFile(Path("papers.json"), 100).error, EndsWith("Is a directory"));
+  EXPECT_THAT(ReadFile(Path("papers.json"), 100).error, EndsWith(": it is a folder"));
   EXPECT_EQ(ReadFile(Path("paper.json"), 100).error, "");
+}
+
+TEST_F(FileTest, SuggestsOnlyFilesWithTheEndingThatIsWanted) {
+  std::ofstream(Path("papre.csv")) << "a,b";
+  EXPECT_EQ(DidYouMeanFile(Path("papre")), Meant("papre.csv"));
+  EXPECT_EQ(DidYouMeanFile(Path("papre"), ".json"), Meant("paper.json"));
+  EXPECT_THAT(ReadFile(Path("papre"), 100, ".json").error, EndsWith(Meant("paper.json")));
+}
+
+TEST_F(FileTest, ReadsAPipeToItsEndThoughItIsOpenedBeforeItsWriterComes) {
+  const std::string pipe = Path("pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  // GIVEN a process that has to be started yet, and writes in two pieces
+  const test::Background writer({"sh", "-c", "exec >'" + pipe + "'; printf one; printf two"});
+  const FileText read = ReadFile(pipe, 100);
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.text, "onetwo");
+}
+
+TEST_F(FileTest, GivesUpAPipeThatNoProcessWritesInto) {
+  const std::string pipe = Path("pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(ReadFile(pipe, 100).error,
+            "cannot be read: no process has written into this pipe for 5 s");
+}
+
+TEST_F(FileTest, ReadsNoDevice) {
+  EXPECT_EQ(ReadFile("/dev/zero", 100).error, "cannot be read: it is neither a file nor a pipe");
+}
+
+TEST(ExhaustionTest, IsNoBadInput) {
+  EXPECT_NO_THROW(ThrowIfExhausted(ENOENT, "a.lcm"));
+  EXPECT_NO_THROW(ThrowIfExhausted(0, "a.lcm"));
+  try {
+    ThrowIfExhausted(EMFILE, "a.lcm");
+    ADD_FAILURE();
+  } catch (const InputError&) {
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), "a.lcm: Too many open files; ulimit -n 1024 allows more");
+  }
 }
 
 }  // namespace

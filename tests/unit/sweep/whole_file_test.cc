@@ -1,11 +1,18 @@
 // Files that are there as a whole or not at all, and whether they could be.
 #include "tools/sweep/whole_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"
@@ -50,12 +57,124 @@ TEST_F(WholeFileTest, HasItsNameOnlyWhenItIsFinished) {
   EXPECT_EQ(Content(file_), "whole");
 }
 
-TEST_F(WholeFileTest, ReplacesNeitherAFolderNorADevice) {
+TEST_F(WholeFileTest, ReplacesNoFolder) {
   const std::string folder = folder_.path().string();
   EXPECT_EQ(ErrorOf([&] { WholeFile file(folder); }),
             folder + ": error: cannot write: it is a folder");
-  EXPECT_EQ(ErrorOf([&] { WholeFile file("/dev/null"); }),
-            "/dev/null: error: cannot write: it is no regular file");
+}
+
+TEST_F(WholeFileTest, FollowsNoLinkThatLiesWhereItWrites) {
+  // GIVEN links by the names that could be foreseen
+  const std::string precious = folder_.File("precious");
+  std::ofstream(precious) << "precious";
+  for (const char* ending : {".part", ".tmp", "~"}) {
+    std::filesystem::create_symlink(precious, file_ + ending);
+  }
+  WholeFile file(file_);
+  file.Write("page");
+  file.Finish();
+  EXPECT_EQ(Content(precious), "precious");
+  EXPECT_EQ(Content(file_), "page");
+}
+
+TEST_F(WholeFileTest, TwoAtOnceEachWriteAWholeFile) {
+  WholeFile one(file_);
+  WholeFile two(file_);
+  one.Write("one, ");
+  two.Write("two, ");
+  one.Write("whole");
+  two.Write("whole");
+  one.Finish();
+  EXPECT_EQ(Content(file_), "one, whole");
+  two.Finish();
+  EXPECT_EQ(Content(file_), "two, whole");
+}
+
+TEST_F(WholeFileTest, HasTheRightsOfAnyNewFile) {
+  const mode_t before = umask(027);
+  {
+    WholeFile file(file_);
+    file.Finish();
+  }
+  umask(before);
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0640));
+}
+
+TEST_F(WholeFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
+  std::filesystem::create_directory(folder_.File("elsewhere"));
+  const std::string target = folder_.File("elsewhere/target.csv");
+  std::ofstream(target) << "old";
+  std::filesystem::create_symlink("elsewhere/target.csv", file_);
+  {
+    EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+    WholeFile file(file_);
+    file.Write("new");
+    file.Finish();
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(file_));
+  EXPECT_EQ(Content(target), "new");
+  std::filesystem::remove(target);
+  EXPECT_THAT(ErrorOf([&] { WholeFile file(file_); }), testing::EndsWith(", which is not there"));
+}
+
+TEST_F(WholeFileTest, HandsEverythingToADeviceAtTheEnd) {
+  WholeFile nothing("/dev/null");
+  nothing.Write("page");
+  nothing.Finish();
+  WholeFile full("/dev/full");
+  full.Write("page");
+  EXPECT_THROW(full.Finish(), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(WholeFileTest, HandsEverythingToThePipeThatAProcessReads) {
+  const std::string pipe = folder_.File("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(ErrorOf([&] { WholeFile file(pipe); }),
+            pipe + ": error: cannot write: no process reads this pipe");
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  {
+    EXPECT_EQ(ErrorOf([&] { RequireWritable(pipe, "--out"); }), "");
+    WholeFile file(pipe);
+    file.Write("page");
+    char byte = 0;
+    EXPECT_EQ(read(reader, &byte, 1), -1) << "half of it is not to be seen";
+    file.Finish();
+  }
+  std::array<char, 8> page{};
+  EXPECT_EQ(read(reader, page.data(), page.size()), 4);
+  EXPECT_EQ(std::string(page.data()), "page");
+  close(reader);
+}
+
+TEST_F(WholeFileTest, GoesOnBehindWhatAnOpenDescriptorHasWritten) {
+  const int out = open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(write(out, "before ", 7), 7);
+  {
+    WholeFile file("/dev/fd/" + std::to_string(out));
+    file.Write("page");
+    file.Finish();
+  }
+  ASSERT_EQ(write(out, " after", 6), 6);
+  close(out);
+  EXPECT_EQ(Content(file_), "before page after");
+}
+
+TEST_F(WholeFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
+  const auto is_page = [](const std::filesystem::path& file) {
+    return Content(file.string()).starts_with("page");
+  };
+  const auto error = [&](bool force) {
+    return ErrorOf([&] { RefuseToReplace(file_, "--out", force, "page", is_page); });
+  };
+  EXPECT_EQ(error(false), "");
+  std::ofstream(file_) << "page one";
+  EXPECT_EQ(error(false), file_ + ": error: --out: the file exists; --force replaces it");
+  EXPECT_EQ(error(true), "");
+  std::ofstream(file_) << "thesis";
+  EXPECT_EQ(error(true),
+            file_ + ": error: --out: the file is no page and stays as it is, --force or not");
+  EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/dev/null", "--out", false, "page", is_page); }), "");
 }
 
 TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {

@@ -1,5 +1,8 @@
 #include "tools/watch/traffic_statistics.h"
 
+#include <limits>
+
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,6 +67,26 @@ TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
   EXPECT_DOUBLE_EQ(view.runs[1].channels[0].arrivals.rate_hz, 5);
   EXPECT_EQ(view.runs[1].channels[0].steps->missing, 4);
   EXPECT_TRUE(view.others.empty());
+}
+
+TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatSomebodyMaySend) {
+  // GIVEN two readings whose difference is no 64-bit integer
+  status_t status = Status("radar", 1, 1);
+  status.cpu_ms = std::numeric_limits<std::int64_t>::min();
+  Add("STATUS", Encoded(status));
+  status.sequence = 2;
+  status.cpu_ms = std::numeric_limits<std::int64_t>::max();
+  Add("STATUS", Encoded(status), 500);
+  const TrafficView view = Observe(1000);
+  ASSERT_EQ(view.runs[0].roles.size(), 1U);
+  EXPECT_GT(view.runs[0].roles[0].cpu_percent.value_or(0), 1e18);
+}
+
+TEST_F(TrafficStatisticsTest, CountsNamesThatItDoesNotKnow) {
+  for (int i = 0; i < 100; ++i) Add(fmt::format("NAME{}", i), {1});
+  Add("NAME99", {1});
+  EXPECT_EQ(statistics_.unknown_names(), 100);
+  EXPECT_EQ(Observe(1000).others.size(), TrafficStatistics::kMaxOthers);
 }
 
 TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {

@@ -21,6 +21,8 @@ RunView RunWithOneRole() {
   role.status.pid = 17;
   role.status.state = status_t::FAILED;
   role.status.foreign = 3;
+  role.status.sends_failed = 5;
+  role.status.send_error = "Network is unreachable";
   role.status.error = "no track";
   role.silent = true;
   RunView run;
@@ -39,7 +41,8 @@ TEST(TrafficTextTest, SaysWhatIsWrongWithARole) {
   const std::vector<Line> lines = TrafficLines(view, "udpm://");
   EXPECT_EQ(lines.back().style, Line::Style::kBad);
   EXPECT_THAT(lines.back().text, HasSubstr("FAILED"));
-  EXPECT_THAT(lines.back().text, HasSubstr("silent; no track; refused 3 of other runs"));
+  EXPECT_THAT(lines.back().text, HasSubstr("silent; no track; refused 3 of other runs; "));
+  EXPECT_THAT(lines.back().text, HasSubstr("; could not send 5 (Network is unreachable)"));
 }
 
 TEST(TrafficTextTest, PassesNoControlCharactersFromTheNetworkOn) {

@@ -17,6 +17,7 @@
 #include "services/runtime/beacon.h"
 #include "services/runtime/bus.h"
 #include "services/runtime/channel_filter.h"
+#include "services/runtime/lcm_url.h"
 #include "services/runtime/multicast_route.h"
 #include "services/runtime/tcpq_client.h"
 #include "tools/fogline/doctor/findings.h"
@@ -53,14 +54,37 @@ bool ExamineGroup(const std::string& url, const std::string& group, Findings& fi
   return false;
 }
 
+std::string RouteRemedy() {
+  return fmt::format(
+      "as root: {} for this machine alone, or with the network's interface in place of lo",
+      kLoopbackRoute);
+}
+
+/// Traffic that stays on this machine. @return whether it can go
+bool ExamineOwnMachine(const std::string& url, const std::string& group, Findings& findings) {
+  if (const std::string why = WhyNoMulticast(url); !why.empty()) {
+    findings.push_back({"multicast_route", Level::kProblem, why, "as root: ip link set lo up"});
+    return false;
+  }
+  const std::string error = RouteError(group);
+  findings.push_back(
+      error.empty()
+          ? Finding{"multicast_route", Level::kOk,
+                    fmt::format("{} goes over loopback and stays on this machine (ttl=0)", group),
+                    ""}
+          : Finding{"multicast_route", Level::kWarning,
+                    fmt::format("{} goes over loopback and stays on this machine (ttl=0), but "
+                                "LCM's own programs need a route, and there is none: {}",
+                                group, error),
+                    RouteRemedy()});
+  return true;
+}
+
 bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   const std::string error = RouteError(group);
   if (!error.empty()) {
     findings.push_back({"multicast_route", Level::kProblem,
-                        fmt::format("no route to {}: {}", group, error),
-                        fmt::format("as root: {} for this machine alone, or with the network's "
-                                    "interface in place of lo",
-                                    kLoopbackRoute)});
+                        fmt::format("no route to {}: {}", group, error), RouteRemedy()});
     return false;
   }
   const std::string interface = RouteInterface(Content("/proc/net/route"), group);
@@ -96,11 +120,11 @@ Duration RoundTrip(Bus& here, Bus& there, bool& back) {
   return back ? Clock::now() - began : Duration::zero();
 }
 
-/// A real LCM message, on a port that nobody else uses.
-void ExamineLoopback(const std::string& group, Findings& findings) {
+/// A real LCM message, on a port that nobody else uses, by the way that a ttl takes.
+void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
   constexpr int kRounds = 50;
-  std::string url = FreshMulticastUrl();
-  url.replace(url.find("239.255.76.67"), std::string_view("239.255.76.67").size(), group);
+  const MulticastAddress fresh = *ParseMulticastUrl(FreshMulticastUrl());
+  const std::string url = fmt::format("udpm://{}:{}?ttl={}", group, fresh.port, ttl);
   Bus here(url);
   Bus there(url);
   bool back = false;
@@ -233,9 +257,13 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   constexpr int kReceiveBuffer = 2 << 20;  // what a Bus asks for
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const auto group = GroupOf(url);
-  if (group && ExamineGroup(url, *group, findings) &&
-      ExamineRoute(*group, UrlOption(url, "ttl", 0), findings)) {
-    ExamineLoopback(*group, findings);
+  if (group && ExamineGroup(url, *group, findings)) {
+    const int ttl = UrlOption(url, "ttl", 0);
+    // mpudpm goes where the route leads, with every ttl.
+    const bool here = ttl == 0 && url.starts_with("udpm://");
+    if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
+      ExamineLoopback(*group, std::min(ttl, 1), findings);
+    }
   }
   ExamineFilter(url, findings);
   ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);

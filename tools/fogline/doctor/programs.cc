@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "scenario/wording.h"
 #include "services/graph.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/version.h"
@@ -31,11 +32,11 @@ void ExamineJava(Findings& findings) {
   }
   if (!OpensWindows(java)) {
     findings.push_back({"java", Level::kWarning,
-                        fmt::format("{} cannot open windows: no lcm-spy", java.string()),
+                        fmt::format("{} cannot open windows: no lcm-spy", PathText(java)),
                         "apt-get install default-jre (headless is not enough)"});
     return;
   }
-  findings.push_back({"java", Level::kOk, fmt::format("{} is there", java.string()), ""});
+  findings.push_back({"java", Level::kOk, fmt::format("{} is there", PathText(java)), ""});
 }
 
 void ExamineSpy(const fs::path& programs, Findings& findings) {
@@ -50,7 +51,7 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
   findings.push_back({"lcm_spy", Level::kOk, "the libraries of lcm-spy are there", ""});
   if (const fs::path jar = TypesJar(programs); !jar.empty()) {
     findings.push_back({"lcm_spy_types", Level::kOk,
-                        fmt::format("message types for lcm-spy: {}", jar.string()), ""});
+                        fmt::format("message types for lcm-spy: {}", PathText(jar)), ""});
     return;
   }
   findings.push_back({"lcm_spy_types", Level::kWarning,
@@ -89,7 +90,7 @@ void ExamineTools(const fs::path& programs, Findings& findings) {
       findings.push_back({"lcm_tools", Level::kWarning, fmt::format("there is no {}", program),
                           "apt-get install liblcm-bin"});
     } else {
-      findings.push_back({"lcm_tools", Level::kOk, fmt::format("{} is there", file.string()), ""});
+      findings.push_back({"lcm_tools", Level::kOk, fmt::format("{} is there", PathText(file)), ""});
     }
   }
   ExamineJava(findings);
@@ -115,7 +116,7 @@ void ExaminePrograms(const fs::path& programs, Findings& findings) {
   if (!good) return;
   findings.push_back(
       {"programs", Level::kOk,
-       fmt::format("all {} programs in {} are {}", kRoles.size(), programs.string(), own), ""});
+       fmt::format("all {} programs in {} are {}", kRoles.size(), PathText(programs), own), ""});
 }
 
 }  // namespace fogline

@@ -1,0 +1,38 @@
+// The file of a log for as long as its run writes and reads it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "services/runtime/file_lock.h"
+
+namespace fogline {
+
+/// A log that no other run can have until the end of this object. Removed then if there is no step
+/// in it, because the run never began.
+class LogOfRun {
+ public:
+  /// A run without a log.
+  LogOfRun() = default;
+  /// @throws InputError if another run is writing it, or if it cannot be written
+  explicit LogOfRun(const std::filesystem::path& log);
+  /// @param lock on the file
+  LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock);
+  ~LogOfRun();
+  LogOfRun(LogOfRun&&) = default;
+  LogOfRun(const LogOfRun&) = delete;
+  LogOfRun& operator=(const LogOfRun&) = delete;
+
+  /// "" for a run without a log.
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<FileLock> lock_;
+};
+
+/// Whether a log has more in it than a scenario and a seal. @throws InputError if it is no event
+/// log
+bool HasSteps(const std::filesystem::path& log);
+
+}  // namespace fogline

@@ -1,0 +1,136 @@
+// Which process is which role of a run: the living and the dead, and two that claim the same.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "services/runtime/conductor.h"
+
+namespace fogline {
+namespace {
+
+// A STATUS may be so long on its way; later than that its sender is alive.
+constexpr Duration kOnItsWay = milliseconds(100);
+// A process that hears that another one has its place leaves within this time (Node), five of the
+// runner's signs of life.
+constexpr Duration kLeaves = milliseconds(1000);
+
+}  // namespace
+
+bool Conductor::IsExternal(Role role) const {
+  return std::ranges::find(options_.external, role) != options_.external.end();
+}
+
+bool Conductor::HasRival(Role role, TimePoint now) const {
+  const Member& of = member(role);
+  // Of a process from elsewhere it is not seen that it has died.
+  return of.rival && !(IsExternal(role) && HeldAgainst(of.rival_heard, now) > kLeaves);
+}
+
+std::int64_t Conductor::HolderOf(Role role, TimePoint now) const {
+  const Member& of = member(role);
+  return of.status && HeldAgainst(of.heard, now) <= kSilent ? of.status->instance : 0;
+}
+
+bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  const auto same = [&](const status_t& other) { return other.instance == status.instance; };
+  if (const auto dead = std::ranges::find_if(member.dead, same); dead != member.dead.end()) {
+    if (status.sequence > dead->sequence) OnUndead(role, status, now);
+    return false;
+  }
+  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
+    return false;
+  }
+  if (member.status && !same(*member.status)) return AdmitOther(role, status, now);
+  if (!IsExternal(role) && member.rival && status.sequence > member.status->sequence &&
+      HeldAgainst(member.rival_since, now) > kOnItsWay) {
+    FailForTwo(status, *member.rival);
+  }
+  if (status.state != status_t::LEFT) return true;
+  if (member.status) {
+    member.dead.push_back(status);
+    member.status.reset();
+    member.rival.reset();
+    deaf_.Forget(role);
+    announce_at_ = now;
+  }
+  return false;
+}
+
+void Conductor::OnUndead(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  // What it said before its death may come late. If it speaks on, it was not dead.
+  if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
+      HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
+    return;
+  }
+  announce_at_ = now;  // that another one has its place
+  if (!member.undead) member.undead = now;
+  if (HeldAgainst(*member.undead, now) > kLeaves) FailForTwo(*member.status, status);
+}
+
+bool Conductor::AdmitOther(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  if (status.state == status_t::LEFT) {
+    if (member.rival && member.rival->instance == status.instance) member.rival.reset();
+    return false;
+  }
+  if (!member.rival || member.rival->instance != status.instance) {
+    member.rival = status;
+    member.rival_since = now;
+    announce_at_ = now;  // that another one has its place
+  }
+  member.rival_heard = now;
+  if (!IsExternal(role)) return false;
+  if (HeldAgainst(member.heard, now) <= kSilent) {
+    const bool both = member.heard > member.rival_since;
+    if (both && HeldAgainst(member.rival_since, now) > kLeaves) FailForTwo(*member.status, status);
+    return false;
+  }
+  if (++member.replaced > options_.restarts) {
+    Fail(
+        fmt::format("{} was started again as pid {} on {} {}, after {} restarts "
+                    "(--restarts)",
+                    status.role, status.pid, status.host, Where(), options_.restarts));
+    return false;
+  }
+  member.dead.push_back(std::move(*member.status));
+  member.status.reset();
+  member.rival.reset();
+  member.undead.reset();
+  deaf_.Forget(role);
+  member.replaced_at = now;
+  return true;
+}
+
+void Conductor::FailForTwo(const status_t& one, const status_t& other) {
+  Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", one.role, one.pid,
+                   one.host, other.pid, other.host));
+}
+
+void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  member.pids.push_back(pid);
+  if (member.status && member.status->pid == pid && member.status->host == host_) {
+    member.dead.push_back(std::move(*member.status));
+    member.status.reset();
+    deaf_.Forget(role);
+  }
+  member.rival.reset();
+  progressed_ = now;  // somebody is at work to get the run going again
+}
+
+void Conductor::Hinder(Role role, std::string why) {
+  members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
+}
+
+void Conductor::Launched(Role role, std::int32_t pid, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  std::erase(member.pids, pid);
+  member.hindrance.clear();
+  signs_of_life_.Since(role, now);
+  progressed_ = now;
+}
+
+}  // namespace fogline

@@ -1,0 +1,72 @@
+#include "services/runtime/deaf_roles.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "services/runtime/step_ring.h"
+
+namespace fogline {
+namespace {
+
+// A role that lost its inputs to the network is back within a second; twice that is long enough,
+// unless a step takes so long itself.
+constexpr Duration kDeaf = milliseconds(2000);
+constexpr int kDeafPeriods = 5;
+// Three signs of life: a pause between two that is longer says nothing of what happened in it.
+constexpr Duration kSteady = milliseconds(600);
+
+}  // namespace
+
+std::string Text(const Deafness& deaf) {
+  const ChannelInfo& channel = kChannels[deaf.channel];
+  return fmt::format("has heard no {} for {:.1f} s, which the {} has published all the while",
+                     channel.name, Seconds(deaf.missed), NameOf(channel.from));
+}
+
+DeafRoles::DeafRoles(Duration period)
+    : period_(period), limit_(std::max(kDeaf, kDeafPeriods * period)) {}
+
+void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
+  if (period_ == Duration::zero()) return;
+  Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  const Duration since = now - speaker.heard;
+  for (std::size_t i = 0; i < status.input.size(); ++i) {
+    const std::size_t channel = ChannelNamed(status.input[i]);
+    if (channel == kNumChannels || kChannels[channel].pace != Pace::kStep) continue;
+    Ear& ear = speaker.ears[channel];
+    const Duration age =
+        std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
+    // It grows with time unless something comes; what never came has no age.
+    const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
+                      age >= ear.age + std::min(since, kSteady) / 2;
+    if (!aged || status.input_late[i] > ear.late) {
+      ear.missed = {};
+    } else if (since <= kSteady && Computes(kChannels[channel].from, now)) {
+      ear.missed += since;
+    }
+    ear.age = age;
+    ear.late = status.input_late[i];
+  }
+  if (status.header.step > speaker.step) {
+    speaker.step = status.header.step;
+    speaker.advanced = now;
+  }
+  speaker.heard = now;
+}
+
+bool DeafRoles::Computes(Role role, TimePoint now) const {
+  const Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  return now - speaker.heard <= kSteady && now - speaker.advanced <= kSteady + 2 * period_;
+}
+
+std::optional<Deafness> DeafRoles::Missing(Role role, Duration limit) const {
+  if (period_ == Duration::zero()) return std::nullopt;
+  const auto& ears = speakers_[static_cast<std::size_t>(role)].ears;
+  const auto worst = std::ranges::max_element(ears, {}, &Ear::missed);
+  if (worst->missed < limit) return std::nullopt;
+  return Deafness{.channel = static_cast<std::size_t>(worst - ears.begin()),
+                  .missed = worst->missed};
+}
+
+}  // namespace fogline

@@ -1,0 +1,116 @@
+#include "services/runtime/lcm_sockets.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "services/runtime/channel_filter.h"
+#include "services/runtime/lcm_url.h"
+#include "services/runtime/multicast_route.h"
+
+namespace fogline {
+namespace {
+
+thread_local LcmSockets* in_charge = nullptr;
+
+int Bind(int socket, const sockaddr* address, socklen_t size) {
+  return static_cast<int>(syscall(SYS_bind, socket, address, size));
+}
+int Connect(int socket, const sockaddr* address, socklen_t size) {
+  return static_cast<int>(syscall(SYS_connect, socket, address, size));
+}
+int SetOption(int socket, int level, int name, const void* value, socklen_t size) {
+  return static_cast<int>(syscall(SYS_setsockopt, socket, level, name, value, size));
+}
+
+in_addr Loopback() { return {.s_addr = htonl(INADDR_LOOPBACK)}; }
+
+std::string Content(const char* file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+LcmSockets::LcmSockets(std::vector<sock_filter> filter, Reach reach)
+    : filter_(std::move(filter)), reach_(reach) {
+  in_charge = this;
+}
+
+LcmSockets::~LcmSockets() { in_charge = nullptr; }
+
+int LcmSockets::OnBind(int socket, const sockaddr* address, socklen_t size) {
+  if (!filter_.empty()) refused_ = !AttachFilter(socket, filter_) || refused_;
+  receiving_.push_back(socket);
+  return Bind(socket, address, size);
+}
+
+int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) const {
+  const int result = Connect(socket, address, size);
+  // LCM only asks whether there is a route.
+  return reach_ == Reach::kLoopback ? 0 : result;
+}
+
+int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
+  const int result = SetOption(socket, level, name, value, size);
+  if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
+  if (name == IP_MULTICAST_TTL) {  // it is to send
+    const in_addr loopback = Loopback();
+    return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
+  }
+  if (name == IP_ADD_MEMBERSHIP && size >= sizeof(ip_mreq)) {
+    ip_mreq membership = *static_cast<const ip_mreq*>(value);
+    membership.imr_interface = Loopback();
+    // Where the route leads over loopback the group is joined there already.
+    const bool joined =
+        SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
+        errno == EADDRINUSE;
+    return joined ? 0 : -1;
+  }
+  return result;
+}
+
+bool LoopbackIsUp() { return RouteError("127.0.0.1").empty(); }
+
+LcmSockets::Reach ReachOf(const std::string& url) {
+  const auto address = ParseMulticastUrl(url);
+  return address && address->ttl == 0 && LoopbackIsUp() ? LcmSockets::Reach::kLoopback
+                                                        : LcmSockets::Reach::kRoute;
+}
+
+void JoinAgain(int socket, const std::string& url) {
+  const auto group = GroupOf(url);
+  ip_mreq membership{};
+  if (!group || inet_pton(AF_INET, group->c_str(), &membership.imr_multiaddr) != 1) return;
+  const std::string interface = RouteInterface(Content("/proc/net/route"), *group);
+  if (interface.empty() || HasGroup(Content("/proc/net/igmp"), interface, *group)) return;
+  // Without an interface both mean that of the route, wherever it was joined before.
+  SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &membership, sizeof(membership));
+  SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
+}
+
+}  // namespace fogline
+
+// In place of the C library's, also for LCM: nothing arrives before a socket is bound.
+extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
+  return fogline::in_charge != nullptr ? fogline::in_charge->OnBind(socket, address, size)
+                                       : fogline::Bind(socket, address, size);
+}
+extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
+  return fogline::in_charge != nullptr ? fogline::in_charge->OnConnect(socket, address, size)
+                                       : fogline::Connect(socket, address, size);
+}
+extern "C" int setsockopt(int socket, int level, int name, const void* value,
+                          socklen_t size) noexcept {
+  return fogline::in_charge != nullptr
+             ? fogline::in_charge->OnOption(socket, level, name, value, size)
+             : fogline::SetOption(socket, level, name, value, size);
+}

@@ -1,0 +1,21 @@
+// Messages that processes of a run could not send: the kernel or a relay would not take them. Each
+// is a loss like one on the network.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fogline {
+
+/// Of one process.
+struct SendTrouble {
+  std::string role;
+  std::int64_t count = 0;
+  std::string error;  // why the last one could not be sent
+};
+
+/// "world 3, fusion 12 (Operation not permitted); lidar 1 (Network is unreachable)", "" for none.
+std::string Text(const std::vector<SendTrouble>& troubles);
+
+}  // namespace fogline

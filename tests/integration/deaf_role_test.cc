@@ -1,0 +1,100 @@
+// Real time on networks that lose one channel for good: who does not hear it is named, and started
+// again if it is the runner's; and no run ends well with a role that is deaf.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/recorder/event_log.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+constexpr int kRate_hz = 20;
+
+class DeafRoleTest : public NetworkTest {
+ protected:
+  std::vector<std::string> RealtimeRun(int seconds, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--realtime",
+                                       "--set",
+                                       "/step_s=" + std::to_string(1.0 / kRate_hz),
+                                       "--set",
+                                       "/steps=" + std::to_string(seconds * kRate_hz),
+                                       "--lcm-url",
+                                       kUrl};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Run(arguments);
+  }
+  /// Steps of a channel in the log of the last run.
+  std::int64_t NewestStepOf(std::string_view channel) {
+    std::int64_t newest = -1;
+    EventLogReader reader(Log());
+    while (const auto event = reader.Next()) {
+      if (event->channel == channel) newest = std::max(newest, ReadInt64(event->data, kStepOffset));
+    }
+    return newest;
+  }
+};
+
+TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
+  const Machine machine("deaf");
+  machine.RouteMulticastToItself();
+  constexpr int kSeconds = 7;
+  Background run(machine.On(RealtimeRun(kSeconds, {})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN nobody hears where the cars are
+  machine.LoseChannel("TRUTH");
+  ASSERT_TRUE(run.WaitForErr("radar (pid " + std::to_string(PidOf(run.Err(), "radar")) +
+                             ") has heard no TRUTH for 2."))
+      << run.Err();
+  machine.LoseNothing();
+  // THEN who reads it was started again, and computes to the end
+  run.Wait();
+  const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
+  ASSERT_TRUE(result.is_object()) << run.Err();
+  bool radar = false;
+  for (const auto& role : result["restarts"]) {
+    EXPECT_THAT(role["last"].get<std::string>(),
+                HasSubstr("s, which the world has published all the while, and was killed"));
+    radar = radar || role["role"] == "radar";
+    EXPECT_NE(role["role"], "fusion") << "nobody published what it lacked";
+  }
+  EXPECT_TRUE(radar) << result["restarts"];
+  EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);
+  // AND the run does not end well: two seconds of the log are not to be had
+  EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: the log is not complete: at least "));
+}
+
+TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
+  const Machine machine("deaf");
+  machine.RouteMulticastToItself();
+  Background run(machine.On(RealtimeRun(4, {"--restarts", "0"})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  machine.LoseChannel("HOST_EGO");
+  EXPECT_EQ(run.Wait(), 3);
+  EXPECT_THAT(run.Err(), HasSubstr("warning: acc (pid "));
+  EXPECT_THAT(run.Err(), HasSubstr(" on deaf) is deaf: it has heard no HOST_EGO for 2."));
+  EXPECT_THAT(run.Err(),
+              HasSubstr(" is deaf at the end of the run: it has heard no HOST_EGO for "));
+}
+
+TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
+  const Lab lab(2);
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  Background run(lab[0].On(RealtimeRun(5, {"--external", "driver"})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  lab[1].LoseChannel("TRUTH");
+  EXPECT_TRUE(run.WaitForErr("warning: driver (pid " + std::to_string(driver.pid()) +
+                             " on lab2) is deaf: it has heard no TRUTH for 2."));
+  lab[1].LoseNothing();
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), 5 * kRate_hz - 5);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,258 @@
+// What a program does where stderr cannot be written, or is read by no process; and which signals
+// end it.
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/graph.h"
+#include "services/runtime/clock.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+// A busy machine takes so long for a run of 20 steps, and not longer.
+constexpr std::chrono::seconds kPatience(60);
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A command with a redirection or a builtin of the shell before it, such as "exec 2>/dev/full".
+Words Shell(const std::string& before, Words command) {
+  command.insert(command.begin(), {"sh", "-c", before + "; exec \"$@\"", "sh"});
+  return command;
+}
+
+Words ShortRun(const std::string& log) {
+  return {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=20", "--log", log};
+}
+
+/// A pipe with a name that nothing can be written into any more, and that is not read.
+class FullPipe {
+ public:
+  explicit FullPipe(const std::string& name) : name_(name) {
+    mkfifo(name.c_str(), 0600);
+    fd_ = open(name.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    const std::array<char, 4096> zeros{};
+    while (write(fd_, zeros.data(), zeros.size()) > 0) ++pages_;
+  }
+  ~FullPipe() { close(fd_); }
+  FullPipe(const FullPipe&) = delete;
+  FullPipe& operator=(const FullPipe&) = delete;
+  bool WasFilled() const { return pages_ > 0; }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+  int fd_;
+  int pages_ = 0;
+};
+
+/// The processes that a process has started.
+std::vector<pid_t> ChildrenOf(pid_t pid) {
+  const std::string task = "/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid);
+  std::istringstream words(Content(task + "/children"));
+  return {std::istream_iterator<pid_t>(words), {}};
+}
+
+/// Waits for the process of a role that a run has started. @return 0 if it does not come
+pid_t WaitForRole(pid_t run, const std::string& program) {
+  const TimePoint end = Clock::now() + kPatience;
+  while (Clock::now() < end) {
+    for (const pid_t child : ChildrenOf(run)) {
+      if (Content("/proc/" + std::to_string(child) + "/comm").starts_with(program)) return child;
+    }
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return 0;
+}
+
+TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsAFullDisk) {
+  const ScratchFolder folder;
+  const std::string none = folder.File("none.lcm");
+  const std::string fogline = Program("fogline");
+  std::vector<Words> refused{{fogline, "levitate"},
+                             {fogline, "run", "none.json"},
+                             {fogline, "check", "none.json"},
+                             {fogline, "table", "none.json"},
+                             {fogline, "sweep", "none.json"},
+                             {fogline, "digest", none},
+                             {fogline, "metrics", none},
+                             {fogline, "events", none},
+                             {fogline, "report", none},
+                             {fogline, "diff", none, none},
+                             {fogline, "replay", none, "--all"},
+                             {fogline, "export", none, "--out", folder.File("out")},
+                             {fogline, "compare", none, none},
+                             {fogline, "keygen", "/proc/none.key"},
+                             {fogline, "calibrate", "none.json", "--free", "/fog/bias_m=0:1"},
+                             {fogline, "study", "none"},
+                             {Program("fogline-relay"), "--bogus"}};
+  for (const RoleInfo& role : kRoles) {
+    refused.push_back({Program("fogline-" + std::string(role.name)), "--bogus"});
+  }
+  for (const Words& command : refused) {
+    EXPECT_EQ(RunCommand(Shell("exec 2>/dev/full", command)).code, 2)
+        << command.front() << " " << command[1];
+  }
+}
+
+TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsClosedOrItsReaderIsGone) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.File("pipe");
+  mkfifo(pipe.c_str(), 0600);
+  for (const std::string& before :
+       {std::string("exec 2>&-"), "exec 3<>'" + pipe + "' 2>'" + pipe + "' 3<&-"}) {
+    EXPECT_EQ(RunCommand(Shell(before, {Program("fogline"), "levitate"})).code, 2) << before;
+    EXPECT_EQ(RunCommand(Shell(before, ShortRun(folder.File("run.lcm")))).code, 0) << before;
+    std::filesystem::remove(folder.File("run.lcm"));
+  }
+}
+
+TEST(DiagnosticsTest, ARunGoesOnWhereStderrIsAPipeThatIsFullAndNeverRead) {
+  const ScratchFolder folder;
+  const FullPipe pipe(folder.File("pipe"));
+  ASSERT_TRUE(pipe.WasFilled());
+  for (const std::string transport : {"udpm", "tcpq", "memq", "direct"}) {
+    Words run = ShortRun(folder.File(transport + ".lcm"));
+    run.insert(run.end(), {"--transport", transport});
+    EXPECT_EQ(RunCommand(Shell("exec 2>'" + pipe.name() + "'", run), kPatience).code, 0)
+        << transport;
+  }
+}
+
+TEST(DiagnosticsTest, AnErrorIsNotWaitedForWithoutEnd) {
+  const ScratchFolder folder;
+  const FullPipe pipe(folder.File("pipe"));
+  ASSERT_TRUE(pipe.WasFilled());
+  EXPECT_EQ(
+      RunCommand(Shell("exec 2>'" + pipe.name() + "'", {Program("fogline"), "levitate"}), kPatience)
+          .code,
+      2);
+}
+
+TEST(DiagnosticsTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
+  // The shell's own writes to the pipe wait for room, before the run and after it.
+  const ScratchFolder folder;
+  const Outcome outcome =
+      RunCommand({"bash", "-c",
+                  "{ " + Program("fogline") + " run scenario/paper.json --set /steps=20 --log '" +
+                      folder.File("run.lcm") +
+                      "' >/dev/null; grep flags: /proc/self/fdinfo/2 >&2; } 2>&1 | cat"});
+  const std::size_t flags = outcome.out.find("flags:");
+  ASSERT_NE(flags, std::string::npos) << outcome.out;
+  EXPECT_EQ(std::stoul(outcome.out.substr(flags + 6), nullptr, 8) & O_NONBLOCK, 0U) << outcome.out;
+}
+
+TEST(DiagnosticsTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  // GIVEN a run whose stderr takes nothing
+  Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
+                                            "--set", "/steps=60", "--pace", "2", "--log", log}));
+  ASSERT_TRUE(GrowsTo(1, log));
+  // WHEN a role is killed THEN the run starts it again, although it cannot say so
+  const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
+  ASSERT_GT(radar, 0);
+  kill(radar, SIGKILL);
+  EXPECT_EQ(run.Wait(), 0);
+  EXPECT_THAT(run.Out(), HasSubstr("radar was started again once"));
+}
+
+TEST(DiagnosticsTest, ARunGoesOnWhenItsTerminalIsGone) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(terminal, 0);
+  ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
+  // GIVEN a run that says on a terminal what goes on
+  Background run(Shell("exec 2>" + std::string(ptsname(terminal)),
+                       {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=60",
+                        "--pace", "2", "--log", log}));
+  ASSERT_TRUE(GrowsTo(1, log));
+  const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
+  ASSERT_GT(radar, 0);
+  // WHEN its window is closed, and then there is something to say
+  close(terminal);
+  kill(radar, SIGKILL);
+  // THEN it goes on
+  EXPECT_EQ(run.Wait(), 0);
+}
+
+TEST(DiagnosticsTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("sweep.csv");
+  const Words sweep{Program("fogline"),
+                    "sweep",
+                    "scenario/paper.json",
+                    "--set",
+                    "/steps=20",
+                    "--seeds",
+                    "1:4",
+                    "--out",
+                    file};
+  ASSERT_EQ(RunCommand(sweep).code, 0);
+  const std::string whole = Content(file);
+  std::filesystem::resize_file(file, whole.rfind('\n', whole.size() - 2) + 1);
+  // It says how many rows are there.
+  EXPECT_EQ(RunCommand(Shell("exec 2>&-", sweep)).code, 0);
+  EXPECT_EQ(Content(file), whole);
+}
+
+TEST(InterruptTest, SignalsThatWereIgnoredAtTheStartStayIgnoredInEveryProgram) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  // GIVEN a run as under nohup, in the background of a script
+  Background run(Shell("trap '' HUP INT", {Program("fogline"), "run", "scenario/paper.json",
+                                           "--set", "/steps=40", "--pace", "2", "--log", log}));
+  ASSERT_TRUE(GrowsTo(1, log));
+  const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
+  ASSERT_GT(radar, 0);
+  // WHEN the terminal goes, or Ctrl-C is pressed there
+  for (const int signal : {SIGHUP, SIGINT}) {
+    run.Signal(signal);
+    kill(radar, signal);
+  }
+  // THEN the run goes on to its end, with the same processes
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_THAT(run.Out(), HasSubstr("40 steps"));
+  EXPECT_EQ(run.Out().find("started again"), std::string::npos) << run.Out();
+}
+
+TEST(InterruptTest, TheRelayEndsInOrderWhenItsTerminalIsGoneUnlessThatIsIgnored) {
+  const Words relay{Program("fogline-relay"), "--listen", "127.0.0.1:0"};
+  Background obeys(relay);
+  ASSERT_TRUE(obeys.WaitForOut("\n")) << obeys.Err();
+  obeys.Signal(SIGHUP);
+  EXPECT_EQ(obeys.Wait(), 0);
+  Background stays(Shell("trap '' HUP INT TERM", relay));
+  ASSERT_TRUE(stays.WaitForOut("\n")) << stays.Err();
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) stays.Signal(signal);
+  // It still answers.
+  const std::string url = stays.Out().substr(0, stays.Out().find('\n'));
+  EXPECT_THAT(RunCommand({Program("fogline"), "doctor", "--lcm-url", url}).out,
+              HasSubstr("the relay " + url + " answers\n"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,118 @@
+// `fogline export` that is stopped or killed while some of its files are written and some are not.
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// An export into a folder in which one file is a pipe that is never read: it waits there, with
+/// some files written and some not.
+class HaltedExport {
+ public:
+  HaltedExport(const std::string& log, const std::string& folder, const std::string& file)
+      : name_(folder + "/" + file) {
+    std::filesystem::remove(name_);
+    EXPECT_EQ(mkfifo(name_.c_str(), 0600), 0);
+    pipe_ = open(name_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    fcntl(pipe_, F_SETPIPE_SZ, 4096);
+    process_.emplace(Words{Program("fogline"), "export", log, "--out", folder, "--force"});
+  }
+  ~HaltedExport() { close(pipe_); }
+  HaltedExport(const HaltedExport&) = delete;
+  HaltedExport& operator=(const HaltedExport&) = delete;
+
+  Background& process() { return *process_; }
+  bool WaitUntilItWaits() const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    for (int bytes = 0; bytes < 4096; std::this_thread::sleep_for(kLookEvery)) {
+      if (ioctl(pipe_, FIONREAD, &bytes) != 0 || std::chrono::steady_clock::now() > end) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::string name_;
+  int pipe_ = -1;
+  std::optional<Background> process_;
+};
+
+/// A folder with the export of a run.
+class HaltedExportTest : public testing::Test {
+ protected:
+  HaltedExportTest() {
+    Run(log_, "/steps=230");
+    EXPECT_EQ(RunCommand({Program("fogline"), "export", log_, "--out", out_}).code, 0);
+  }
+  static void Run(const std::string& log, const std::string& steps) {
+    EXPECT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                          "--set", steps, "--quiet", "--log", log})
+                  .code,
+              0);
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  const std::string out_ = folder_.File("csv");
+};
+
+TEST_F(HaltedExportTest, EndsOnCtrlCWithAWordAndWithoutAFileThatHasNoName) {
+  HaltedExport halted(log_, out_, "TRUTH.csv");
+  ASSERT_TRUE(halted.WaitUntilItWaits()) << halted.process().Err();
+  halted.process().Signal(SIGINT);
+  EXPECT_EQ(halted.process().Wait(), 130);
+  EXPECT_THAT(halted.process().Err(), StartsWith("fogline export: interrupted"));
+  for (const auto& entry : std::filesystem::directory_iterator(out_)) {
+    EXPECT_EQ(entry.path().filename(), "TRUTH.csv");
+  }
+}
+
+TEST_F(HaltedExportTest, LeavesNoFolderWithFilesOfTwoLogsWhenItIsKilled) {
+  // GIVEN the log of a shorter run
+  const std::string other = folder_.File("other.lcm");
+  Run(other, "/steps=200");
+  // WHEN its export is killed while some files have their names and some have not
+  HaltedExport halted(other, out_, "ACC_COMMAND.csv");
+  ASSERT_TRUE(halted.WaitUntilItWaits()) << halted.process().Err();
+  halted.process().Signal(SIGKILL);
+  halted.process().Wait();
+  // THEN those that are there are of one log, and the last one shows that not all are
+  EXPECT_FALSE(std::filesystem::exists(out_ + "/scenario.json"));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(out_)) {
+    if (!entry.is_regular_file() || entry.path().extension() != ".csv") continue;
+    EXPECT_EQ(std::ranges::count(Content(entry.path()), '\n'), 1 + 200) << entry.path();
+    ++files;
+  }
+  EXPECT_GT(files, 2U);
+}
+
+}  // namespace
+}  // namespace fogline::test

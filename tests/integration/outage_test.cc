@@ -1,0 +1,193 @@
+// What a run does when messages cannot be sent for a while: an interface, its address or its route
+// goes away and comes back, a firewall drops what is sent. Each in a network of the kernel's own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/clock.h"
+#include "services/runtime/wire.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+
+/// Something that goes away and comes back, as lines of sh.
+struct Outage {
+  std::string name;
+  std::string begin;
+  std::string end;
+};
+void PrintTo(const Outage& outage, std::ostream* out) { *out << outage.name; }
+
+const char* const kFirewall =
+    "nft 'table inet reload { chain out { type filter hook output priority 0; policy drop; }; }'";
+
+/// On one machine, whose interface leads elsewhere.
+class OutageTest : public NetworkTest {
+ protected:
+  static void SetUpInterface(const Machine& machine) {
+    machine.Do(
+        "ip link add eth0 type veth peer name peer0; ip addr add 192.0.2.1/24 dev eth0;"
+        "ip link set eth0 up; ip link set peer0 up; ip route add default via 192.0.2.2");
+  }
+  /// A run that is watched takes 2.5 s and waits for longer than anything here is away.
+  std::vector<std::string> PacedRun(std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--pace", "20"});
+    return Run(more);
+  }
+  /// For some steps at least; nothing tells when a run has noticed.
+  static void LastFor(milliseconds time) { std::this_thread::sleep_for(time); }
+};
+
+class OwnMachineOutageTest : public OutageTest, public testing::WithParamInterface<Outage> {};
+
+TEST_P(OwnMachineOutageTest, IsNothingToARunThatStaysOnItsMachine) {
+  const Machine machine("alone");
+  SetUpInterface(machine);
+  Background run(machine.On(PacedRun()));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  machine.Do(GetParam().begin);
+  LastFor(milliseconds(300));
+  machine.Do(GetParam().end);
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  EXPECT_TRUE(result["failed_sends"].empty()) << result["failed_sends"];
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, OwnMachineOutageTest,
+    testing::Values(Outage{"TheRoute", "ip route del default",
+                           "ip route add default via 192.0.2.2"},
+                    Outage{"TheAddress", "ip addr flush dev eth0",
+                           "ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2"},
+                    Outage{"TheLink", "ip link set eth0 down",
+                           "ip link set eth0 up; ip route add default via 192.0.2.2"},
+                    Outage{"TheInterface", "ip link del eth0", "true"}),
+    [](const auto& outage) { return outage.param.name; });
+
+class SeveralMachinesOutageTest : public OutageTest, public testing::WithParamInterface<Outage> {};
+
+TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
+  // GIVEN a run with its driver on another machine
+  const Lab lab(2);
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  Background run(lab[0].On(PacedRun({"--lcm-url", kUrl, "--external", "driver"})));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN something of the network goes away there and comes back
+  lab[1].Do(GetParam().begin);
+  LastFor(milliseconds(300));
+  lab[1].Do(GetParam().end);
+  // THEN the result is the same
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+  // AND it is known who could not send, and why
+  ASSERT_EQ(result["failed_sends"].size(), 1U) << result["failed_sends"];
+  EXPECT_EQ(result["failed_sends"][0]["role"], "driver");
+  EXPECT_GT(result["failed_sends"][0]["count"], 0);
+  EXPECT_NE(result["failed_sends"][0]["error"], "");
+}
+
+constexpr const char* kRouteAgain = "ip route add 239.0.0.0/8 dev eth0";
+const std::string kAddressAgain = std::string("ip addr add 10.76.67.2/24 dev eth0; ") + kRouteAgain;
+const std::string kLinkAgain = std::string("ip link set eth0 up; ") + kRouteAgain;
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, SeveralMachinesOutageTest,
+    testing::Values(Outage{"TheRoute", "ip route del 239.0.0.0/8", kRouteAgain},
+                    Outage{"TheAddress", "ip addr flush dev eth0", kAddressAgain},
+                    Outage{"TheLink", "ip link set eth0 down", kLinkAgain},
+                    Outage{"TheFirewall", kFirewall, "nft delete table inet reload"}),
+    [](const auto& outage) { return outage.param.name; });
+
+TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
+  const Machine machine("firewall");
+  machine.Do(
+      "nft 'table inet outage { chain out { type filter hook output priority 0;"
+      " meta l4proto udp numgen random mod 100 < 5 drop; }; }'");
+  const auto result = Result(RunCommand(machine.On(Run({}))));
+  EXPECT_EQ(result["digest"], Undisturbed());
+  ASSERT_FALSE(result["failed_sends"].empty());
+  std::int64_t failed = 0;
+  for (const auto& one : result["failed_sends"]) {
+    failed += one["count"].get<std::int64_t>();
+    EXPECT_EQ(one["error"], "Operation not permitted");
+  }
+  EXPECT_GT(failed, 50) << "of 4500 messages and more";
+  // AND a person reads it, too
+  const Outcome text = RunCommand(
+      machine.On({Program("fogline"), "run", "scenario/paper.json", "--log", Log() + ".text"}));
+  EXPECT_THAT(text.out, ContainsRegex("\nmessages that could not be sent: .*world [0-9]+.* "
+                                      "\\(Operation not permitted\\)\n"));
+}
+
+TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
+  const Machine machine("firewall");
+  Background run(machine.On({Program("fogline"), "run", "scenario/paper.json", "--pace", "1",
+                             "--stall-timeout", "1", "--restarts", "0", "--log", Log()}));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  machine.Do(kFirewall);
+  EXPECT_EQ(run.Wait(), 3);
+  // Whichever is noticed first: that nothing goes out, or that nothing comes in.
+  EXPECT_THAT(run.Err(),
+              AllOf(ContainsRegex("(nothing could be sent for 1\\.[0-9] s: |messages that "
+                                  "could not be sent: .*)\\(?Operation not permitted"),
+                    HasSubstr("the log so far: " + Log())));
+}
+
+/// The steps of TRUTH in a log that a program has written or is writing.
+std::set<std::int64_t> StepsIn(const std::string& log) {
+  std::set<std::int64_t> steps;
+  EventLogReader reader(log);
+  while (const auto event = reader.Next()) {
+    if (event->channel == "TRUTH") steps.insert(ReadInt64(event->data, kStepOffset));
+  }
+  return steps;
+}
+
+TEST_F(OutageTest, OfAnInterfaceKeepsNoStockProgramFromHearingARunOrBeingHeard) {
+  // GIVEN Debian's lcm-logger, which joins the group where the default route leads
+  const Machine machine("lab");
+  SetUpInterface(machine);
+  const std::string url = "udpm://239.255.76.67:7700?ttl=0";
+  const std::string stock = Log() + ".stock";
+  Background logger(
+      machine.On({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url, stock}));
+  // It listens when there is such a socket; the kernel prints addresses as numbers.
+  machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
+  // WHEN a run on loopback goes on, and the interface goes down in it
+  Background run(machine.On(PacedRun({"--lcm-url", url})));
+  ASSERT_TRUE(GrowsTo(100'000, Log()));
+  machine.Do("ip link set eth0 down");
+  LastFor(milliseconds(300));
+  machine.Do("ip link set eth0 up; ip route add default via 192.0.2.2");
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
+  logger.Signal(SIGINT);
+  EXPECT_EQ(logger.Wait(), 0);
+  // THEN it has heard all of it but what it loses when the machine is busy
+  const std::set<std::int64_t> steps = StepsIn(stock);
+  EXPECT_GT(steps.size(), 250U);
+  for (std::int64_t step = 0; step < 500; step += 100) {
+    EXPECT_NE(steps.lower_bound(step), steps.lower_bound(step + 100)) << step;
+  }
+  // AND lcm-logplayer, which sends where the route leads, is heard
+  Background top(machine.On(
+      {Program("fogline"), "top", "--json", "--once", "--interval", "3", "--lcm-url", url}));
+  machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
+  Background player(machine.On({"lcm-logplayer", "--speed=10", "--lcm-url=" + url, stock}));
+  EXPECT_EQ(top.Wait(), 0) << top.Err();
+  EXPECT_THAT(top.Out(), HasSubstr("\"TRACK\""));
+}
+
+}  // namespace
+}  // namespace fogline::test

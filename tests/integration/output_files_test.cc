@@ -1,0 +1,161 @@
+// Where results go: files, links, pipes and devices, as a person expects of a program.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
+using Words = std::vector<std::string>;
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A folder with the log of a short run, and what it has besides.
+class OutputFilesTest : public testing::Test {
+ protected:
+  OutputFilesTest() {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                    "direct", "--set", "/steps=20", "--quiet", "--log", log_});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+  Outcome Report(const std::string& output) const {
+    return RunCommand({Program("fogline"), "report", log_, "--output", output});
+  }
+  Outcome Bash(const std::string& script) const {
+    return RunCommand({"bash", "-c",
+                       "cd '" + folder_.path().string() +
+                           "' && PATH=" + ProgramDirectory().string() + ":$PATH && " + script});
+  }
+  Words Files() const {
+    Words names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  const std::string page_ = folder_.File("page.html");
+};
+
+TEST_F(OutputFilesTest, AReportFollowsNoLinkThatWaitsForIt) {
+  std::ofstream(folder_.File("precious")) << "precious";
+  std::filesystem::create_symlink(folder_.File("precious"), page_ + ".part");
+  EXPECT_EQ(Report(page_).code, 0);
+  EXPECT_EQ(Content(folder_.File("precious")), "precious");
+  EXPECT_THAT(Content(page_), StartsWith("<!DOCTYPE html>"));
+  EXPECT_THAT(Files(), ElementsAre("page.html", "page.html.part", "precious", "run.lcm"));
+}
+
+TEST_F(OutputFilesTest, AReportReplacesThePageThatALinkLeadsTo) {
+  ASSERT_EQ(Report(folder_.File("real.html")).code, 0);
+  std::filesystem::resize_file(folder_.File("real.html"), 100);
+  std::filesystem::create_symlink("real.html", page_);
+  EXPECT_EQ(Report(page_).code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(page_));
+  EXPECT_GT(std::filesystem::file_size(folder_.File("real.html")), 1000U);
+}
+
+TEST_F(OutputFilesTest, AReportGoesToStdoutAndNothingElseDoes) {
+  ASSERT_EQ(Report(page_).code, 0);
+  const std::string page = Content(page_);
+  EXPECT_EQ(Bash("fogline report run.lcm -o /dev/stdout | cat").out, page);
+  EXPECT_EQ(Bash("{ echo before; fogline report run.lcm -o /dev/stdout; } > both").code, 0);
+  EXPECT_EQ(Content(folder_.File("both")), "before\n" + page);
+}
+
+TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
+  ASSERT_EQ(Report(page_).code, 0);
+  EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
+  EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
+  // Descriptor 9 reads from the beginning on, and never sees an end: so many bytes are to come.
+  EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
+                 "head -c $(stat -c %s page.html) <&9 > named; wait $report")
+                .code,
+            0);
+  EXPECT_EQ(Content(folder_.File("named")), Content(page_));
+  const Outcome nothing = Report("/dev/null");
+  EXPECT_EQ(nothing.code, 0) << nothing.err;
+  EXPECT_EQ(nothing.out, "/dev/null\n");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  const Outcome full = Report("/dev/full");
+  EXPECT_EQ(full.code, 3);
+  EXPECT_EQ(full.err, "fogline report: error: /dev/full: cannot write: No space left on device\n");
+}
+
+TEST_F(OutputFilesTest, APipeThatNoProcessReadsIsRefused) {
+  ASSERT_EQ(mkfifo(folder_.File("pipe").c_str(), 0600), 0);
+  const Outcome outcome = Report(folder_.File("pipe"));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            folder_.File("pipe") + ": error: cannot write: no process reads this pipe\n");
+}
+
+TEST_F(OutputFilesTest, ASweepIntoADeviceOrPipeIsItsRowsAndLeavesNoFile) {
+  std::filesystem::create_symlink("/dev/null", folder_.File("null.csv"));
+  const Words sweep{Program("fogline"),
+                    "sweep",
+                    "scenario/paper.json",
+                    "--set",
+                    "/steps=20",
+                    "--seeds",
+                    "1:4",
+                    "--out"};
+  const auto to = [&](const std::string& out) {
+    Words command = sweep;
+    command.push_back(out);
+    return RunCommand(command);
+  };
+  EXPECT_EQ(to(folder_.File("null.csv")).code, 0);
+  EXPECT_THAT(Files(), ElementsAre("null.csv", "run.lcm"));
+  ASSERT_EQ(to(folder_.File("file.csv")).code, 0);
+  const Outcome rows = to("/dev/stdout");
+  EXPECT_EQ(rows.code, 0) << rows.err;
+  EXPECT_EQ(rows.out, Content(folder_.File("file.csv")));
+  EXPECT_THAT(rows.err, HasSubstr("4 rows in "));
+}
+
+TEST_F(OutputFilesTest, AForcedCalibrationReplacesOnlyAScenario) {
+  const auto calibrate = [&](const std::string& out) {
+    return RunCommand({Program("fogline"), "calibrate", "scenario/paper.json", "--free",
+                       "/fog/bias_m=0.2:0.3", "--set", "/steps=310", "--seeds", "1:1",
+                       "--evaluations", "1", "--out", out, "--force"});
+  };
+  const std::string thesis = folder_.File("thesis.tex");
+  std::ofstream(thesis) << "\\documentclass{book}";
+  const Outcome refused = calibrate(thesis);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err, thesis +
+                             ": error: --out: the file is no scenario and stays as it is, "
+                             "--force or not\n");
+  EXPECT_EQ(Content(thesis), "\\documentclass{book}");
+  const std::string found = folder_.File("found.json");
+  std::filesystem::copy(SourceDirectory() / "scenario/dense_fog.json", found);
+  EXPECT_EQ(calibrate(found).code, 0);
+  EXPECT_THAT(Content(found), HasSubstr("Sourav"));
+}
+
+}  // namespace
+}  // namespace fogline::test

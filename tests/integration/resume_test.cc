@@ -1,0 +1,371 @@
+// A run whose runner has died, or was interrupted, goes on from its log: `fogline run --resume`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "services/recorder/event_log.h"
+#include "services/runtime/bus.h"
+#include "services/runtime/scenario_parts.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// Far longer than anything here takes on a busy machine.
+constexpr Duration kPatience = std::chrono::seconds(30);
+// Steps of a run, and its pace: a millisecond a step.
+constexpr int kSteps = 300;
+const Words kPaced{"--pace", "100"};
+
+std::string Content(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class ResumeTest : public testing::Test {
+ protected:
+  static Words Paper(int steps) {
+    return {Program("fogline"), "run",   "scenario/paper.json",
+            "--json",           "--set", "/steps=" + std::to_string(steps)};
+  }
+  /// The result of the run that nothing happens to, and its log in whole.lcm.
+  nlohmann::json Undisturbed(int steps = kSteps) const {
+    const Outcome outcome = RunCommand(
+        Paper(steps) + Words{"--transport", "direct", "--force", "--log", File("whole.lcm")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+  }
+  Outcome Resume(const Words& more = {}) const {
+    return RunCommand(Words{Program("fogline"), "run", "--json", "--resume", log_} + more);
+  }
+  /// Resumes it to its end. @return the result, which must be that of the undisturbed run
+  nlohmann::json ExpectSameEnd(const nlohmann::json& whole, const Words& more = {}) const {
+    const Outcome outcome = Resume(more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto result = nlohmann::json::parse(outcome.out, nullptr, false);
+    EXPECT_EQ(result.value("digest", ""), whole["digest"]) << outcome.err;
+    EXPECT_EQ(result.value("steps", 0), whole["steps"]);
+    EXPECT_EQ(result.value("seed", 0), whole["seed"]);
+    EXPECT_EQ(result["metrics"], whole["metrics"]);
+    // The log has the same events, and nothing else; they differ in the run id, and a key signs the
+    // last one.
+    const bool is_signed = std::ranges::find(more, "--key") != more.end();
+    EXPECT_EQ(std::filesystem::file_size(log_),
+              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? kSealBytes : 0));
+    return result;
+  }
+  /// Kills the runner, not its roles, as soon as there are so many bytes in the log.
+  void KillAt(std::uintmax_t bytes, const Words& command) const {
+    Background run(command + Words{"--log", log_});
+    ASSERT_TRUE(GrowsTo(bytes, log_)) << run.Err();
+    run.Signal(SIGKILL);
+    run.Wait();
+  }
+  /// What a log has in which another run cannot go on.
+  void ExpectRefusal(const Words& command, const std::string& err) const {
+    const std::string before = Content(log_);
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_EQ(outcome.err, err);
+    EXPECT_TRUE(Content(log_) == before) << "what is refused is left as it is";
+  }
+  void ExpectRefusal(const std::string& why) const {
+    ExpectRefusal({Program("fogline"), "run", "--quiet", "--resume", log_},
+                  log_ + ": error: --resume: " + why + "\n");
+  }
+  std::string File(const std::string& name) const { return folder_.File(name); }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+};
+
+/// A run over the network, whose steps this test sees.
+class SeenRun {
+ public:
+  SeenRun(const Words& command, const std::string& log)
+      : bus_(FreshMulticastUrl()), run_(command + Words{"--lcm-url", bus_.url(), "--log", log}) {
+    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
+      step_ = std::max(step_, ReadInt64(bytes, kStepOffset));  // signed or not
+    });
+  }
+
+  void WaitForStep(std::int64_t step) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (step_ < step) {
+      bus_.Wait(milliseconds(20));
+      ASSERT_LT(Clock::now(), end) << run_.Err();
+    }
+  }
+  void KillAtStep(std::int64_t step) {
+    WaitForStep(step);
+    run_.Signal(SIGKILL);
+    run_.Wait();
+  }
+  const std::string& url() const { return bus_.url(); }
+  Background& run() { return run_; }
+
+ private:
+  Bus bus_;
+  Background run_;
+  std::int64_t step_ = -1;
+};
+
+/// How many runners are to be killed: a few, unless the campaign wants more.
+int KillsWanted() {
+  const char* kills = std::getenv("FOGLINE_TEST_KILLS");
+  return kills == nullptr ? 3 : std::atoi(kills);
+}
+
+class ResumeCampaignTest : public ResumeTest {};
+
+TEST_F(ResumeCampaignTest, RunnersKilledAtRandomStepsChangeNoResult) {
+  std::mt19937 random(2025);
+  const auto whole = Undisturbed();
+  for (int kill = 0; kill < KillsWanted(); ++kill) {
+    SCOPED_TRACE(kill);
+    std::filesystem::remove(log_);
+    const int step = std::uniform_int_distribution(0, kSteps - 2)(random);
+    SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(step);
+    // The world is at most 32 steps ahead of what is on disk.
+    const auto result = ExpectSameEnd(whole);
+    EXPECT_GE(result["resumed_steps"], step - 32);
+    EXPECT_EQ(result["restarts"].size(), 0U);
+  }
+}
+
+TEST_F(ResumeCampaignTest, RunsInOneProcessGoOnToTheSameResult) {
+  std::mt19937 random(2026);
+  // So many that they are not over before they are killed.
+  constexpr int kMany = 20'000;
+  const auto whole = Undisturbed(kMany);
+  const std::uintmax_t size = std::filesystem::file_size(File("whole.lcm"));
+  for (int kill = 0; kill < KillsWanted(); ++kill) {
+    for (const char* transport : {"memq", "direct"}) {
+      SCOPED_TRACE(transport);
+      std::filesystem::remove(log_);
+      const std::uintmax_t bytes =
+          std::uniform_int_distribution<std::uintmax_t>(size / 100, size / 2)(random);
+      KillAt(bytes, Paper(kMany) + Words{"--transport", transport});
+      ExpectSameEnd(whole, {"--transport", transport});
+    }
+  }
+}
+
+TEST_F(ResumeTest, GoesOnOverAnotherTransportThanItBeganWith) {
+  const auto whole = Undisturbed();
+  for (const char* transport : {"direct", "memq", "tcpq"}) {
+    std::filesystem::remove(log_);
+    SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(150);
+    EXPECT_EQ(ExpectSameEnd(whole, {"--transport", transport})["transport"], transport);
+  }
+}
+
+TEST_F(ResumeTest, GoesOnAfterItHasBeenKilledWhileItWentOn) {
+  const auto whole = Undisturbed();
+  SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(50);
+  for (int i = 0; i < 2; ++i) {
+    const auto size = std::filesystem::file_size(log_);
+    Background again(Words{Program("fogline"), "run", "--resume", log_} + kPaced);
+    ASSERT_TRUE(GrowsTo(size + 100'000, log_)) << again.Err();
+    again.Signal(SIGKILL);
+    again.Wait();
+  }
+  ExpectSameEnd(whole);
+}
+
+TEST_F(ResumeTest, RefusesNoMessageOfARunThatGoesOnUndisturbed) {
+  const auto whole = Undisturbed();
+  SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(200);
+  const auto result = ExpectSameEnd(whole);
+  for (const auto& [kind, count] : result["refused"].items()) EXPECT_EQ(count, 0) << kind;
+}
+
+TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
+  const auto whole = Undisturbed();
+  const std::string key = File("key");
+  ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
+  for (const Words& sealed : {Words{}, Words{"--key", key}}) {
+    std::filesystem::remove(log_);
+    // GIVEN a driver of another shell
+    SeenRun seen(Paper(kSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
+    Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
+    // WHEN the runner dies; THEN the same driver goes on with the next one
+    seen.KillAtStep(150);
+    ASSERT_TRUE(IsAlive(driver.pid()));
+    const auto result =
+        ExpectSameEnd(whole, Words{"--external", "driver", "--lcm-url", seen.url()} + sealed);
+    EXPECT_EQ(result["restarts"].size(), 0U);
+    EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+  }
+}
+
+TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
+  const auto whole = Undisturbed();
+  const std::string command = "\n  to go on: fogline run --resume " + log_;
+  const std::string path = "PATH=" + ProgramDirectory().string() + ":$PATH ";
+  {
+    SeenRun seen(Paper(kSteps) + kPaced, log_);
+    seen.WaitForStep(100);
+    seen.run().Signal(SIGINT);
+    ASSERT_EQ(seen.run().Wait(), 130);
+    EXPECT_THAT(seen.run().Err(), HasSubstr("; the log so far: " + log_ + command + " --lcm-url '" +
+                                            seen.url() + "' --pace 100\n"));
+  }
+  {
+    Background again(
+        Words{Program("fogline"), "run", "--resume", log_, "--restarts", "0", "--pace", "10"});
+    ASSERT_TRUE(again.WaitForErr("processes: "));
+    kill(PidOf(again.Err(), "fusion"), SIGKILL);
+    ASSERT_EQ(again.Wait(), 3);
+    EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + " --pace 10\n"));
+  }
+  // WHEN it is done as it is said; THEN it goes on
+  const Outcome outcome = RunCommand({"sh", "-c", path + "fogline run --resume " + log_});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("digest " + whole["digest"].get<std::string>() + "\n"));
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("^" + log_ + ": 300 steps, [0-9]+ of them from the log in "));
+}
+
+TEST_F(ResumeTest, OfACompleteRunSaysItsResultAgainAndComputesNothing) {
+  Undisturbed();
+  std::filesystem::copy(File("whole.lcm"), log_);
+  const auto whole = Undisturbed();
+  const Outcome outcome = Resume();
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, log_ + ": the run is complete\n");
+  const auto result = ExpectSameEnd(whole);
+  EXPECT_EQ(result["resumed_steps"], kSteps);
+  EXPECT_EQ(result["transport"], nullptr);
+  EXPECT_EQ(result["log"], log_);
+}
+
+TEST_F(ResumeTest, NamesWhatTheLogHasAndIsSaidAgain) {
+  const Words resume{Program("fogline"), "run", "--resume", log_};
+  const auto refusal = [](const std::string& what) {
+    return "fogline run: error: " + what +
+           ": --resume goes on with the scenario and the log of its run (see fogline run --help)\n";
+  };
+  ExpectRefusal(resume + Words{"scenario/paper.json"}, refusal("SCENARIO"));
+  ExpectRefusal(resume + Words{"--seed", "2"}, refusal("--seed"));
+  ExpectRefusal(resume + Words{"--set", "/seed=2"}, refusal("--set"));
+  ExpectRefusal(resume + Words{"--log", File("other.lcm")}, refusal("--log"));
+  ExpectRefusal(resume + Words{"--force"}, refusal("--force"));
+  ExpectRefusal(resume + Words{"--realtime"},
+                "fogline run: error: --realtime: a run in real time does not go on, see --resume "
+                "(see fogline run --help)\n");
+  ExpectRefusal({Program("fogline"), "run"},
+                "fogline run: error: SCENARIO is required (see fogline run --help)\n");
+}
+
+TEST_F(ResumeTest, RefusesWhatIsNoLogOfARun) {
+  ExpectRefusal({Program("fogline"), "run", "--resume", log_},
+                log_ + ": error: cannot read the log: No such file or directory\n");
+  EXPECT_FALSE(std::filesystem::exists(log_));
+  std::ofstream(log_) << "precious";
+  ExpectRefusal({Program("fogline"), "run", "--resume", log_},
+                log_ + ": error: not an LCM event log\n");
+  std::ofstream(log_, std::ios::trunc).flush();
+  ExpectRefusal("the log does not begin with the scenario of a run: start the run anew");
+  EXPECT_TRUE(std::filesystem::exists(log_));
+}
+
+TEST_F(ResumeTest, RefusesARunInRealTime) {
+  {
+    Background run(
+        Words{Program("fogline"), "run", "scenario/paper.json", "--realtime", "--log", log_});
+    ASSERT_TRUE(GrowsTo(50'000, log_)) << run.Err();
+    run.Signal(SIGINT);
+    ASSERT_EQ(run.Wait(), 130);
+    EXPECT_EQ(run.Err().find("--resume"), std::string::npos) << run.Err();
+  }
+  ExpectRefusal("a run in real time: the road does not wait, only runs in lockstep can go on");
+}
+
+TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
+  Background run(Paper(kSteps) + Words{"--pace", "1", "--log", log_});
+  ASSERT_TRUE(GrowsTo(20'000, log_)) << run.Err();
+  const Outcome outcome = Resume();
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, log_ + ": error: --resume: is being written by another run (pid " +
+                             std::to_string(run.pid()) + ")\n");
+  EXPECT_TRUE(IsAlive(run.pid()));
+}
+
+/// Copies a log event by event, as `change` wants them.
+template <class Change>
+void Copy(const std::string& from, const std::string& to, const Change& change) {
+  EventLogReader reader(from);
+  EventLogWriter writer(to);
+  while (const auto event = reader.Next()) {
+    std::vector<std::uint8_t> data(event->data.begin(), event->data.end());
+    if (!change(writer, *event, data)) return;
+    writer.Write(event->channel, event->utime, data);
+  }
+}
+
+TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
+  Undisturbed();
+  // GIVEN a log as lcm-logger makes it, which has what every role says of itself
+  status_t status{};
+  status.header.run_id = 1;
+  std::vector<std::uint8_t> encoded;
+  Encode(status, encoded);
+  Copy(File("whole.lcm"), log_,
+       [&](EventLogWriter& log, const Event& event, const std::vector<std::uint8_t>& data) {
+         const bool is_step_17 = ReadInt64(data, kStepOffset) == 17;
+         if (is_step_17 && event.channel == "TRUTH") log.Write("STATUS", 0, encoded);
+         return ReadInt64(data, kStepOffset) < 250;
+       });
+  EventLogReader reader(log_);
+  std::size_t at = 0;
+  while (reader.Next()->channel != "STATUS") at = reader.good_bytes();
+  ExpectRefusal("an event on channel STATUS (byte " + std::to_string(at) +
+                ") does not continue step 16: this is not how fogline run leaves a log");
+}
+
+TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
+  Undisturbed();
+  // GIVEN a log whose driver had something else to say in its last steps
+  Copy(File("whole.lcm"), log_,
+       [](EventLogWriter&, const Event& event, std::vector<std::uint8_t>& data) {
+         const std::int64_t step = ReadInt64(data, kStepOffset);
+         if (step == 190 && event.channel == "DRIVER_COMMAND") data[kHeaderEnd + 7] ^= 1;
+         return step < 200;
+       });
+  const Outcome direct = Resume({"--transport", "direct"});
+  EXPECT_EQ(direct.code, 2);
+  EXPECT_EQ(direct.err, log_ +
+                            ": error: --resume: step 190: DRIVER_COMMAND is not what driver "
+                            "computes here: the log was made by another program, or another "
+                            "version\n");
+  for (const char* transport : {"memq", "udpm"}) {
+    const Outcome outcome = Resume({"--transport", transport});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.err,
+                HasSubstr("error: recorder: step 190: DRIVER_COMMAND is not what the log has: "
+                          "driver is another program, or another version, than the one that was "
+                          "recorded\n"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

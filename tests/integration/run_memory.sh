@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# run_memory.sh FOGLINE TRANSPORT: no process of a run of 50,000 steps needs more memory, at its peak,
+# than in one of 5,000 steps, by more than a tenth.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+fogline=$1
+transport=$2
+folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-memory-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+
+# Prints the peak resident memory in KiB of the runner or of the largest of its roles.
+peak() {
+  /usr/bin/time --format=%M --output="$folder/peak" "$fogline" run scenario/paper.json --quiet \
+    --transport "$transport" --set "/steps=$1" --log "$folder/$1.lcm" >&2
+  rm "$folder/$1.lcm"
+  cat "$folder/peak"
+}
+few=$(peak 5000)
+many=$(peak 50000)
+echo "peak memory over $transport: 5000 steps $few KiB, 50000 steps $many KiB"
+[ "$few" -gt 0 ] && [ $((10 * many)) -le $((11 * few)) ]

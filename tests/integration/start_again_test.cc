@@ -1,0 +1,147 @@
+// A process of a run is killed while the system will not start it again: the program is away, or
+// there is no room for another process. And the run's own relay is killed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "services/graph.h"
+#include "services/runtime/clock.h"
+#include "tests/support/command.h"
+#include "tests/support/machine.h"
+
+namespace fogline::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A paced run of the paper's scenario, of 2.5 s.
+class StartAgainTest : public testing::Test {
+ protected:
+  std::vector<std::string> Run(const std::string& fogline, const std::vector<std::string>& more) {
+    std::vector<std::string> command{
+        fogline, "run", "scenario/paper.json", "--json", "--log", log(), "--pace", "20"};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  std::string log() const { return folder_.File("run.lcm"); }
+
+  /// The run has the result of an undisturbed one, and says that a process was started again once.
+  static void ExpectSameResult(Background& run, const std::string& role) {
+    ASSERT_EQ(run.Wait(), 0) << run.Err();
+    const auto result = nlohmann::json::parse(run.Out());
+    const Outcome direct = RunCommand(
+        {Program("fogline"), "run", "scenario/paper.json", "--json", "--transport", "direct"});
+    EXPECT_EQ(result["digest"], nlohmann::json::parse(direct.out)["digest"]);
+    ASSERT_EQ(result["restarts"].size(), 1U) << result["restarts"];
+    EXPECT_EQ(result["restarts"][0]["role"], role);
+    EXPECT_EQ(result["restarts"][0]["count"], 1);
+    EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(),
+                HasSubstr("was killed by signal 9 (Killed) at step "));
+    EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
+  }
+  /// For longer than the first tries to start it again take.
+  static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
+  // GIVEN an installation that can be changed
+  fs::create_directory(folder_.File("bin"));
+  fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
+  for (const RoleInfo& info : kRoles) {
+    const std::string name = "fogline-" + std::string(info.name);
+    fs::create_symlink(Program(name), folder_.File("bin/" + name));
+  }
+  Background run(Run(folder_.File("bin/fogline"), {}));
+  ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
+  // WHEN a role is killed while its program is away
+  fs::rename(folder_.File("bin/fogline-fusion"), folder_.File("bin/away"));
+  kill(PidOf(run.Err(), "fusion"), SIGKILL);
+  StayAway();
+  fs::rename(folder_.File("bin/away"), folder_.File("bin/fogline-fusion"));
+  ExpectSameResult(run, "fusion");
+}
+
+TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
+  fs::create_directory(folder_.File("bin"));
+  fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
+  for (const RoleInfo& info : kRoles) {
+    const std::string name = "fogline-" + std::string(info.name);
+    fs::create_symlink(Program(name), folder_.File("bin/" + name));
+  }
+  Background run(Run(folder_.File("bin/fogline"), {"--stall-timeout", "1"}));
+  ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
+  fs::remove(folder_.File("bin/fogline-fusion"));
+  kill(PidOf(run.Err(), "fusion"), SIGKILL);
+  EXPECT_EQ(run.Wait(), 3);
+  EXPECT_THAT(run.Err(), HasSubstr("from fusion (last heard: step "));
+  EXPECT_THAT(run.Err(), HasSubstr("; cannot start " + folder_.File("bin/fogline-fusion") +
+                                   ": No such file or directory\n"));
+}
+
+TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
+  if (geteuid() != 0) return MachineLacks("root, to be a user with a limit of processes");
+  // GIVEN a run of a user of its own, who may have no more processes from now on
+  fs::permissions(folder_.path(), fs::perms::all);
+  const std::string user = "4" + std::to_string(getpid() % 100'000);
+  const std::vector<std::string> as_user{"setpriv", "--reuid", user,
+                                         "--regid", user,      "--clear-groups"};
+  std::vector<std::string> command = as_user;
+  const auto rest = Run(Program("fogline"), {});
+  command.insert(command.end(), rest.begin(), rest.end());
+  Background run(command);
+  ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
+  const auto limit = [&](const std::string& processes) {
+    std::vector<std::string> prlimit = as_user;
+    prlimit.insert(prlimit.end(),
+                   {"prlimit", "--pid", std::to_string(run.pid()), "--nproc=" + processes + ":"});
+    const Outcome outcome = RunCommand(prlimit);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  };
+  rlimit before{};
+  getrlimit(RLIMIT_NPROC, &before);
+  limit("1");
+  // WHEN a role is killed, and there is room half a second later
+  kill(PidOf(run.Err(), "fusion"), SIGKILL);
+  StayAway();
+  limit(before.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(before.rlim_cur));
+  ExpectSameResult(run, "fusion");
+}
+
+/// The child of a process that is a program of this name, 0 if there is none.
+pid_t ChildNamed(pid_t parent, const std::string& name) {
+  const std::string place = "/proc/" + std::to_string(parent);
+  std::ifstream children(place + "/task/" + std::to_string(parent) + "/children");
+  for (pid_t child = 0; children >> child;) {
+    std::ifstream in("/proc/" + std::to_string(child) + "/cmdline");
+    std::string program;
+    std::getline(in, program, '\0');
+    if (fs::path(program).filename() == name) return child;
+  }
+  return 0;
+}
+
+TEST_F(StartAgainTest, TheRelayOfARunIsStartedAgainWhereItWas) {
+  Background run(Run(Program("fogline"), {"--transport", "tcpq"}));
+  ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
+  const pid_t relay = ChildNamed(run.pid(), "fogline-relay");
+  ASSERT_NE(relay, 0);
+  kill(relay, SIGKILL);
+  ExpectSameResult(run, "relay");
+  EXPECT_THAT(run.Err(), HasSubstr("relay (pid " + std::to_string(relay) +
+                                   ") was killed by signal 9 (Killed) at step "));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,256 @@
+// Run after run of real processes under random faults; every digest must be that of the run that
+// nothing happens to.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/soak/faults.h"
+#include "tests/soak/soaked_run.h"
+
+namespace fogline::test {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+enum ExitCode : int {
+  kAllEqual = 0,
+  kDifferent = 1,
+  kBadUsage = 2,
+  kNoMachines = 4,
+  kInterrupted = 130
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Options {
+  double minutes = 60;
+  std::int64_t runs = 0;  // 0: as many as the time lets
+  std::int64_t first = 0;
+  std::uint64_t seed = 1;
+  std::string only;
+  unsigned jobs = 2 * std::max(1U, std::thread::hardware_concurrency());
+  Limits limits;
+};
+
+/// How the runs of one kind went.
+struct Tally {
+  std::int64_t runs = 0;
+  std::int64_t struck = 0;  // faults that the runs lived to see
+  std::int64_t failed = 0;
+  std::int64_t repairs = 0;
+  std::int64_t restarts = 0;
+  double longest_s = 0;
+};
+
+struct Ended {
+  std::int64_t struck = 0;
+  std::int64_t repairs = 0;
+  std::int64_t restarts = 0;
+  std::string failure;  // "" if the digest is the one that it must be
+};
+
+Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
+               const Limits& limits) {
+  std::seed_seq words{seed, static_cast<std::uint64_t>(number)};
+  std::mt19937_64 random(words);
+  const Experiment experiment = Experiment::Draw(random);
+  const Undisturbed undisturbed = RunUndisturbed(experiment);
+  std::vector<std::string> options = kind.options(random);
+  // Slow enough that a fault of a tenth of a second is one of many steps.
+  options.insert(options.end(), {"--pace", "10", "--stall-timeout", "90"});
+  const bool three = kind.three_machines && (!kind.one_machine || random() % 3 == 0);
+  std::vector<double> shares;
+  if (kind.most_strikes > 0) {
+    shares.resize(std::uniform_int_distribution<std::size_t>(
+        1, static_cast<std::size_t>(kind.most_strikes))(random));
+  }
+  for (double& share : shares) share = std::uniform_real_distribution(0.02, 0.95)(random);
+  std::ranges::sort(shares);
+
+  SoakedRun run(experiment,
+                three ? SoakedRun::Place::kThreeMachines : SoakedRun::Place::kOneMachine, options);
+  Ended ended;
+  for (const double share : shares) {
+    if (!run.WaitForShare(share, undisturbed)) break;
+    kind.strike(run, random, limits);
+    ++ended.struck;
+  }
+  const std::string command = run.command();
+  const Outcome outcome = run.Finish();
+  const auto result = nlohmann::json::parse(outcome.out, nullptr, false);
+  if (outcome.code != 0 || !result.is_object()) {
+    ended.failure = fmt::format("exit code {}: {}\n{}", outcome.code, command, outcome.err);
+  } else if (result.value("digest", "") != undisturbed.digest) {
+    ended.failure = fmt::format("digest {} in place of {}: {}\n{}", result.value("digest", ""),
+                                undisturbed.digest, command, outcome.err);
+  }
+  if (result.is_object()) {
+    ended.repairs = result.value("repairs", 0);
+    for (const auto& role : result.value("restarts", nlohmann::json::array())) {
+      ended.restarts += role.value("count", 0);
+    }
+  }
+  return ended;
+}
+
+class Soak {
+ public:
+  explicit Soak(const Options& options) : options_(options), next_(options.first) {
+    for (const FaultKind& kind : FaultKinds()) {
+      if (options.only.empty() || kind.name == options.only) kinds_.push_back(&kind);
+    }
+    tallies_.resize(kinds_.size());
+  }
+
+  int Run() {
+    std::vector<std::thread> jobs;
+    for (unsigned i = 0; i < options_.jobs; ++i) jobs.emplace_back([this] { Work(); });
+    for (std::thread& job : jobs) job.join();
+    PrintTallies();
+    if (interrupted != 0) return kInterrupted;
+    return std::ranges::any_of(tallies_, [](const Tally& tally) { return tally.failed > 0; })
+               ? kDifferent
+               : kAllEqual;
+  }
+
+ private:
+  double Elapsed_s() const {
+    return std::chrono::duration<double>(SteadyClock::now() - began_).count();
+  }
+
+  bool Over(std::int64_t number) const {
+    if (interrupted != 0) return true;
+    return options_.runs > 0 ? number >= options_.first + options_.runs
+                             : Elapsed_s() > 60 * options_.minutes;
+  }
+
+  void Work() {
+    for (std::int64_t number = next_++; !Over(number); number = next_++) {
+      const std::size_t kind = static_cast<std::size_t>(number) % kinds_.size();
+      const double began_s = Elapsed_s();
+      Ended ended;
+      try {
+        ended = SoakOnce(*kinds_[kind], options_.seed, number, options_.limits);
+      } catch (const std::exception& error) {
+        ended.failure = error.what();
+      }
+      if (interrupted == 0) Add(kind, number, ended, Elapsed_s() - began_s);
+    }
+  }
+
+  void Add(std::size_t kind, std::int64_t number, const Ended& ended, double took_s) {
+    const std::lock_guard lock(mutex_);
+    Tally& tally = tallies_[kind];
+    ++tally.runs;
+    tally.struck += ended.struck;
+    tally.repairs += ended.repairs;
+    tally.restarts += ended.restarts;
+    tally.longest_s = std::max(tally.longest_s, took_s);
+    ++done_;
+    if (!ended.failure.empty()) {
+      ++tally.failed;
+      ++failed_;
+      fmt::print("run {} ({}) failed; again: tools/soak --seed {} --first {} --runs 1{}\n{}\n",
+                 number, kinds_[kind]->name, options_.seed, number,
+                 options_.only.empty() ? "" : " --only " + options_.only, ended.failure);
+      std::fflush(stdout);
+    }
+    fmt::print(stderr, "{:.1f} min: {} runs, {} failed\n", Elapsed_s() / 60, done_, failed_);
+  }
+
+  void PrintTallies() const {
+    fmt::print("{:<10} {:>6} {:>7} {:>8} {:>9} {:>9} {:>8}  {}\n", "kind", "runs", "failed",
+               "strikes", "restarts", "repairs", "longest", "what");
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+      const Tally& tally = tallies_[i];
+      fmt::print("{:<10} {:>6} {:>7} {:>8} {:>9} {:>9} {:>6.0f} s  {}\n", kinds_[i]->name,
+                 tally.runs, tally.failed, tally.struck, tally.restarts, tally.repairs,
+                 tally.longest_s, kinds_[i]->what);
+    }
+    fmt::print("{} runs in {:.1f} min, {} failed\n", done_, Elapsed_s() / 60, failed_);
+  }
+
+  const Options options_;
+  const SteadyClock::time_point began_ = SteadyClock::now();
+  std::vector<const FaultKind*> kinds_;
+  std::atomic<std::int64_t> next_;
+  std::mutex mutex_;  // of what follows
+  std::vector<Tally> tallies_;
+  std::int64_t done_ = 0;
+  std::int64_t failed_ = 0;
+};
+
+std::string TextOfKinds() {
+  std::string text = "Kinds of runs, in turn:\n";
+  for (const FaultKind& kind : FaultKinds()) {
+    text += fmt::format("  {:<10} {}\n", kind.name, kind.what);
+  }
+  return text;
+}
+
+int Main(int argc, char** argv) {
+  Options options;
+  CLI::App app{
+      "Runs Fogline's processes under random faults, one run after another, and compares every\n"
+      "digest with that of the run that nothing happens to. Each run has machines (network\n"
+      "namespaces) of its own. Needs root and nftables.",
+      "soak"};
+  app.add_option("--minutes", options.minutes, "Start runs for so long")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--runs", options.runs, "This many runs, however long they take")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--first", options.first, "Number of the first run: what it draws")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", options.seed, "What all runs draw")->capture_default_str();
+  std::vector<std::string> names;
+  for (const FaultKind& kind : FaultKinds()) names.emplace_back(kind.name);
+  app.add_option("--only", options.only, "Runs of this kind alone")->check(CLI::IsMember(names));
+  app.add_option("--jobs", options.jobs, "Runs at once")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--freeze", options.limits.freeze_s, "Longest freeze, in s")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  app.add_option("--partition", options.limits.partition_s, "Longest partition, in s")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  app.footer(TextOfKinds() +
+             "\nExit codes: 0 all digests equal, 1 one differs or a run failed, 2 bad usage,\n"
+             "4 machines cannot be made here, 130 interrupted.\n\n"
+             "Examples:\n  tools/soak\n  tools/soak --minutes 5 --only freeze");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "soak: error: {} (see soak --help)\n", error.what());
+    return kBadUsage;
+  }
+  if (const std::string why = WhyNoMachines(); !why.empty()) {
+    fmt::print(stderr, "soak: error: cannot make machines: {}\n", why);
+    return std::getenv("FOGLINE_TEST_NO_SKIP") == nullptr ? kNoMachines : kDifferent;
+  }
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = 1; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return Soak(options).Run();
+}
+
+}  // namespace
+}  // namespace fogline::test
+
+int main(int argc, char** argv) { return fogline::test::Main(argc, argv); }

@@ -1,0 +1,84 @@
+// One run of real processes on machines of its own, for faults to strike.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.h"
+#include "tests/support/network.h"
+
+namespace fogline::test {
+
+/// What a run is: drawn at random, the same for the same seed and number.
+struct Experiment {
+  std::string scenario;
+  int steps = 0;
+  std::vector<std::string> changes;  // "--seed", "7", "--set", "/steps=300", ...
+
+  static Experiment Draw(std::mt19937_64& random);
+};
+
+/// How it goes without any fault and any message.
+struct Undisturbed {
+  std::string digest;
+  std::uintmax_t log_bytes = 0;
+};
+/// @throws std::runtime_error if the program fails
+Undisturbed RunUndisturbed(const Experiment& experiment);
+
+/// A run that is under way: on one machine that has a default route to elsewhere, as most have, or
+/// with its roles on three machines of one network.
+class SoakedRun {
+ public:
+  enum class Place { kOneMachine, kThreeMachines };
+
+  SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
+
+  /// Waits until this share of the log is written. @return whether the run still goes on then
+  bool WaitForShare(double share, const Undisturbed& whole);
+  bool Running() const { return IsAlive(run_->pid()); }
+
+  /// The machines that the run is on.
+  std::vector<const Machine*> machines() const;
+  /// @pre it is on three machines
+  const Lab& lab() const { return *lab_; }
+
+  /// The runner, and every process of the run on all machines, the runner first.
+  std::vector<pid_t> Processes() const;
+  /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
+  void KillARole(std::mt19937_64& random);
+  /// Stops one that the runner has started.
+  void StopARole(std::mt19937_64& random);
+  /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
+  void KillTheRunnerAndResume();
+
+  /// Waits for the end. @return the exit code and what the runner has printed
+  Outcome Finish();
+  /// What was started last as the runner.
+  const std::string& command() const { return command_; }
+
+ private:
+  void StartRoles();
+  void StartRole(std::size_t role);
+  void StartRunner(const std::vector<std::string>& arguments);
+  std::vector<std::string> On(std::size_t machine, const std::vector<std::string>& command) const;
+
+  Place place_;
+  ScratchFolder folder_;
+  std::string log_ = folder_.File("run.lcm");
+  std::optional<Machine> machine_;
+  std::optional<Lab> lab_;
+  std::vector<std::string> options_;
+  std::string command_;
+  std::deque<std::unique_ptr<Background>> roles_;  // that this program has started
+  std::unique_ptr<Background> run_;
+};
+
+}  // namespace fogline::test

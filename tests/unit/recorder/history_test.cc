@@ -1,0 +1,186 @@
+// What a log has of a run, and where its steps lie in it, however long it is.
+#include "services/recorder/history.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+
+#include "services/recorder/step_order.h"
+#include "services/runtime/this_process.h"
+#include "tests/support/command.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::int64_t kRunId = 7;
+constexpr std::string_view kScenario = R"({"version":1})";
+
+/// A message of a step; that of the follower takes more bytes in some steps than in others.
+template <class M>
+std::vector<std::uint8_t> Encoded(std::int64_t step, bool last = false) {
+  M message{};
+  message.header = {.run_id = kRunId, .step = step, .utime = step * 100'000};
+  if constexpr (std::is_same_v<M, truth_t>) message.last = last;
+  if constexpr (std::is_same_v<M, follower_command_t>) {
+    message.num_followers = static_cast<std::int32_t>(step % 7);
+    message.acceleration_mps2.assign(static_cast<std::size_t>(step % 7), 0.5);
+    message.safe_distance_m.assign(static_cast<std::size_t>(step % 7), 40);
+  }
+  std::vector<std::uint8_t> bytes;
+  Encode(message, bytes);
+  return bytes;
+}
+
+void WriteStep(EventLogWriter& log, std::int64_t step, bool last = false) {
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    log.Write(kChannels[channel].name, step * 100'000, Encoded<M>(step, last));
+  });
+}
+
+void WriteFront(EventLogWriter& log) {
+  std::vector<std::uint8_t> bytes;
+  Encode(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenario), {std::string(kScenario)}, 0),
+         bytes);
+  log.Write(ChannelOf<run_t>().name, 0, bytes);
+}
+
+class HistoryTest : public testing::Test {
+ protected:
+  /// Writes a log of so many steps.
+  void Write(std::int64_t steps) const {
+    EventLogWriter log(file_);
+    WriteFront(log);
+    for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
+  }
+  /// What the log has, found from its end or, for comparison, read from front to back.
+  Remains ReadFromEnd(std::int64_t tail = kTailBytes) const {
+    return ReadRemains(file_, ReadFront(file_), {}, tail);
+  }
+  Remains ReadFromFront() const {
+    return ReadFromEnd(static_cast<std::int64_t>(std::filesystem::file_size(file_)));
+  }
+  void ExpectStep(History& history, std::int64_t step) const {
+    std::map<std::string_view, std::vector<std::uint8_t>> messages;
+    history.ForEachMessage(step, [&](std::string_view channel, Bytes bytes) {
+      messages[channel].assign(bytes.begin(), bytes.end());
+    });
+    EXPECT_EQ(messages.size(), kStepChannels);
+    ForEachStepChannel([&]<class M>(std::size_t channel) {
+      EXPECT_EQ(messages[kChannels[channel].name], Encoded<M>(step)) << step;
+    });
+  }
+
+  const test::ScratchFolder folder_;
+  const std::string file_ = folder_.File("log");
+};
+
+void ExpectSame(const Remains& a, const Remains& b) {
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.head.bytes, b.head.bytes);
+  EXPECT_EQ(a.head.events, b.head.events);
+  EXPECT_EQ(a.last, b.last);
+  EXPECT_EQ(a.final, b.final);
+}
+
+TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
+  constexpr std::int64_t kSteps = 60;
+  constexpr std::int64_t kTail = 16'384;
+  Write(kSteps);
+  EXPECT_TRUE(ReadFromEnd(kTail).final);
+  EXPECT_EQ(ReadFromEnd(kTail).steps, kSteps);
+  // Around each of the last two dozen events, and in between.
+  for (auto size = static_cast<std::int64_t>(std::filesystem::file_size(file_)); size > 60'000;
+       size -= 37) {
+    std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(size));
+    const Remains remains = ReadFromEnd(kTail);
+    ExpectSame(remains, ReadFromFront());
+    EXPECT_EQ(OddEnd(file_, ReadFront(file_), remains), "");
+  }
+}
+
+TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
+  // GIVEN a log of a hundred gigabytes, in which nothing is but its front and its last steps: what
+  // reads the rest finds no event there, and takes minutes
+  constexpr std::int64_t kPeriod = 7;  // of what a step takes
+  constexpr std::int64_t kSteps = 14'000'000 * kPeriod;
+  Write(kPeriod);
+  const LogFront front = ReadFront(file_);
+  const std::int64_t period_bytes =
+      static_cast<std::int64_t>(std::filesystem::file_size(file_)) - front.head.bytes;
+  LogHead head{.bytes = front.head.bytes + kSteps / kPeriod * period_bytes,
+               .events = front.head.events};
+  ASSERT_GT(head.bytes, 100'000'000'000);
+  head.events += kSteps * static_cast<std::int64_t>(kStepChannels);
+  std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(front.head.bytes));
+  {
+    EventLogWriter log(file_, head);
+    for (std::int64_t step = kSteps; step < kSteps + 500; ++step) WriteStep(log, step);
+  }
+  // WHEN it is gone on with; THEN the last step is found, and each of the last ones
+  const Remains remains = ReadFromEnd();
+  EXPECT_EQ(remains.steps, kSteps + 500);
+  EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(kStepChannels));
+  History history(file_, front, remains);
+  for (std::int64_t step = kSteps + 499; step >= kSteps + 100; --step) ExpectStep(history, step);
+}
+
+TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
+  // GIVEN a log of 20 MB behind whose steps is something else, so that all of it is read
+  constexpr std::int64_t kSteps = 20'000;
+  Write(kSteps);
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * kTailBytes);
+  // WHEN it is read
+  std::vector<std::int64_t> heard;
+  const Remains remains = ReadRemains(file_, ReadFront(file_),
+                                      [&heard](std::int64_t steps) { heard.push_back(steps); });
+  // THEN nothing is lost, and there were signs of life that tell of progress
+  EXPECT_EQ(remains.steps, kSteps);
+  ASSERT_GE(heard.size(), 2U);
+  EXPECT_TRUE(std::ranges::is_sorted(heard));
+  EXPECT_GT(heard.front(), 0);
+  EXPECT_LT(heard.front(), heard.back());
+  EXPECT_THAT(OddEnd(file_, ReadFront(file_), remains),
+              testing::EndsWith(" 2097152 bytes do not continue step 19999"));
+}
+
+TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
+  constexpr std::int64_t kSteps = 2000;
+  Write(kSteps + 1);  // the last one says that it is the last
+  History history(file_, ReadFront(file_), ReadFromEnd());
+  std::mt19937 random(7);
+  for (int i = 0; i < 500; ++i) {
+    ExpectStep(history, std::uniform_int_distribution<std::int64_t>(0, kSteps - 1)(random));
+  }
+  for (std::int64_t step = 0; step < kSteps; ++step) ExpectStep(history, step);
+}
+
+TEST_F(HistoryTest, NamesTheStepThatIsDamaged) {
+  Write(1000);
+  const LogFront front = ReadFront(file_);
+  const Remains remains = ReadFromEnd();
+  std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
+      .seekp(remains.head.bytes / 2)
+      .write(std::string(100'000, 'x').c_str(), 100'000);
+  History history(file_, front, remains);
+  EXPECT_THROW(ExpectStep(history, 505), std::runtime_error);
+  ExpectStep(history, 10);
+  ExpectStep(history, 990);
+}
+
+TEST_F(HistoryTest, TakesNoMoreMemoryTheLongerTheRunIs) {
+  Write(1);
+  History history(file_, ReadFront(file_), ReadFromEnd());
+  constexpr std::int64_t kSteps = 20'000'000;
+  const std::int64_t before = MeasureThisProcess().rss_bytes;
+  for (std::int64_t step = 1; step < kSteps; ++step) history.Add(step * 3000);
+  EXPECT_EQ(history.steps(), kSteps);
+  // An index of every step would take eight bytes each: 160 MB.
+  EXPECT_LT(MeasureThisProcess().rss_bytes - before, 1 << 20);
+}
+
+}  // namespace
+}  // namespace fogline

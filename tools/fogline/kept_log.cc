@@ -1,0 +1,62 @@
+#include "tools/fogline/kept_log.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/recorder/log_of_run.h"
+#include "services/recorder/remains.h"
+#include "services/runtime/lcm_url.h"
+
+namespace fogline {
+namespace {
+
+/// A run that is to replace an older log may end before it has begun to.
+bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
+  try {
+    return ReadFront(log).run_id == run_id && HasSteps(log);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// A word of a command as a shell takes it.
+std::string Word(std::string_view text) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-,=+";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
+  if (options.log.empty()) return "";
+  if (!HasStepsOf(run_id, options.log)) return "no log was written";
+  std::string text = fmt::format("the log so far: {}", PathText(options.log));
+  if (!options.command_to_go_on.empty()) text += "\n  to go on: " + options.command_to_go_on;
+  return text;
+}
+
+std::string CommandToGoOn(const ExperimentOptions& options) {
+  if (options.log.empty() || options.realtime) return "";
+  std::string command = "fogline run --resume " + Word(options.log.string());
+  if (IsLcmUrl(options.transport)) {
+    command += " --lcm-url " + Word(options.transport);
+  } else if (options.transport != ExperimentOptions().transport) {
+    command += " --transport " + options.transport;
+  }
+  for (const Role role : options.external) command += fmt::format(" --external {}", NameOf(role));
+  if (options.pace != 0) command += fmt::format(" --pace {:g}", options.pace);
+  for (const std::string& word : ToArguments(options.traffic)) command += " " + Word(word);
+  return command;
+}
+
+}  // namespace fogline

@@ -1,0 +1,58 @@
+#include "tools/fogline/resumed_log.h"
+
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "scenario/loader.h"
+#include "scenario/wording.h"
+#include "services/runtime/wire.h"
+
+namespace fogline {
+namespace {
+
+// The roles of a runner that was killed are killed with it, which takes the kernel a moment; their
+// recorder has the log for as long.
+constexpr Duration kEndOfOthers = milliseconds(2000);
+
+[[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
+  throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
+}
+
+/// The path of a file that is there, and is an event log. @throws InputError
+const std::filesystem::path& Readable(const std::filesystem::path& log) {
+  ReadFront(log);
+  return log;
+}
+
+Resumption Read(const std::filesystem::path& log) {
+  LogFront front = ReadFront(log);
+  if (!front.parts.Complete()) {
+    Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
+  }
+  if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
+  if (front.realtime) {
+    Refuse(log, "a run in real time: the road does not wait, only runs in lockstep can go on");
+  }
+  if (front.type_fingerprint != TypeFingerprint()) {
+    Refuse(log, "the log was made with other message types, by another version of Fogline");
+  }
+  const Remains remains = ReadRemains(log, front);
+  if (!remains.final) {
+    if (const std::string odd = OddEnd(log, front, remains); !odd.empty()) {
+      Refuse(log, odd + ": this is not how fogline run leaves a log");
+    }
+  }
+  return {.front = std::move(front), .remains = remains};
+}
+
+}  // namespace
+
+ResumedLog::ResumedLog(const std::filesystem::path& log)
+    : lock_(Readable(log), FileLock::Kind::kOwn, "--resume", "run", kEndOfOthers),
+      resumption_(Read(log)),
+      scenario_(ParseScenario(resumption_.front.parts.Text(), log.string())) {
+  CheckPossible(scenario_, log);
+}
+
+}  // namespace fogline

@@ -1,0 +1,17 @@
+// Lets a Java program hear LCM traffic that stays on this machine (ttl=0):
+//
+//   LD_PRELOAD=.../libfogline_hear_loopback.so java ...
+//
+// Fogline sends that over loopback (services/runtime/lcm_sockets.h). On Linux a socket hears a
+// multicast group on every interface where any process has joined it, unless it says no
+// (IP_MULTICAST_ALL, see ip(7)). Java says no for each of its sockets, and LCM's Java gives no way to
+// name an interface; so this says nothing in Java's place.
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+int setsockopt(int socket, int level, int name, const void* value, socklen_t size) {
+  if (level == IPPROTO_IP && name == IP_MULTICAST_ALL) return 0;
+  return (int)syscall(SYS_setsockopt, socket, level, name, value, size);
+}

@@ -1,0 +1,33 @@
+#include "tools/sweep/row_sums.h"
+
+#include <boost/crc.hpp>
+
+#include <fmt/core.h>
+
+namespace fogline {
+
+std::filesystem::path SumsFile(const std::filesystem::path& csv) {
+  return std::filesystem::path(csv) += ".sums";
+}
+
+std::string SumLine(std::string_view row) {
+  boost::crc_32_type sum;
+  sum.process_bytes(row.data(), row.size());
+  return fmt::format("{:08x}\n", sum.checksum());
+}
+
+RowChecker::RowChecker(const std::filesystem::path& csv) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(SumsFile(csv), ignored)) {
+    sums_.open(SumsFile(csv), std::ios::binary);
+  }
+  has_sums_ = sums_.is_open() && sums_.peek() != std::ifstream::traits_type::eof();
+}
+
+RowChecker::Verdict RowChecker::Check(std::string_view row) {
+  std::string line;
+  if (!std::getline(sums_, line) || sums_.eof()) return Verdict::kNoSum;
+  return line + '\n' == SumLine(row) ? Verdict::kSame : Verdict::kOther;
+}
+
+}  // namespace fogline

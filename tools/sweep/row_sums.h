@@ -1,0 +1,43 @@
+// Checksums of the rows in a sweep's file, one line each in "FILE.sums" beside it. By them a sweep
+// that goes on, and a merge, see that a row is not the one that was written: a digit that was
+// edited, a file that a power cut has damaged. They are no protection against anybody's intent.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace fogline {
+
+/// "FILE.sums".
+std::filesystem::path SumsFile(const std::filesystem::path& csv);
+
+/// The line of a row: its CRC-32 (that of zlib and POSIX's gzip) in hexadecimal digits.
+/// @param row without the line feed
+std::string SumLine(std::string_view row);
+/// Bytes of it.
+inline constexpr std::int64_t kSumLineBytes = 9;
+
+/// Checks the rows of a file in their order.
+class RowChecker {
+ public:
+  enum class Verdict {
+    kSame,
+    kOther,  // not the row that was written
+    kNoSum,  // nor is there one for any row behind it
+  };
+
+  explicit RowChecker(const std::filesystem::path& csv);
+
+  /// Whether there are any: not beside a file that was copied without them.
+  bool has_sums() const { return has_sums_; }
+  Verdict Check(std::string_view row);
+
+ private:
+  std::ifstream sums_;
+  bool has_sums_;
+};
+
+}  // namespace fogline
