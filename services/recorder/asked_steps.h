@@ -9,9 +9,9 @@
 
 namespace fogline {
 
-/// A set of channels of steps. Who asks again for what is still to come changes nothing, so the
-/// answers to many that are in a hurry are no more than those to one. They come step by step, as
-/// all who catch up need them, and round and round, so nobody waits for ever behind another.
+/// A set of channels of steps. A request that is repeated adds nothing, so many roles that repeat
+/// theirs get no more answers than one. The answers come in the order of the steps, as roles that
+/// catch up need them. After the last step the first one comes again, so every request is answered.
 class AskedSteps {
  public:
   /// Channels by place in kChannels, a bit for each.

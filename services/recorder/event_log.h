@@ -102,8 +102,8 @@ std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
 /// Bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
-/// Where the first event in `bytes` begins, from `offset` on, that `accept` recognises: there may
-/// be something else before it, such as the end of another event. Nothing if there is none.
+/// The place of the first event in `bytes`, from `offset` on, that `accept` recognises. Other bytes
+/// may stand before it, such as the end of another event. std::nullopt if there is no such event.
 std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept);
 

@@ -47,7 +47,7 @@ class Recorder::AnsweringRule final : public LockstepRule {
 Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
                    Existing existing)
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
-  // In memory there is nobody from outside who could ask too much.
+  // In memory no process from outside can ask too much.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
   budget_ = AnswerBudget(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);

@@ -73,7 +73,7 @@ int LackOfDescriptors() {
   return error;
 }
 
-// Whoever hears nothing for so long, five signs of life of a run, sees to it that it could.
+// A bus that hears nothing for so long, five signs of life of a run, joins its group again.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace

@@ -163,7 +163,7 @@ class Conductor {
   void OnUndead(Role role, const status_t& status, TimePoint now);
   void FailForTwo(const status_t& one, const status_t& other);
   bool HasRival(Role role, TimePoint now) const;
-  /// The process that has the place of an external role, 0 while there is none.
+  /// Instance of the process that is an external role; 0 while none is.
   std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);

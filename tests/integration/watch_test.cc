@@ -286,7 +286,7 @@ TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
 }
 
 TEST(TopTest, EndsWhenItsTerminalIsGone) {
-  // GIVEN top on a terminal that is not that of its session: no signal tells it
+  // GIVEN top on a terminal that does not control it: no signal tells of its end
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
