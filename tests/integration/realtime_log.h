@@ -55,6 +55,19 @@ struct Log {
 
   std::int64_t last() const { return truth.rbegin()->first; }
 
+  /// How many steps a role had to do without an input that was due, by its own count.
+  std::int64_t MissesOf(const std::string& role) const {
+    std::map<std::int64_t, std::int64_t> of_instance;
+    for (const status_t& said : status) {
+      if (said.role != role) continue;
+      std::int64_t& most = of_instance[said.instance];
+      most = std::max(most, said.deadline_misses);
+    }
+    std::int64_t misses = 0;
+    for (const auto& [instance, most] : of_instance) misses += most;
+    return misses;
+  }
+
   /// The first STATUS from a step on in which somebody has lost a channel.
   struct Loss {
     std::int64_t step;  // that was under way
@@ -106,6 +119,13 @@ struct Log {
   std::vector<status_t> status;
 };
 
+/// @return the message of a step, nullptr if there is none
+template <class M>
+const M* Find(const std::map<std::int64_t, M>& messages, std::int64_t step) {
+  const auto at = messages.find(step);
+  return at == messages.end() ? nullptr : &at->second;
+}
+
 /// One of the cars in a TRUTH.
 struct Car {
   double speed_mps;
@@ -118,32 +138,57 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// The host does in each step what the command for it says, and without one what it did before.
+/// In each step somebody obeys what came for it, or holds on to what was before: because nothing
+/// came, or because it came too late to be used. The log tells what came; how often it came too
+/// late, the process that had to do without it.
+class Obedience {
+ public:
+  /// @param role that obeys
+  Obedience(const Log& log, const std::string& role) : role_(role), misses_(log.MissesOf(role)) {}
+  ~Obedience() {
+    EXPECT_LE(late_, misses_) << role_ << " does not say how often it was not in time";
+  }
+  Obedience(const Obedience&) = delete;
+  Obedience& operator=(const Obedience&) = delete;
+
+  void Expect(std::int64_t step, double done, std::optional<double> told, double held) {
+    if (told && std::abs(done - *told) <= kRounding) return;
+    if (told) ++late_;
+    EXPECT_NEAR(done, held, kRounding) << role_ << " neither obeys nor holds on at step " << step;
+  }
+
+ private:
+  std::string role_;
+  std::int64_t misses_;
+  std::int64_t late_ = 0;
+};
+
+/// The host does in each step what the command for it says, and that is the human's when he drives.
 inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
+  Obedience world(log, "world");
+  Obedience arbitrator(log, "arbitrator");
   for (std::int64_t step = from; step < to; ++step) {
     ASSERT_TRUE(log.truth.contains(step + 1)) << step;
-    const double applied = log.truth.at(step + 1).host_acceleration_mps2;
-    if (!log.command.contains(step)) {
-      EXPECT_NEAR(applied, log.truth.at(step).host_acceleration_mps2, kRounding)
-          << "held at step " << step;
-      continue;
-    }
-    const arbitration_t& command = log.command.at(step);
-    EXPECT_NEAR(applied, command.acceleration_mps2, kRounding) << "at step " << step;
-    if (command.mode == arbitration_t::HUMAN && log.driver.contains(step)) {
-      EXPECT_NEAR(command.acceleration_mps2, log.driver.at(step).acceleration_mps2, kRounding);
-    }
+    const arbitration_t* command = Find(log.command, step);
+    world.Expect(step, log.truth.at(step + 1).host_acceleration_mps2,
+                 command ? std::optional(command->acceleration_mps2) : std::nullopt,
+                 log.truth.at(step).host_acceleration_mps2);
+    const driver_command_t* human = Find(log.driver, step);
+    if (command == nullptr || command->mode != arbitration_t::HUMAN || human == nullptr) continue;
+    const driver_command_t* before = Find(log.driver, step - 1);
+    arbitrator.Expect(step, command->acceleration_mps2, human->acceleration_mps2,
+                      before ? before->acceleration_mps2 : human->acceleration_mps2);
   }
 }
 
 /// The same of the following car.
 inline void ExpectFollowerObeys(const Log& log, std::int64_t from, std::int64_t to) {
+  Obedience world(log, "world");
   for (std::int64_t step = from; step < to; ++step) {
-    const double applied = Follower(log.truth.at(step + 1)).acceleration_mps2;
-    const double expected = log.follower.contains(step)
-                                ? log.follower.at(step).acceleration_mps2.at(0)
-                                : Follower(log.truth.at(step)).acceleration_mps2;
-    EXPECT_NEAR(applied, expected, kRounding) << "follower at step " << step;
+    const follower_command_t* told = Find(log.follower, step);
+    world.Expect(step, Follower(log.truth.at(step + 1)).acceleration_mps2,
+                 told ? std::optional(told->acceleration_mps2.at(0)) : std::nullopt,
+                 Follower(log.truth.at(step)).acceleration_mps2);
   }
 }
 
