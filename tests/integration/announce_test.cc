@@ -1,7 +1,7 @@
 // A run on a port of its own is found without being told where it is: by top, doctor and roles.
 // Each test has a meeting address of its own: what others announce on LCM's default address is
 // nothing to it.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

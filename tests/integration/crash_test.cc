@@ -1,5 +1,5 @@
 // Processes of a run are killed or hang, and the run ends as if nothing had happened.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // Real time on networks that lose one channel for good: who does not hear it is named, and started
 // again if it is the runner's; and no run ends well with a role that is deaf.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "services/recorder/event_log.h"

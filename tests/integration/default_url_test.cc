@@ -1,6 +1,6 @@
 // Every program obeys LCM_DEFAULT_URL, LCM's own included; and a wait for what is not there says
 // what starts it, and has a limit.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

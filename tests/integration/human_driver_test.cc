@@ -1,5 +1,5 @@
 // A driver with weaknesses: one digest however the messages travel, whoever reads whom.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

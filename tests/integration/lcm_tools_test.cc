@@ -1,6 +1,6 @@
 // Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it,
 // lcm-spy shows it.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

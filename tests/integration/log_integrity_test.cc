@@ -1,7 +1,7 @@
 // The log and the traffic of a run are changed while it goes on, or later: the run, or the reader
 // of the log, says so.
 #include <fcntl.h>
-#include <gmock/gmock.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>

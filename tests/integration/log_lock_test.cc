@@ -1,6 +1,6 @@
 // A log belongs to one run, and a folder of logs to one table, for as long as they write and read
 // there.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // Real time on networks that lose much for a while: when they are clean again every role computes
 // again, whatever was lost, and a run that ends well has a whole log.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

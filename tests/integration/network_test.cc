@@ -1,5 +1,5 @@
 // The lockstep on networks of the kernel's own: machines with addresses of their own, and loss.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // What a run does when messages cannot be sent for a while: an interface, its address or its route
 // goes away and comes back, a firewall drops what is sent. Each in a network of the kernel's own.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -1,6 +1,6 @@
 // Runs in real time: roles are killed or stopped while the automation drives, and what counts is
 // what the cars do. Everything is judged from the log.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

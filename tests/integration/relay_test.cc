@@ -1,6 +1,6 @@
 // fogline-relay with real programs: ours and Debian's. (Clients that misbehave:
 // relay_clients_test.cc.)
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 

@@ -1,5 +1,5 @@
 // A run whose runner has died, or was interrupted, goes on from its log: `fogline run --resume`.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

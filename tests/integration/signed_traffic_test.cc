@@ -1,5 +1,5 @@
 // Who has no key, or another one, or only what others have said, has no effect on a signed run.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // `fogline spy` starts LCM's lcm-spy: with what it needs, on the network where a run is. What
 // lcm-spy shows then is tested in lcm_tools_test.cc.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

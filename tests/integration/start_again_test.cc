@@ -1,6 +1,6 @@
 // A process of a run is killed while the system will not start it again: the program is away, or
 // there is no room for another process. And the run's own relay is killed.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // Roles that were built outside of this tree take the place of ours: as programs that know the
 // message types alone (bare_driver.cc), and as classes on Fogline's own runtime (my_driver.cc).
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // `fogline sweep` as a person uses it: the real program, killed, resumed, given nonsense; what
 // counts is the bytes of its file.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // A driver who must be asked: the same run however its messages travel, and a log that tells it.
 #include <string>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

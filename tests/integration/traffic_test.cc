@@ -2,7 +2,7 @@
 // measured car by car; and one clear word about what cannot be.
 #include <fstream>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

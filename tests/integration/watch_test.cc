@@ -1,7 +1,7 @@
 // `fogline top` on live traffic and on a log that lcm-logplayer plays; `fogline doctor` on machines
 // with and without a network.
 #include <fcntl.h>
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // A closed loop that is used again and again computes what a new one computes.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "tests/property/acc/draw.h"

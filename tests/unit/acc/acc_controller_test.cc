@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"

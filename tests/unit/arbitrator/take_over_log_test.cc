@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
 #include "services/minimal_risk/modes.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"

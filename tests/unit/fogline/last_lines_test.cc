@@ -1,6 +1,6 @@
 #include "tools/fogline/last_lines.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

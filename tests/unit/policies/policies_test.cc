@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "scenario/loader.h"

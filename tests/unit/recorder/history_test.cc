@@ -1,7 +1,7 @@
 // What a log has of a run, and where its steps lie in it, however long it is.
 #include "services/recorder/history.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

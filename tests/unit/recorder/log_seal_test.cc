@@ -1,7 +1,7 @@
 // The seal of a log: what it shows, and what it cannot.
 #include "services/recorder/log_seal.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

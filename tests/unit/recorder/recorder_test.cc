@@ -1,7 +1,7 @@
 // The recorder on a bus in memory: what it answers for, and how it goes on with a log.
 #include "services/recorder/recorder.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 

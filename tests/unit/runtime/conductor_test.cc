@@ -1,6 +1,6 @@
 #include "services/runtime/conductor.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // A node's part in a run, by the example of the driver: TRUTH in, DRIVER_COMMAND out.
 #include "services/runtime/node.h"
 
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 

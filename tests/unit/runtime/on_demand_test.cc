@@ -1,6 +1,6 @@
 // Inputs that only some scenarios demand, by the example of a driver who reads HOST_COMMAND, whose
 // producer comes after him.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // When the roles of a run in real time compute, and with what. Messages come at once; time is what
 // Poll() is told, and a period is so long that the time that the test itself takes is nothing to
 // it.
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include <fmt/core.h>
-#include <gmock/gmock.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
 #include "services/runtime/seal.h"
