@@ -35,22 +35,6 @@ FileText Unreadable(const std::string& why) {
 }
 
 // An open file, closed at the end of a scope.
-class OpenFile {
- public:
-  // Does not wait for a process that opens the other end of a pipe.
-  explicit OpenFile(const std::filesystem::path& file)
-      : fd_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (fd_ >= 0) close(fd_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 // Why nothing is read from what is there; "" for a file or pipe.
 std::string WhyNotRead(mode_t mode) {
   if (S_ISDIR(mode)) return "it is a folder";
@@ -107,6 +91,13 @@ std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view e
   }
   const auto name = nearest(file.filename().string(), other);
   return name ? DidYouMean((folder / *name).string()) : "";
+}
+
+OpenFile::OpenFile(const std::filesystem::path& file)
+    : fd_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
+
+OpenFile::~OpenFile() {
+  if (fd_ >= 0) close(fd_);
 }
 
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,

@@ -30,6 +30,21 @@ FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
 /// Why what is there is no file to be read, "" if it is one: for programs that map or seek.
 std::string WhyNoRegularFile(const std::filesystem::path& file);
 
+/// A file opened for reading, closed at the end. Opening waits for no process at the other end of a
+/// pipe.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  /// -1, and errno says why, if it could not be opened.
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
 /// Writes all bytes to an open file. @return 0, or errno
 /// @param stop whether a signal that interrupts the call ends it, with EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);

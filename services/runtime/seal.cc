@@ -82,21 +82,6 @@ constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SealKey::Secret>;
 // A key, its line end and one character more: a longer file is none.
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
-class OpenFile {
- public:
-  explicit OpenFile(const std::filesystem::path& file)
-      : fd_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (fd_ >= 0) close(fd_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 /// How many bytes there are, at most those of `text`. @return -1 and errno if it cannot be read
 ssize_t ReadAll(int fd, KeyText& text) {
   std::size_t size = 0;

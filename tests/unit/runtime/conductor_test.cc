@@ -1,75 +1,20 @@
 #include "services/runtime/conductor.h"
 
-#include <gmock/gmock-more-matchers.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "services/runtime/digest.h"
-#include "services/runtime/this_process.h"
-#include "tests/unit/runtime/script.h"
+#include "tests/unit/runtime/conductor_fixture.h"
 
 namespace fogline {
 namespace {
 
+using test::ConductorTest;
 using test::Script;
 using testing::HasSubstr;
-
-class ConductorTest : public testing::Test {
- protected:
-  ConductorTest() {
-    for (const RoleInfo& info : kRoles) {
-      status_t& status = roles_[static_cast<std::size_t>(info.role)];
-      status = Script::Of<status_t>(-1);
-      status.role = info.name;
-      status.host = HostName();
-      status.pid = 100 + static_cast<std::int32_t>(info.role);
-      status.instance = status.pid;
-      status.state = status_t::READY;
-      status.scenario_hash = HashOf(script_.text());
-      status.type_fingerprint = TypeFingerprint();
-    }
-  }
-
-  status_t& role(Role role) { return roles_[static_cast<std::size_t>(role)]; }
-  void SayStatus(Role who) {
-    ++role(who).sequence;
-    script_.Say(role(who));
-  }
-  /// Says something on behalf of everybody, so that the run is at a step.
-  void BeAtStep(std::int64_t step) {
-    for (const RoleInfo& info : kRoles) {
-      role(info.role).header.step = step;
-      role(info.role).state = step < 0 ? status_t::READY : status_t::RUNNING;
-      SayStatus(info.role);
-    }
-    Poll(Clock::now());
-  }
-  void Poll(TimePoint now) {
-    conductor_.Poll(now);
-    script_.bus().Drain();
-  }
-  /// Looks at the clock until then as often as a runner does.
-  static void PollUntil(Conductor& conductor, TimePoint end) {
-    for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) conductor.Poll(now);
-    conductor.Poll(end);
-  }
-  /// Another process takes the place of a role.
-  void Replace(Role who) {
-    role(who).pid += 1000;
-    role(who).instance += 1000;
-    role(who).sequence = 0;
-    role(who).header.step = -1;
-    role(who).state = status_t::READY;
-  }
-
-  Script script_;
-  std::vector<run_t>& said_ = script_.Listen<run_t>();
-  Conductor conductor_{script_.bus(), {.run_id = Script::kRunId, .scenario_text = script_.text()}};
-  std::array<status_t, kRoles.size()> roles_{};
-};
 
 TEST_F(ConductorTest, SaysPrepareUntilEveryRoleIsReadyAndThenGo) {
   Poll(Clock::now());
@@ -109,16 +54,6 @@ TEST_F(ConductorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady) {
   EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning);
 }
 
-TEST_F(ConductorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
-  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
-  SayStatus(Role::kFusion);
-  EXPECT_FALSE(conductor_.member(Role::kFusion).status);
-  // Unless the system has given its number to the next one.
-  conductor_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
-  SayStatus(Role::kFusion);
-  EXPECT_TRUE(conductor_.member(Role::kFusion).status);
-}
-
 TEST_F(ConductorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
   role(Role::kFusion).repairs_asked = 3;
   BeAtStep(-1);
@@ -127,43 +62,6 @@ TEST_F(ConductorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
   role(Role::kFusion).repairs_asked = 4;
   SayStatus(Role::kFusion);
   EXPECT_EQ(conductor_.Total(&status_t::repairs_asked), 7);
-}
-
-TEST_F(ConductorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
-  using testing::ElementsAre;
-  using testing::IsEmpty;
-  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
-                                      .scenario_text = script_.text(),
-                                      .stall_limit = milliseconds(60'000),
-                                      .external = {Role::kDriver, Role::kAcc}});
-  const TimePoint now = Clock::now();
-  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kAcc, Role::kDriver));
-  SayStatus(Role::kAcc);
-  role(Role::kDriver).state = status_t::WAITING;
-  SayStatus(Role::kDriver);
-  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
-  BeAtStep(-1);
-  EXPECT_THAT(conductor.Awaited(now), IsEmpty());
-  // WHEN none of them is heard for more than a second of the run
-  const TimePoint later = Clock::now() + milliseconds(1200);
-  PollUntil(conductor, later);
-  EXPECT_THAT(conductor.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
-}
-
-TEST_F(ConductorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
-  BeAtStep(-1);
-  const status_t first = role(Role::kAcc);
-  Replace(Role::kAcc);
-  SayStatus(Role::kAcc);
-  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning) << "the first may be dead";
-  // WHEN the first speaks long after the second has come
-  const TimePoint end = Clock::now() + milliseconds(120);
-  while (Clock::now() < end) Poll(Clock::now());
-  role(Role::kAcc) = first;
-  SayStatus(Role::kAcc);
-  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
-  EXPECT_THAT(conductor_.error(), HasSubstr("two processes are the acc: pid 104 on "));
-  EXPECT_THAT(conductor_.error(), HasSubstr(" and pid 1104 on "));
 }
 
 TEST_F(ConductorTest, CountsTheProgressOfARoleThatCatchesUp) {
@@ -264,72 +162,6 @@ TEST_F(ConductorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
   EXPECT_EQ(conductor.step(), 1);
 }
 
-/// A run whose driver is started elsewhere.
-class ExternalDriverTest : public ConductorTest {
- protected:
-  /// What the run says of who is its driver.
-  std::int64_t Holder() {
-    PassTime(milliseconds(300));  // it repeats itself in less
-    script_.bus().Drain();
-    EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
-    return said_.back().holder.at(0);
-  }
-  /// Lets time pass for the runner.
-  void PassTime(milliseconds time) {
-    PollUntil(external_, Clock::now() + later_ + time);
-    later_ += time;
-  }
-  status_t OtherDriver() {
-    status_t other = role(Role::kDriver);
-    other.instance += 1000;
-    other.pid += 1000;
-    other.state = status_t::READY;
-    return other;
-  }
-
-  Conductor external_{script_.bus(),
-                      {.run_id = Script::kRunId,
-                       .scenario_text = script_.text(),
-                       .stall_limit = milliseconds(60'000),
-                       .external = {Role::kDriver},
-                       .restarts = 10}};
-  Duration later_{};
-};
-
-TEST_F(ExternalDriverTest, HasItsPlaceFromItsFirstWordUntilItIsSilent) {
-  EXPECT_EQ(Holder(), 0);
-  role(Role::kDriver).state = status_t::WAITING;
-  SayStatus(Role::kDriver);
-  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
-  PassTime(milliseconds(1100));
-  EXPECT_EQ(Holder(), 0);
-  EXPECT_EQ(said_.back().stall_ms, 60'000);
-}
-
-TEST_F(ExternalDriverTest, IsOneWhenTheOtherLeavesThatHearsSo) {
-  BeAtStep(-1);
-  status_t other = OtherDriver();
-  script_.Say(other);
-  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
-  EXPECT_EQ(said_.back().phase, run_t::PREPARE) << "two of them: the run does not begin";
-  other.state = status_t::LEFT;
-  ++other.sequence;
-  script_.Say(other);
-  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
-  EXPECT_EQ(said_.back().phase, run_t::GO);
-  EXPECT_EQ(external_.member(Role::kDriver).replaced, 0);
-}
-
-TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
-  BeAtStep(-1);
-  role(Role::kDriver).state = status_t::LEFT;
-  role(Role::kDriver).error = "went to run 8";
-  SayStatus(Role::kDriver);
-  EXPECT_EQ(Holder(), 0);
-  script_.Say(OtherDriver());
-  EXPECT_EQ(Holder(), OtherDriver().instance);
-}
-
 TEST_F(ConductorTest, SaysWithTheCulpritWhyItCannotBeStartedAgain) {
   Conductor hasty(script_.bus(), {.run_id = Script::kRunId,
                                   .scenario_text = script_.text(),
@@ -418,38 +250,6 @@ TEST_F(ConductorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLastSte
   role(Role::kRecorder).log_bytes = 4712;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(conductor_.member(Role::kRecorder).status->log_bytes, 4712);
-}
-
-TEST_F(ConductorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
-  RoleBuilds builds;
-  builds.fill(4711);
-  for (const bool wanted : {false, true}) {
-    Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
-                                        .scenario_text = script_.text(),
-                                        .builds = builds,
-                                        .same_build = wanted});
-    role(Role::kAcc).build_id = 4711;
-    SayStatus(Role::kAcc);
-    EXPECT_EQ(conductor.phase(), Conductor::Phase::kJoining) << conductor.error();
-    role(Role::kDriver).build_id = 17;
-    SayStatus(Role::kDriver);
-    EXPECT_EQ(conductor.phase() == Conductor::Phase::kFailed, wanted) << conductor.error();
-    if (!wanted) continue;
-    EXPECT_THAT(conductor.error(), HasSubstr("driver (pid "));
-    EXPECT_THAT(conductor.error(), HasSubstr(" is of build 0000000000000011, that of the runner is "
-                                             "0000000000001267 (--same-build)"));
-  }
-}
-
-TEST_F(ConductorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
-  RoleBuilds builds;
-  builds.fill(4711);
-  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
-                                      .scenario_text = script_.text(),
-                                      .builds = builds,
-                                      .same_build = true});
-  SayStatus(Role::kDriver);
-  EXPECT_THAT(conductor.error(), HasSubstr("does not say of which build it is (--same-build)"));
 }
 
 }  // namespace

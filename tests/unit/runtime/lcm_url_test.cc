@@ -1,8 +1,12 @@
 #include "services/runtime/lcm_url.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <ifaddrs.h>
 
+#include <array>
 #include <cstdlib>
+#include <string>
 
 #include "services/graph.h"
 #include "services/runtime/wire.h"
@@ -91,6 +95,23 @@ TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
     EXPECT_FALSE(MayBeAnnounced(url)) << url;
   }
   EXPECT_FALSE(MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
+}
+
+TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
+  ifaddrs* interfaces = nullptr;
+  ASSERT_EQ(getifaddrs(&interfaces), 0);
+  int tried = 0;
+  for (const ifaddrs* one = interfaces; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    const auto& address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    inet_ntop(AF_INET, &address, text.data(), text.size());
+    const std::string url = std::string("tcpq://") + text.data() + ":7700";
+    EXPECT_TRUE(MayBeAnnounced(url)) << url;
+    ++tried;
+  }
+  freeifaddrs(interfaces);
+  EXPECT_GT(tried, 0);
 }
 
 // A part that was built without beacon_t takes part in a run as before.

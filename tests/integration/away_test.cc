@@ -1,0 +1,121 @@
+// Processes of a run are away for longer than any of them waits for another by default: stopped by
+// Ctrl-Z, frozen with their container, or behind a cable that is out.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "services/runtime/clock.h"
+#include "services/runtime/runner_watch.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+// Longer than a role waits for its runner.
+constexpr auto kAway = RunnerWatch::kGone + milliseconds(2000);
+
+/// A process and its children.
+std::vector<pid_t> FamilyOf(pid_t parent) {
+  const std::string id = std::to_string(parent);
+  std::ifstream children("/proc/" + id + "/task/" + id + "/children");
+  std::vector<pid_t> family{parent};
+  for (pid_t child = 0; children >> child;) family.push_back(child);
+  return family;
+}
+
+/// A run with its driver on another machine.
+struct RunOnTwoMachines {
+  const Lab& lab;
+  const Background& run;
+  const Background& driver;
+};
+
+/// What is away meanwhile, and how the run is told of it.
+struct Absence {
+  std::string name;
+  std::vector<std::string> options;
+  std::function<void(const RunOnTwoMachines&)> begin;
+  std::function<void(const RunOnTwoMachines&)> end;
+};
+void PrintTo(const Absence& absence, std::ostream* out) { *out << absence.name; }
+
+// As an absence is announced that is longer than a run waits for a role.
+const std::vector<std::string> kWaitLonger{"--stall-timeout", "60"};
+
+Absence Stopped(std::string name, std::vector<std::string> options,
+                std::vector<pid_t> (*processes)(const RunOnTwoMachines&)) {
+  const auto signal = [processes](int number) {
+    return [processes, number](const RunOnTwoMachines& run) {
+      for (const pid_t pid : processes(run)) kill(pid, number);
+    };
+  };
+  return {.name = std::move(name),
+          .options = std::move(options),
+          .begin = signal(SIGSTOP),
+          .end = signal(SIGCONT)};
+}
+
+const Absence kEverything = Stopped("everything", {}, [](const RunOnTwoMachines& run) {
+  std::vector<pid_t> all = FamilyOf(run.run.pid());
+  all.push_back(run.driver.pid());
+  return all;
+});
+const Absence kRunner = Stopped(
+    "runner", {}, [](const RunOnTwoMachines& run) { return std::vector<pid_t>{run.run.pid()}; });
+const Absence kDriver = Stopped("driver", kWaitLonger, [](const RunOnTwoMachines& run) {
+  return std::vector<pid_t>{run.driver.pid()};
+});
+const Absence kCable = {.name = "cable",
+                        .options = kWaitLonger,
+                        .begin = [](const RunOnTwoMachines& run) { run.lab.Unplug(1); },
+                        .end = [](const RunOnTwoMachines& run) { run.lab.Plug(1); }};
+
+class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence> {};
+
+TEST_P(AwayTest, CostsNoRunThatWaitsForLonger) {
+  const Lab lab(2);
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  // Five seconds, of which the first are over when something goes away.
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  std::vector<std::string> command{Program("fogline"),
+                                   "run",
+                                   "scenario/paper.json",
+                                   "--json",
+                                   "--external",
+                                   "driver",
+                                   "--lcm-url",
+                                   kUrl,
+                                   "--pace",
+                                   "10",
+                                   "--log",
+                                   log};
+  command.insert(command.end(), GetParam().options.begin(), GetParam().options.end());
+  Background run(lab[0].On(command));
+  ASSERT_TRUE(run.WaitForErr("waiting for the driver")) << run.Err();
+  ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
+  const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
+  GetParam().begin(both);
+  std::this_thread::sleep_for(kAway);  // the absence itself
+  GetParam().end(both);
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  EXPECT_EQ(result["steps"], 500);
+  EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
+INSTANTIATE_TEST_SUITE_P(Some, AwayTest, testing::Values(kEverything),
+                         [](const auto& absence) { return absence.param.name; });
+INSTANTIATE_TEST_SUITE_P(Campaign, AwayTest, testing::Values(kRunner, kDriver, kCable),
+                         [](const auto& absence) { return absence.param.name; });
+
+}  // namespace
+}  // namespace fogline::test

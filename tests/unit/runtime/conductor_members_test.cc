@@ -1,0 +1,162 @@
+// Which processes take part in a run.
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "services/runtime/conductor.h"
+#include "tests/unit/runtime/conductor_fixture.h"
+
+namespace fogline {
+namespace {
+
+using test::ConductorTest;
+using test::Script;
+using testing::HasSubstr;
+
+TEST_F(ConductorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
+  conductor_.Bury(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_FALSE(conductor_.member(Role::kFusion).status);
+  // Unless the system has given its number to the next one.
+  conductor_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_TRUE(conductor_.member(Role::kFusion).status);
+}
+
+TEST_F(ConductorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
+  using testing::ElementsAre;
+  using testing::IsEmpty;
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .stall_limit = milliseconds(60'000),
+                                      .external = {Role::kDriver, Role::kAcc}});
+  const TimePoint now = Clock::now();
+  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kAcc, Role::kDriver));
+  SayStatus(Role::kAcc);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(conductor.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
+  BeAtStep(-1);
+  EXPECT_THAT(conductor.Awaited(now), IsEmpty());
+  // WHEN none of them is heard for more than a second of the run
+  const TimePoint later = Clock::now() + milliseconds(1200);
+  PollUntil(conductor, later);
+  EXPECT_THAT(conductor.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
+}
+
+TEST_F(ConductorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
+  BeAtStep(-1);
+  const status_t first = role(Role::kAcc);
+  Replace(Role::kAcc);
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kRunning) << "the first may be dead";
+  // WHEN the first speaks long after the second has come
+  const TimePoint end = Clock::now() + milliseconds(120);
+  while (Clock::now() < end) Poll(Clock::now());
+  role(Role::kAcc) = first;
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(conductor_.phase(), Conductor::Phase::kFailed);
+  EXPECT_THAT(conductor_.error(), HasSubstr("two processes are the acc: pid 104 on "));
+  EXPECT_THAT(conductor_.error(), HasSubstr(" and pid 1104 on "));
+}
+
+/// A run whose driver is started elsewhere.
+class ExternalDriverTest : public ConductorTest {
+ protected:
+  /// What the run says of who is its driver.
+  std::int64_t Holder() {
+    PassTime(milliseconds(300));  // it repeats itself in less
+    script_.bus().Drain();
+    EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
+    return said_.back().holder.at(0);
+  }
+  /// Lets time pass for the runner.
+  void PassTime(milliseconds time) {
+    PollUntil(external_, Clock::now() + later_ + time);
+    later_ += time;
+  }
+  status_t OtherDriver() {
+    status_t other = role(Role::kDriver);
+    other.instance += 1000;
+    other.pid += 1000;
+    other.state = status_t::READY;
+    return other;
+  }
+
+  Conductor external_{script_.bus(),
+                      {.run_id = Script::kRunId,
+                       .scenario_text = script_.text(),
+                       .stall_limit = milliseconds(60'000),
+                       .external = {Role::kDriver},
+                       .restarts = 10}};
+  Duration later_{};
+};
+
+TEST_F(ExternalDriverTest, HasItsPlaceFromItsFirstWordUntilItIsSilent) {
+  EXPECT_EQ(Holder(), 0);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  PassTime(milliseconds(1100));
+  EXPECT_EQ(Holder(), 0);
+  EXPECT_EQ(said_.back().stall_ms, 60'000);
+}
+
+TEST_F(ExternalDriverTest, IsOneWhenTheOtherLeavesThatHearsSo) {
+  BeAtStep(-1);
+  status_t other = OtherDriver();
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE) << "two of them: the run does not begin";
+  other.state = status_t::LEFT;
+  ++other.sequence;
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  EXPECT_EQ(external_.member(Role::kDriver).replaced, 0);
+}
+
+TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
+  BeAtStep(-1);
+  role(Role::kDriver).state = status_t::LEFT;
+  role(Role::kDriver).error = "went to run 8";
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), 0);
+  script_.Say(OtherDriver());
+  EXPECT_EQ(Holder(), OtherDriver().instance);
+}
+
+TEST_F(ConductorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  for (const bool wanted : {false, true}) {
+    Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                        .scenario_text = script_.text(),
+                                        .builds = builds,
+                                        .same_build = wanted});
+    role(Role::kAcc).build_id = 4711;
+    SayStatus(Role::kAcc);
+    EXPECT_EQ(conductor.phase(), Conductor::Phase::kJoining) << conductor.error();
+    role(Role::kDriver).build_id = 17;
+    SayStatus(Role::kDriver);
+    EXPECT_EQ(conductor.phase() == Conductor::Phase::kFailed, wanted) << conductor.error();
+    if (!wanted) continue;
+    EXPECT_THAT(conductor.error(), HasSubstr("driver (pid "));
+    EXPECT_THAT(conductor.error(), HasSubstr(" is of build 0000000000000011, that of the runner is "
+                                             "0000000000001267 (--same-build)"));
+  }
+}
+
+TEST_F(ConductorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
+  RoleBuilds builds;
+  builds.fill(4711);
+  Conductor conductor(script_.bus(), {.run_id = Script::kRunId,
+                                      .scenario_text = script_.text(),
+                                      .builds = builds,
+                                      .same_build = true});
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(conductor.error(), HasSubstr("does not say of which build it is (--same-build)"));
+}
+
+}  // namespace
+}  // namespace fogline
