@@ -9,7 +9,7 @@
 namespace fogline {
 
 /// A log that no other run can have until the end of this object. Removed then if there is no step
-/// in it, because the run never began.
+/// in it, because the run never began; an older log that it replaces comes back.
 class LogOfRun {
  public:
   /// A run without a log.
@@ -18,6 +18,11 @@ class LogOfRun {
   explicit LogOfRun(const std::filesystem::path& log);
   /// @param lock on the file
   LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock);
+  /// Puts an empty log in the place of an older one, which is kept beside it as ".fogline-*" until
+  /// the end of this object. Where the file system cannot exchange two files, the older log is
+  /// written over.
+  /// @param lock on the older log
+  static LogOfRun InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock);
   ~LogOfRun();
   LogOfRun(LogOfRun&&) = default;
   LogOfRun(const LogOfRun&) = delete;
@@ -29,6 +34,7 @@ class LogOfRun {
  private:
   std::filesystem::path path_;
   std::unique_ptr<FileLock> lock_;
+  std::filesystem::path older_;  // the older log; "" if there was none
 };
 
 /// Whether a log has more in it than a scenario and a seal. @throws InputError if it is no event

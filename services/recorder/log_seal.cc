@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "scenario/file.h"
 #include "services/runtime/digest.h"
+#include "services/runtime/this_process.h"
 
 namespace fogline {
 namespace {
@@ -68,12 +69,15 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
   std::vector<std::uint8_t> event;
   AppendEvent(before.events, kLogSealChannel, seal.header.utime, data, event);
   const int fd = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  const ssize_t size = fd < 0 ? -1 : write(fd, event.data(), event.size());
-  const std::string why = std::strerror(errno);
+  const int error =
+      fd < 0 ? errno : WriteAll(fd, {reinterpret_cast<const char*>(event.data()), event.size()});
+  // A part of a seal would make the whole log one that is cut off.
+  const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
   if (fd >= 0) close(fd);
-  if (size == std::ssize(event)) return;
-  throw std::runtime_error(
-      fmt::format("cannot write to {}: {}", log.string(), size < 0 ? why : "no space left"));
+  if (error == 0) return;
+  throw std::runtime_error(fmt::format(
+      "cannot seal {}: {}; {}", log.string(), WhyWriteFailed(error),
+      left ? "a part of the seal is in it" : "the log is as the run left it, without a seal"));
 }
 
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {

@@ -38,7 +38,7 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 /// Fills in `check`, and puts the event behind a log.
 /// @param log of which `before` is known to be all
 /// @param key signs it; nullptr: no signature
-/// @throws std::runtime_error if it cannot be written
+/// @throws std::runtime_error if it cannot be written; the log is then as it was
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const SealKey* key);
 

@@ -297,8 +297,61 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   const auto ours = Digest({log}, 0);
   const auto theirs = Digest({copy}, 0);
   EXPECT_EQ(theirs["digest"], ours["digest"]);
-  EXPECT_EQ(theirs["seal"], "holds");
+  EXPECT_EQ(theirs["seal"], "copy");
   EXPECT_EQ(theirs["builds"], ours["builds"]);
+}
+
+TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInRealTime) {
+  const std::string key = folder_.File("key");
+  SealKey::Create(key);
+  const std::string lockstep = DirectLog("lockstep.lcm", {"--key", key});
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--speed",
+                        "10", "--quiet", "--set", "/steps=50", "--key", key, "--log", log_})
+                .code,
+            0);
+  EXPECT_EQ(Digest({log_, "--key", key}, 0)["seal"], "holds");
+  constexpr std::size_t kTimeInEvent = 19;  // the last byte of it: sync word, number, time
+  for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
+    FlipLowestBit(log, kTimeInEvent);
+    FlipLowestBit(log, PlaceOf(log, kLogSealChannel).at + kTimeInEvent);
+    const auto digest = Digest({log, "--key", key}, code);
+    EXPECT_EQ(digest["seal"], "copy") << log;
+    EXPECT_EQ(digest["signature"], "holds") << log;
+  }
+}
+
+TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
+  const std::string key = folder_.File("key");
+  const std::string other = folder_.File("other_key");
+  SealKey::Create(key);
+  SealKey::Create(other);
+  // GIVEN the signed log of a run that was interrupted
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "memq", "--pace",
+                  "10", "--key", key, "--log", log_});
+  ASSERT_TRUE(GrowsTo(200'000, log_)) << run.Err();
+  run.Signal(SIGINT);
+  ASSERT_EQ(run.Wait(), 130) << run.Err();
+  EXPECT_EQ(Digest({log_, "--key", key}, 1)["signature"], "holds");
+  const auto resume = [&](const std::string& with) {
+    return RunCommand({Program("fogline"), "run", "--resume", log_, "--transport", "memq",
+                       "--quiet", "--key", with});
+  };
+  const auto expect_refused = [&](const std::string& with, const std::string& why) {
+    const std::string before = Content(log_);
+    const Outcome refused = resume(with);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr(log_ + ": error: --resume: " + why));
+    EXPECT_EQ(Content(log_), before);
+  };
+  expect_refused(other, "the seal of the log is not signed with this key");
+  // WHEN one bit of its first step is changed
+  const Place radar = PlaceOf(log_, "RADAR");
+  FlipLowestBit(log_, radar.at + radar.size - 17);
+  expect_refused(key, "the log is not the one that was sealed: ");
+  // THEN it goes on with what was sealed alone
+  FlipLowestBit(log_, radar.at + radar.size - 17);
+  EXPECT_EQ(resume(key).code, 0);
+  EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");
 }
 
 // ---- builds -------------------------------------------------------------------------------------

@@ -218,6 +218,20 @@ TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
   EXPECT_EQ(std::filesystem::file_size(log_), size);
 }
 
+TEST_F(LogLockTest, AnOlderLogIsThereAgainWhenTheRunThatReplacesItNeverBegins) {
+  ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
+  const std::string older = Content(log_);
+  const std::vector<std::string> replace =
+      With(WaitingForADriver(run_), {"--wait", "0.5", "--force"});
+  EXPECT_EQ(RunCommand(replace).code, 3);
+  EXPECT_EQ(Content(log_), older);
+  // AND it is gone when the run has begun, with nothing beside the new one
+  EXPECT_EQ(RunCommand(With(run_, {"--force", "--seed", "2"})).code, 0);
+  EXPECT_NE(Content(log_), older);
+  const std::filesystem::directory_iterator files(std::filesystem::path(log_).parent_path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
 TEST_F(LogLockTest, AnEmptyFileIsAsGoodAsNone) {
   std::ofstream(log_).flush();
   EXPECT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);

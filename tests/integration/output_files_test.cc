@@ -25,11 +25,6 @@ using testing::StartsWith;
 using testing::UnorderedElementsAre;
 using Words = std::vector<std::string>;
 
-std::string Content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// A folder with the log of a short run, and what it has besides.
 class OutputFilesTest : public testing::Test {
  protected:

@@ -21,13 +21,6 @@ using SteadyClock = std::chrono::steady_clock;
 // test that wants the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
-std::string Content(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 /// A new folder below the build's, so that what a killed test leaves behind is found and removed.
 std::filesystem::path FreshFolder(const std::string& kind) {
   const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
@@ -130,6 +123,11 @@ bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file, std::chron
     std::this_thread::sleep_for(kLookEvery);
   }
   return false;
+}
+
+std::string Content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 Outcome RunCommand(const std::vector<std::string>& command, std::chrono::seconds limit) {

@@ -60,6 +60,9 @@ struct Outcome {
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = std::chrono::seconds(20));
 
+/// The bytes of a file, "" if it is not there.
+std::string Content(const std::filesystem::path& file);
+
 /// Runs a program to its end.
 Outcome RunCommand(const std::vector<std::string>& command,
                    std::chrono::seconds limit = std::chrono::seconds(120));

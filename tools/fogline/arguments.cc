@@ -66,7 +66,7 @@ LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
         fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
                     PathText(log)));
   }
-  return {log, std::move(lock)};
+  return LogOfRun::InPlaceOf(log, std::move(lock));
 }
 
 LogOfRun FreshLog(const std::filesystem::path& scenario_file) {

@@ -63,6 +63,18 @@ nlohmann::ordered_json BuildsJson(const RunLog& run) {
   return json;
 }
 
+/// What is known of the bytes of a log. Of a copy, which was played and recorded again, the seal
+/// holds for scenario and steps alone: its events have times of their own, and STATUS may have gone
+/// missing.
+std::string_view SealState(const RunLog& run) {
+  if (!run.seal) return "none";
+  if (run.altered) return "broken";
+  return run.seal->copied ? "copy" : "holds";
+}
+
+/// In real time the results are in STATUS, which the seal of a copy does not cover.
+bool IsUnprovenCopy(const RunLog& run) { return run.realtime && SealState(run) == "copy"; }
+
 int RunDigest(const DigestArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool sound = true;
@@ -74,18 +86,21 @@ int RunDigest(const DigestArguments& arguments) {
     }
     const RunLog& run = reader.run();
     const Signature signature = SignatureOf(run, key ? &*key : nullptr);
-    sound = sound && run.complete && (!key || signature.state == "holds");
+    sound = sound && run.complete;
+    if (key) sound = sound && signature.state == "holds" && !IsUnprovenCopy(run);
     if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(log), run.note));
     if (!signature.trouble.empty()) {
       Complain(fmt::format("{}: {}", PathText(log), signature.trouble));
+    }
+    if (key && IsUnprovenCopy(run)) {
+      Complain(PathText(log) +
+               ": a copy of a run in real time, of which its seal proves the steps alone");
     }
     rows.push_back({{"log", log.string()},
                     {"digest", run.digest},
                     {"steps", run.steps},
                     {"complete", run.complete},
-                    {"seal", !run.seal     ? "none"
-                             : run.altered ? "broken"
-                                           : "holds"},
+                    {"seal", SealState(run)},
                     {"signature", signature.state},
                     {"builds", BuildsJson(run)}});
     if (!arguments.json) fmt::print("{}  {}\n", run.digest, PathText(log));
@@ -109,7 +124,9 @@ void AddDigest(CLI::App& app, Action& action) {
   verb->footer(
       "A run ends its log with a seal (channel FOGLINE_SEAL): its digest, a hash of the file, and\n"
       "the build of each role; with --key the run signs it. What was altered since then is named.\n"
-      "A log of lcm-logger, or of a run that was killed, has none.\n\n"
+      "A log of a run that was killed has none. Of a log that lcm-logplayer has played and "
+      "lcm-logger has\n"
+      "recorded, the seal holds for scenario and steps alone (\"seal\": \"copy\").\n\n"
       "Examples:\n  fogline digest logs/*.lcm\n"
       "  fogline run scenario/paper.json --key lab.key --log logs/signed.lcm\n"
       "  fogline digest logs/signed.lcm --key lab.key");

@@ -183,15 +183,19 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   const LogKeeper keeper(log);
   BusRun run = RunOnBus(scenario, options, log, keeper);
   LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
+  const auto key = KeyOf(options.traffic);
   const bool checked = keeper.HasAllTold(run.written);
   if (!checked && !options.realtime) {
     throw std::runtime_error(fmt::format(
         "{}: the log on disk is not what the recorder wrote: it is longer", PathText(log)));
   }
+  if (!checked && key) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log cannot be signed: what the recorder told of its end was lost", PathText(log)));
+  }
   ExperimentResult result = std::move(logged.result);
   if (options.verify) result.verification = VerifyRun(log, logged, run.other_builds);
   if (checked && !options.log.empty()) {
-    const auto key = KeyOf(options.traffic);
     keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
   }
   result.checked = checked;

@@ -92,6 +92,8 @@ void LogKeeper::SealCutOff(const std::vector<WrittenLog>& written, const RoleBui
     RunLogReader reader(log_);
     while (reader.Next() != nullptr) {
     }
+    // Behind a torn event a seal would be read as the rest of it.
+    if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
     Seal(reader.run(), written, builds, key);
   } catch (const std::exception&) {  // the run has ended for a reason that matters more
   }

@@ -6,6 +6,7 @@
 
 #include "scenario/loader.h"
 #include "scenario/wording.h"
+#include "services/recorder/run_log.h"
 #include "services/runtime/wire.h"
 
 namespace fogline {
@@ -25,7 +26,18 @@ const std::filesystem::path& Readable(const std::filesystem::path& log) {
   return log;
 }
 
-Resumption Read(const std::filesystem::path& log) {
+/// A log that was sealed is the one that was sealed; its new seal must not make it one.
+void CheckSeal(const std::filesystem::path& log, const SealKey* key) {
+  RunLogReader reader(log, RunLogReader::Compared::kFile);
+  while (reader.Next() != nullptr) {
+  }
+  const RunLog& run = reader.run();
+  if (run.altered) Refuse(log, "the log is not the one that was sealed: " + run.note);
+  if (key == nullptr || !run.seal || VerifySeal(*run.seal, *key) == SealSignature::kHolds) return;
+  Refuse(log, "the seal of the log is not signed with this key");
+}
+
+Resumption Read(const std::filesystem::path& log, const SealKey* key) {
   LogFront front = ReadFront(log);
   if (!front.parts.Complete()) {
     Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
@@ -37,6 +49,7 @@ Resumption Read(const std::filesystem::path& log) {
   if (front.type_fingerprint != TypeFingerprint()) {
     Refuse(log, "the log was made with other message types, by another version of Fogline");
   }
+  CheckSeal(log, key);
   const Remains remains = ReadRemains(log, front);
   if (!remains.final) {
     if (const std::string odd = OddEnd(log, front, remains); !odd.empty()) {
@@ -48,9 +61,9 @@ Resumption Read(const std::filesystem::path& log) {
 
 }  // namespace
 
-ResumedLog::ResumedLog(const std::filesystem::path& log)
+ResumedLog::ResumedLog(const std::filesystem::path& log, const SealKey* key)
     : lock_(Readable(log), FileLock::Kind::kOwn, "--resume", "run", kEndOfOthers),
-      resumption_(Read(log)),
+      resumption_(Read(log, key)),
       scenario_(ParseScenario(resumption_.front.parts.Text(), log.string())) {
   CheckPossible(scenario_, log);
 }

@@ -14,8 +14,9 @@ namespace fogline {
 /// until the end of this object. It is left as it is, whatever is wrong with it.
 class ResumedLog {
  public:
+  /// @param key that its seal is signed with, if it has one; nullptr: any or none
   /// @throws InputError with what is wrong with it
-  explicit ResumedLog(const std::filesystem::path& log);
+  ResumedLog(const std::filesystem::path& log, const SealKey* key);
 
   const Scenario& scenario() const { return scenario_; }
   const Resumption& resumption() const { return resumption_; }

@@ -172,7 +172,8 @@ int RunAnew(RunArguments& arguments) {
 /// The run in a log to its end. A log that has it is not computed again: what is done once is done.
 int Resume(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
-  const ResumedLog log(arguments.resume);
+  const auto key = KeyOf(options.traffic);
+  const ResumedLog log(arguments.resume, key ? &*key : nullptr);
   options.log = arguments.resume;
   options.resume = log.resumption();
   options.command_to_go_on = CommandToGoOn(options);

@@ -3,7 +3,10 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 
 #include "scenario/loader.h"
@@ -15,6 +18,7 @@
 namespace fogline {
 namespace {
 
+using test::Content;
 using testing::HasSubstr;
 
 constexpr std::int64_t kRunId = 7;
@@ -22,11 +26,6 @@ constexpr std::int64_t kSteps = 3;
 constexpr std::int64_t kStep_us = 100'000;
 // The shortest scenario: in a larger one there is more to flip, and nothing else.
 constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
-
-std::string Content(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void Write(const std::string& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
@@ -134,6 +133,26 @@ TEST_F(LogSealTest, ShowsStepsThatWereChangedToWhoReadsTheRunAlone) {
   EXPECT_TRUE(run.altered);
   EXPECT_FALSE(run.complete);
   EXPECT_THAT(run.note, HasSubstr("altered: sealed with digest "));
+}
+
+TEST_F(LogSealTest, ThatDoesNotFitLeavesTheLogAsItWas) {
+  const std::string before = Content(log_);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit shorter{.rlim_cur = before.size() + 20, .rlim_max = limit.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &shorter), 0);
+  std::string error;
+  try {
+    SealIt();
+  } catch (const std::runtime_error& thrown) {
+    error = thrown.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(error, HasSubstr("cannot seal " + log_ + ": "));
+  EXPECT_THAT(error, HasSubstr("the log is as the run left it, without a seal"));
+  EXPECT_EQ(Content(log_), before);
 }
 
 TEST_F(LogSealTest, ShowsWhatWasAddedBehindIt) {
