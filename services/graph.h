@@ -1,5 +1,5 @@
-// The table of Fogline: every role and every channel, once. The nodes' wiring, the recorder, the
-// digest, the monitors, the tests and the README's tables are made from it.
+// The table of Fogline: it lists every role and every channel once. The nodes' wiring, the
+// recorder, the digest, the monitors, the tests and the README's tables are made from it.
 #pragma once
 
 #include <array>
@@ -90,12 +90,12 @@ struct Channel {
   std::string_view name;
   Pace pace;
   Role from;
-  RoleSet to;  // who works on it; the recorder takes every kStep channel besides
+  RoleSet to;  // roles that work on it; the recorder also takes every kStep channel
   std::string_view what;
-  RoleSet on_demand = {};  // who reads it besides, where the scenario demands it
+  RoleSet on_demand = {};  // roles that also read it in scenarios that demand it
 };
 
-/// Every channel. The kStep channels stand in an order in which a step can be evaluated.
+/// Every channel. The kStep channels stand in an order in which the roles can compute a step.
 inline constexpr std::tuple kGraph{
     Channel<run_t>{"RUN", Pace::kControl, Role::kRunner, kEveryone,
                    "phase of the run; the scenario, in parts"},
@@ -166,7 +166,8 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// The recorder logs every kStep channel, and RUN, so that a log explains itself.
+  /// The recorder logs every kStep channel. It also logs RUN, so that a log contains its own
+  /// scenario.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 
@@ -209,8 +210,9 @@ constexpr void ForEachStepChannel(Visit&& visit) {
   (std::make_index_sequence<kNumChannels>{});
 }
 
-/// How many steps older than the step that `reader` computes the message of `producer` is that it
-/// uses: none if the producer comes first in the order of evaluation, one otherwise.
+/// The age, in steps, of the message of `producer` that `reader` uses: `reader` computes step k
+/// from the message of step k - LagOf(). 0 if the producer comes first in the order of evaluation,
+/// otherwise 1.
 constexpr std::int64_t LagOf(Role producer, Role reader) {
   for (const RoleInfo& info : kRoles) {
     if (info.role == reader) return 1;
