@@ -1,5 +1,5 @@
-# fogline_add_service(NAME): the algorithm services/NAME/*.cc as library fogline_NAME, and its
-# process NAME_main.cc as program fogline-NAME. Every service folder has this shape.
+# fogline_add_service(NAME): builds the algorithm services/NAME/*.cc as library fogline_NAME, and
+# NAME_main.cc as program fogline-NAME. Every service folder has this shape.
 function(fogline_add_service name)
   file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cc")
   list(FILTER sources EXCLUDE REGEX "_main\\.cc$")
@@ -11,17 +11,17 @@ function(fogline_add_service name)
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
 endfunction()
 
-# fogline_add_tests(NAME DIR LIBS...): every DIR/**/*_test.cc in one program, one ctest per TEST.
-# Tests are named after their folder: "unit/radar.RadarTest.Name".
+# fogline_add_tests(NAME LIBS...): builds every NAME/**/*_test.cc into one program; each TEST is one test of
+# ctest. The names of the tests begin with NAME: "unit.RadarTest.Name".
 function(fogline_add_tests name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cc")
   if(NOT sources)
     return()
   endif()
   add_executable(${name}_tests ${sources})
-  # Without the names of functions, which are a quarter of a program.
+  # Strips the symbols, which are a quarter of a program.
   target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
-  # Precompiled once for all of them: it is 100 MB.
+  # All test programs share one precompiled header: it has 100 MB.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})
@@ -33,7 +33,7 @@ function(fogline_add_tests name)
   target_compile_definitions(${name}_tests PRIVATE
     FOGLINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGLINE_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
-  # Runs in real time want the machine for themselves.
+  # Tests of runs in real time run alone, without other tests beside them.
   set(alone "*InRealtime*:*RealtimeTest.*:*UnderLoad*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_FILTER "-Campaign/*:${alone}"

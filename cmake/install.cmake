@@ -1,6 +1,6 @@
-# What `cmake --install build --prefix DIR` puts into DIR: the programs, the message types (C++
-# headers, and the jar if there is one), and what a role written elsewhere needs from C++:
-# find_package(fogline) gives it the target fogline::runtime.
+# `cmake --install build --prefix DIR` installs into DIR: the programs, the message types (C++ headers, and
+# the jar if there is one), and the package for C++ roles of other projects. find_package(fogline) gives them
+# the target fogline::runtime.
 include(CMakePackageConfigHelpers)
 
 set(programs fogline fogline-calibrate fogline-study fogline-recorder fogline-relay)
@@ -11,7 +11,7 @@ install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
 
-# The scenario names policies and conflict measures, so it brings them and what they are made of.
+# fogline_scenario needs the policies, the conflict measures and their dependencies: a scenario names them.
 foreach(part IN ITEMS lcmtypes scenario runtime policies conflict driver_models driver)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
   install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib)

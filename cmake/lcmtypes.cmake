@@ -1,5 +1,5 @@
-# lcm_add_types(TARGET DIR): C++ headers of every DIR/*.lcm at build time, as an interface library.
-# Debian's LCM ships no CMake package. Where a JDK and LCM's jar are there, TARGET_java makes
+# lcm_add_types(TARGET DIR) makes C++ headers of every DIR/*.lcm at build time, as an interface library. It
+# replaces the CMake package that Debian's LCM lacks. If a JDK and LCM's jar are installed, TARGET_java makes
 # lib/TARGET.jar, which lcm-spy needs to decode the messages.
 find_program(LCM_GEN lcm-gen REQUIRED)
 
@@ -14,19 +14,19 @@ function(lcm_add_types target dir)
   add_custom_command(
     OUTPUT ${headers}
     COMMAND "${LCM_GEN}" -x --cpp-std c++11 --cpp-hpath "${out}/cpp" ${lcm_files}
-    # LCM's decoder believes the length of an array before it has seen the array: a message of 100
-    # bytes could claim 16 GB. No array has more elements than its message has bytes.
+    # LCM's decoder allocates an array before it checks the array's length: a message of 100 bytes could claim
+    # 16 GB. This check refuses a length larger than the number of bytes left in the message.
     COMMAND sed -i -E
             "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
             ${headers}
-    # Nor does it expect a string without its terminator, length 0 or less, or a zero elsewhere than
-    # at its end: what it would encode again is another message. (In an array the length is named
-    # without the last two underscores.)
+    # LCM's decoder accepts a string without its terminator, one of length 0 or less, and one with a zero
+    # before its end. Encoding the decoded message again would give another message, so this check refuses all
+    # three. (For a string in an array, the name of the length lacks the last two underscores.)
     COMMAND sed -i -E
             "s/if[(](__[a-z_]+_len(__)?) > maxlen - pos[)] return -1$<SEMICOLON>/if(\\1 < 1 || \\1 > maxlen - pos) return -1$<SEMICOLON>\\n    if(memchr((const char*)buf + offset + pos, 0, \\1) != (const char*)buf + offset + pos + \\1 - 1) return -1$<SEMICOLON>/"
             ${headers}
-    # And it leaves an array as it was when the message has none: the next reader of the same object
-    # would find the elements of an earlier message.
+    # If a message has no elements of an array, LCM's decoder does not change that array: the object would
+    # keep the elements of an earlier message. This command clears the array first.
     COMMAND sed -i -z -E
             "s/if[(](this->[a-z0-9_]+)[)] [{]\\n( *if [(][^\\n]*\\n *)(this->[a-z0-9_]+)[.]resize/\\3.clear()$<SEMICOLON>\\n    if(\\1) {\\n\\2\\3.resize/g"
             ${headers}

@@ -1,6 +1,6 @@
 # cmake -DOUT=FILE -DLCM_FILES="a.lcm;b.lcm" -P message_fields.cmake
-# Writes a header with VisitFields(message, visit) for every message type: the generated C++ types
-# know no field names, but comparing, checking and exporting messages needs them.
+# Writes a header with VisitFields(message, visit) for every message type. Comparing, checking and exporting
+# messages needs the names of the fields, which the generated C++ types do not contain.
 set(text "// Made from lcmtypes/*.lcm; do not edit.\n#pragma once\n\n#include <span>\n\n")
 set(body "")
 foreach(file IN LISTS LCM_FILES)

@@ -1,4 +1,4 @@
-# Language, warnings and the flags that keep a result the same bit by bit.
+# Language, warnings, and the flags that make results equal bit by bit in all builds.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -11,8 +11,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-# Several source files are compiled as one: headers are most of what there is to compile. Off, a change
-# of one file compiles that file alone.
+# Compiles several source files as one, because the headers take most of the compiler's time. With OFF, a
+# change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
@@ -22,14 +22,15 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
 
-# One result everywhere: no contraction into fused multiply-add (it rounds once instead of twice),
-# no vectorised Eigen (it adds in another order), so debug, release and -march=native agree.
+# Debug, release and -march=native builds give the same results: the compiler does not contract into fused
+# multiply-add (which rounds once instead of twice), and Eigen does not vectorise (which adds in another
+# order).
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-missing-field-initializers)
 
-# A warning ends the build with the compiler that Fogline is developed with (Debian 12's), and nobody
-# else's: others warn of other things.
+# A warning ends the build only with the compiler that Fogline is developed with (Debian 12's). Other
+# compilers warn of other things.
 set(werror_default OFF)
 if(PROJECT_IS_TOP_LEVEL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND
    CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -13,7 +13,7 @@
 namespace fogline {
 namespace {
 
-/// A value in the two forms that fields take.
+/// A value in both forms that fields take: as text, and as number if the text is one.
 struct Value {
   std::optional<double> number;
   std::string_view text;
@@ -70,7 +70,8 @@ class Assigner {
 
  private:
   bool Here(std::string_view name) const { return path_.size() == 1 && path_.front() == name; }
-  /// The item of a list that the path leads to; nullptr if it leads elsewhere or there is none.
+  /// The item of the list to which the path leads; nullptr if the path leads to another field or
+  /// the list has no such item.
   template <class Item>
   Item* ItemOf(std::string_view name, std::vector<Item>& list) const {
     if (path_.front() != name) return nullptr;

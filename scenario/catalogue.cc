@@ -114,14 +114,14 @@ std::vector<std::string_view> Segments(std::string_view pointer) {
 
 bool IsIndex(std::string_view segment) { return !segment.empty() && ListIndex(segment.substr(1)); }
 
-// Each index becomes *.
+// `pointer` with * in place of each index.
 std::string WithoutIndices(std::string_view pointer) {
   std::string out;
   for (const std::string_view segment : Segments(pointer)) out += IsIndex(segment) ? "/*" : segment;
   return out;
 }
 
-// Each * becomes the index that `pointer` has at its place.
+// `pattern` with the index of `pointer` at the same depth in place of each *.
 std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
   const std::vector<std::string_view> segments = Segments(pointer);
   std::string out;
@@ -142,7 +142,7 @@ std::optional<std::size_t> ListIndex(std::string_view segment) {
   const char* const last = segment.data() + segment.size();
   const auto [end, error] = std::from_chars(segment.data(), last, index);
   if (end != last || error == std::errc::invalid_argument) return std::nullopt;
-  // One beyond all lists is one, too.
+  // A number too large for size_t is an index, too; no list has such an item.
   return error == std::errc() ? index : std::numeric_limits<std::size_t>::max();
 }
 

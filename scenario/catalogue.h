@@ -15,30 +15,32 @@ struct FieldInfo {
   std::string pointer;       // a list's item has the segment *
   bool is_section = false;   // a section, the whole scenario, or an item with fields
   std::string allowed;       // such as "a number in [0, 70] m/s"
-  std::string default_text;  // with unit; "" for what has no default of its own
+  std::string default_text;  // with unit; "" for a section, list or item without a default
   std::string doc;
   std::string_view source;
   std::span<const std::string_view> choices;
   std::span<const std::string_view> choice_docs;
 };
 
-/// All of them, each section followed by what is in it. The first one is the whole scenario, "/".
+/// All fields, sections, lists and items. The contents of a section follow the section. The first
+/// entry is the whole scenario, "/".
 const std::vector<FieldInfo>& Catalogue();
 
-/// The index that a segment of a pointer is: digits, no leading zero (RFC 6901, section 4).
+/// The index that a segment of a pointer states: digits without a leading zero (RFC 6901, section
+/// 4). Nothing if the segment is not an index.
 std::optional<std::size_t> ListIndex(std::string_view segment);
 
-/// What `pointer` means, a list's index standing for any; null if there is no such field.
+/// The field with this pointer; null if there is none. Any index finds the item of a list.
 const FieldInfo* FindField(std::string_view pointer);
 
-/// `pointer`, or the part of it that there is; at least "/".
+/// The longest beginning of `pointer` that names a field or section; at least "/".
 std::string NearestKnownPointer(std::string_view pointer);
 
-/// The first field of this name in any section, lists' items aside.
+/// Pointer of the first field with this name in any section, except fields in items of lists.
 std::optional<std::string_view> FindName(std::string_view name);
 
-/// The field that an unknown pointer may mean: one that is spelt alike (with the same indices), or
-/// one of the same name in another section.
+/// The field that an unknown pointer may mean: one with a similar spelling (with the same indices),
+/// or one with the same name in another section.
 std::optional<std::string> SuggestPointer(std::string_view pointer);
 
 }  // namespace fogline

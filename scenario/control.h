@@ -1,4 +1,4 @@
-// Sections of a scenario that say who drives and how: ACC, human driver, arbitrator.
+// Sections of a scenario for the ACC, the human driver and the arbitrator.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace fogline {
 
-/// MPC-based ACC, of the host and of a following car alike.
+/// MPC-based ACC, of the host and of the following cars.
 struct AccSection {
   double headway_s = 1.5;
   double standstill_m = 3.0;
@@ -231,8 +231,8 @@ struct DriverSection {
   }
 };
 
-/// Who may drive: a row of the table in services/policies/policies.cc, in its order. A row needs no
-/// enumerator; these are the two that are spoken of elsewhere.
+/// Policy for the authority over the host: the index of a row of the table in
+/// services/policies/policies.cc. Only the two rows that other code refers to have an enumerator.
 enum class Policy : std::uint8_t { kNone, kTraded };
 template <>
 struct ChoiceNames<Policy> {
@@ -240,7 +240,7 @@ struct ChoiceNames<Policy> {
   static const std::span<const std::string_view> kDocs;
 };
 
-/// A measure of conflict: a row of the first table in services/conflict/measures.cc.
+/// A measure of conflict: the index of a row of the first table in services/conflict/measures.cc.
 enum class MeasureChoice : std::uint8_t { kDoc };
 template <>
 struct ChoiceNames<MeasureChoice> {
@@ -248,7 +248,7 @@ struct ChoiceNames<MeasureChoice> {
   static const std::span<const std::string_view> kDocs;
 };
 
-/// A measure of who is wrong: a row of the second one.
+/// A measure of which sensor is wrong: the index of a row of the second table in that file.
 enum class BlameChoice : std::uint8_t { kNis };
 template <>
 struct ChoiceNames<BlameChoice> {

@@ -1,4 +1,4 @@
-// Two columns of numbers out of a CSV file: commas, a header line, no quotes.
+// Reads columns of numbers from a CSV file: commas, a header line, no quotes.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ struct CsvNumber {
 /// The header line's names, without the spaces around them.
 std::vector<std::string_view> CsvHeader(std::string_view text);
 
-/// What seems to separate the names of a header line in place of ',', for a message: "';'", "tabs",
-/// or "" if nothing does.
+/// The wrong separator that a header line seems to use in place of ',', for a message: "';'" or
+/// "tabs"; "" if it seems to use none.
 std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
 /// Called for each cell that is not a finite number, and for each row that lacks a cell.
 using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>;
 
-/// The numbers of each of `columns` (indices into the header), top to bottom. Takes LF and CRLF, a
-/// byte order mark, spaces around cells, and empty lines at the end.
+/// The numbers of each of `columns` (indices into the header), top to bottom. Accepts LF and CRLF,
+/// a byte order mark, spaces around cells, and empty lines at the end.
 std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
                                                    const std::vector<std::size_t>& columns,
                                                    const CsvRefuse& refuse);

@@ -13,8 +13,9 @@ namespace fogline {
 /// @pre times ascend and span every time asked for; the columns outlive this object
 class CsvSeries {
  public:
-  /// Times in files are rounded decimals. A time this near to a row's has the row's value as it is;
-  /// one microsecond is the resolution of a message's time, too.
+  /// Times in files are rounded decimals. A time that differs from a row's time by no more than
+  /// this has exactly the row's value. The time of a message has the same resolution of one
+  /// microsecond.
   static constexpr double kSameTime_s = 1e-6;
 
   CsvSeries(const std::vector<CsvNumber>& times_s, const std::vector<CsvNumber>& values)

@@ -1,5 +1,5 @@
-// Sections of a scenario that say how the wheel changes hands: how smoothly, and by which rule
-// beside the paper's fixed threshold.
+// Sections of a scenario for the transfer of authority: how smoothly it goes, and the rules of the
+// policies that do not use the paper's fixed threshold.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct ChoiceNames<Hysteresis> {
       "Wald's test: each direction waits for enough evidence (sprt_alpha, sprt_beta)"};
 };
 
-/// How authority goes from one driver to the other.
+/// Transfer of authority between automation and human.
 struct TransferSection {
   TransferProfile profile = TransferProfile::kStep;
   double duration_s = 0.25;
@@ -181,7 +181,7 @@ struct AdaptiveSection {
 /// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a), with the expected costs
 /// C_h = human_cost + unready_cost (1 - A) + blind_cost min(1, near_m / MOR) of a human who drives,
 /// C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) of an automation
-/// that goes by a wrong distance. P is the DoC: a sharp one with the paper's slope, a posterior
+/// that uses a wrong distance. P is the DoC: steep with the paper's slope; a posterior probability
 /// with measure lidar_modes and measure_scale probability.
 struct BayesSection {
   double human_cost = 1.0;
@@ -224,10 +224,11 @@ struct BayesSection {
   }
 };
 
-/// Policy availability: as traded, but only a driver who can be there in time gets the wheel: the
-/// time until the follower must brake harder than comfort_mps2 is longer than his take-over time
-/// (95th percentile, longer by what readiness lacks). Otherwise the automation stays. It goes by
-/// the sensor that is not to blame whether he is called or not, as with policy isolate.
+/// Policy availability: like traded, but the driver gets authority only if he can take over in
+/// time: the time until the follower must brake harder than comfort_mps2 must be longer than his
+/// take-over time (95th percentile, longer if his readiness is below 1). Otherwise the automation
+/// keeps authority. In both cases the automation uses only the sensor that is not to blame, as with
+/// policy isolate.
 struct AvailabilitySection {
   double comfort_mps2 = 3.0;
   double unready_s = 2.0;

@@ -1,6 +1,6 @@
-// How a section of a scenario describes its own fields: one `Fields` function in each section
-// visits every field with its name, range, unit, meaning and source. The loader, the JSON schema,
-// the effective scenario and the parameter tables are made from these visits and from nothing else.
+// Description of the fields of a section: one `Fields` function in each section visits every field
+// with its name, range, unit, meaning and source. The loader, the JSON schema, the effective
+// scenario and the parameter tables all use these visits.
 //
 //   struct RadarSection {
 //     double bias_m = 0.0;
@@ -18,8 +18,9 @@
 
 namespace fogline {
 
-/// A real number: closed range, unit ("" if none), meaning, and the source of the default: a
-/// publication, a data sheet, or "our choice, because ...". No full stop at its end.
+/// A real number: closed range, unit ("" if none), meaning, and the source of the default. The
+/// source is a publication, a data sheet, or "our choice, because ..."; it has no full stop at its
+/// end.
 struct NumberSpec {
   double min;
   double max;
@@ -48,8 +49,8 @@ struct ListSpec {
 /// a control character (C0, DEL, C1), so a text can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// When the choice `choice` is `value`, the section `section` must be there with at least one of
-/// `fields` (texts or lists) that is not empty.
+/// If the choice `choice` is `value`, the file must have the section `section`, and at least one of
+/// its `fields` (texts or lists) must not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;
@@ -57,10 +58,10 @@ struct NeedSpec {
   std::array<std::string_view, 2> fields;
 };
 
-/// Names of an enumeration's values in their order, as they stand in the file. Specialise for each
-/// enumeration: `static constexpr std::array kNames{...}` and, same size, `kDocs`. Where the values
-/// are the rows of a table elsewhere, which alone knows their number, both are declared here as
-/// `static const std::span<const std::string_view>`, and defined beside that table.
+/// Names of an enumeration's values in their order, as written in the file. Each enumeration has a
+/// specialisation with `static constexpr std::array kNames{...}` and `kDocs` of the same size. If
+/// the values are the rows of a table in another file, the specialisation declares both as `static
+/// const std::span<const std::string_view>`; the file of the table defines them.
 template <class Enum>
 struct ChoiceNames;
 

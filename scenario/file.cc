@@ -22,10 +22,10 @@
 namespace fogline {
 namespace {
 
-// A folder with more entries is not looked through: a hint is not worth the time.
+// In a folder with more entries no file is suggested: it would take too long.
 constexpr std::size_t kMostEntries = 10'000;
 
-// A pipe that brings nothing for so long is given up: time enough for a remote shell to answer.
+// Longest wait for data from a pipe; long enough for a remote shell to answer.
 constexpr int kPipeLimit_ms = 5000;
 
 std::string Message(int error) { return std::generic_category().message(error); }
@@ -35,13 +35,14 @@ FileText Unreadable(const std::string& why) {
 }
 
 // An open file, closed at the end of a scope.
-// Why nothing is read from what is there; "" for a file or pipe.
+// The reason why ReadFile() does not read this type of file; "" for a regular file or a pipe.
 std::string WhyNotRead(mode_t mode) {
   if (S_ISDIR(mode)) return "it is a folder";
   return S_ISREG(mode) || S_ISFIFO(mode) ? "" : "it is neither a file nor a pipe";
 }
 
-// Waits until a pipe has something, or is at its end.
+// Waits until a pipe has data or is at its end. Returns false if that takes longer than
+// kPipeLimit_ms.
 bool HasMore(int fd) {
   pollfd waited{.fd = fd, .events = POLLIN, .revents = 0};
   int ready = 0;
@@ -51,7 +52,8 @@ bool HasMore(int fd) {
   return ready > 0;
 }
 
-// The files of a folder, in the order of their names; none if it cannot be listed.
+// The names of the files of a folder, sorted; none if the folder cannot be listed or has more than
+// kMostEntries entries.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
@@ -70,7 +72,8 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
 
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending) {
   const std::filesystem::path folder = file.parent_path();
-  // An ending that all have is no likeness: names with the same one are compared without it.
+  // A common ending would make all names similar. Names with the same ending are compared without
+  // it.
   std::vector<std::string> same;
   std::vector<std::string> other;
   for (const std::filesystem::path& name : FilesOf(folder)) {
@@ -141,7 +144,8 @@ int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
     const ssize_t size = write(fd, bytes.data(), bytes.size());
     if (size < 0 && errno != EINTR) return errno;
     if (size > 0) bytes.remove_prefix(static_cast<std::size_t>(size));
-    // A signal may come while a part is written, which then is all that the call tells of.
+    // If a signal interrupts write() after a part of the bytes, write() returns the size of that
+    // part and not EINTR.
     if (!bytes.empty() && stop != nullptr && stop()) return EINTR;
   }
   return 0;

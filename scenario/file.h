@@ -1,4 +1,4 @@
-// Reading a whole file, and what is said when that or another call for a file fails.
+// Reading a whole file, and the error texts of failed calls for files.
 #pragma once
 
 #include <cstddef>
@@ -8,26 +8,26 @@
 
 namespace fogline {
 
-/// What came of it: `error` is empty, or says why `text` is not there.
+/// Result of reading a file: the text, or else the error. `error` is empty if the file was read.
 struct FileText {
   std::string text;
   std::string error;
 };
 
-/// `; did you mean "scenario/paper.json"?` for a name of which there is no file: the one in the
-/// same folder that is spelt alike. Nothing if there is none.
+/// `; did you mean "scenario/paper.json"?` for the name of a file that does not exist. Suggests a
+/// file of the same folder with a similar name; "" if there is none.
 /// @param ending of every file that may be meant, such as ".json"; "" for any
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending = "");
 
-/// The bytes of a file of at most `max_bytes`, or what comes out of a pipe, such as that of
-/// `<(command)` in a shell: up to its end, with no pause longer than 5 s, so that a pipe into
-/// which no process writes is not waited for without end. The error of a file that is not there has
-/// the name that may be meant, with this ending.
+/// The bytes of a file or pipe of at most `max_bytes`. A shell's `<(command)` is such a pipe. Reads
+/// a pipe up to its end, but fails if no process writes into it for 5 s. The error of a file that
+/// does not exist has a suggestion of a file with this ending.
 /// @throws std::runtime_error as ThrowIfExhausted()
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
                   std::string_view ending = "");
 
-/// Why what is there is no file to be read, "" if it is one: for programs that map or seek.
+/// The reason why a program cannot map the file or seek in it, because it is not a regular file; ""
+/// if it is one or does not exist.
 std::string WhyNoRegularFile(const std::filesystem::path& file);
 
 /// A file opened for reading, closed at the end. Opening waits for no process at the other end of a
@@ -49,9 +49,9 @@ class OpenFile {
 /// @param stop whether a signal that interrupts the call ends it, with EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 
-/// For a call that failed because the process or the machine has used up descriptors, memory or
-/// disk. Not the input is bad then, but the run fails (exit code 3). Returns if it is something
-/// else.
+/// Throws if a call failed because the process or the machine has used up descriptors, memory or
+/// disk: then the run fails (exit code 3), although the input is good. Returns at any other error.
+/// @param error errno of the call
 /// @param what such as the file's name
 /// @throws std::runtime_error "WHAT: Too many open files; ulimit -n 1024 allows more"
 void ThrowIfExhausted(int error, std::string_view what);

@@ -1,5 +1,5 @@
-// The section of a scenario that makes the human driver of the host more than the paper's: how he
-// follows, what he sees, how well he judges it, and how much of the road he has in mind.
+// The section of a scenario for a more detailed human driver of the host than the paper's: how he
+// follows, what he sees, how well he judges it, and how much of the road he is aware of.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct ChoiceNames<Sight> {
       "what fog leaves of outline and lamps (services/driver_models/fog_sight.h)"};
 };
 
-/// What fog leaves for a human eye.
+/// Sight of a human in fog.
 struct FogSightParameters {
   double contrast = 0.5;
   double contrast_threshold = 0.05;
@@ -139,7 +139,7 @@ struct HumanParameters {
   }
 };
 
-/// How much of the road a driver has in mind, and how it fades and returns.
+/// How much of the road a driver is aware of, and how his awareness fades and returns.
 struct AwarenessParameters {
   double monitoring = 0.5;
   double fading_s = 60.0;
@@ -184,7 +184,8 @@ struct AwarenessParameters {
   }
 };
 
-/// The human driver beyond the IDM parameters of section driver. The defaults are the paper's man.
+/// Parameters of the human driver in addition to the IDM parameters of section driver. The defaults
+/// give the paper's driver.
 struct HumanSection {
   FollowingModel following = FollowingModel::kIdm;
   double coolness = 0.99;

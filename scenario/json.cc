@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kMaxDepth = 32;
 constexpr std::size_t kMaxValues = 2'000'000;
 
-// Hands a text to nlohmann's lexer and lets others see how far it has read.
+// Iterator that passes a text to nlohmann's lexer and counts the characters that the lexer has
+// read.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -48,7 +49,7 @@ class CountingIterator {
   std::size_t* consumed_;
 };
 
-// What nlohmann says is wrong, in a form for a person and without its excerpts of the text. It says
+// The message of nlohmann in a form for a person, without its excerpts of the text. It has the form
 // "... syntax error while parsing value - invalid literal; last read: '"a":N'; expected '['".
 std::string SyntaxDetail(std::string_view what) {
   if (what.find("number overflow") != std::string_view::npos) return "a number beyond 1.8e308";
@@ -141,8 +142,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    // The parser's position is behind the byte at which it gave up; the token's start is the better
-    // place, except within a string, which may be long.
+    // The parser's position is behind the byte at which the parser stopped. The start of the token
+    // is a better place for the mistake, except within a string, which may be long.
     const std::string detail = EscapeControls(SyntaxDetail(error.what()));
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
     const std::size_t offset =
@@ -151,8 +152,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // First byte of the token that was just read: between the end of the one before and this one
-  // there is only space and punctuation.
+  // First byte of the token that was just read. Only space and punctuation lie between the end of
+  // the token before and this one.
   std::size_t TokenStart() const {
     const std::size_t start = text_.find_first_not_of(" \t\r\n,:", end_);
     return start == std::string_view::npos ? text_.size() : start;
@@ -176,7 +177,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return &(open_.back()->As<JsonObject>()->back().value = std::move(node));
   }
 
-  // To see where a number ends, the lexer takes one more byte, unless the text ends there.
+  // The lexer reads one byte more to see the end of a number, unless the text ends there.
   template <class T>
   bool PutNumber(T value) {
     if (Put(value) == nullptr) return false;
@@ -184,7 +185,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  // Pointers to open containers stay valid: what is around an open one does not grow.
+  // Pointers to open containers stay valid: a container does not grow while one inside it is open.
   template <class T>
   bool Open(T container) {
     JsonValue* node = Put(std::move(container));
@@ -237,7 +238,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   std::string_view base_;
   JsonValue root_;
   std::vector<JsonValue*> open_;
-  std::size_t consumed_ = 0;  // bytes that the lexer has taken
+  std::size_t consumed_ = 0;  // bytes that the lexer has read
   std::size_t end_;           // where the token before ended
   std::size_t count_ = 0;
 };
@@ -293,7 +294,7 @@ std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
   if (text.size() > kMaxFileBytes) {
     return refuse(0, "too-large", fmt::format("larger than {} bytes", kMaxFileBytes));
   }
-  // The lexer would take a NUL byte for the end of the text.
+  // The lexer would treat a NUL byte as the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return refuse(nul, "syntax", "not JSON: a NUL byte");
   }

@@ -1,4 +1,4 @@
-// JSON text as a tree that knows where each key and each value stands in the text.
+// JSON text as a tree that knows the place of each key and of each value in the text.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct JsonValue;
 using JsonArray = std::vector<JsonValue>;
 using JsonObject = std::vector<JsonMember>;  // in the order of the text, duplicates included
 
-/// A value, and the place of its first byte. Null is std::monostate; a number without fraction and
-/// exponent that fits is an integer.
+/// A value and the place of its first byte. Null is std::monostate. A number without fraction and
+/// exponent is an std::int64_t if it fits into one, otherwise a double.
 struct JsonValue {
   std::variant<std::monostate, bool, std::int64_t, double, std::string, JsonArray, JsonObject> data;
   Place place;
@@ -43,16 +43,16 @@ struct JsonMember {
 const JsonMember* FindMember(const JsonObject& object, std::string_view key);
 JsonMember* FindMember(JsonObject& object, std::string_view key);
 
-/// What the value is, for a message: `the text "abc"`, `the number 3`, `null`, `a list`.
+/// Description of the value for a message: `the text "abc"`, `the number 3`, `null`, `a list`.
 std::string Describe(const JsonValue& value);
 
-/// `base` and one more segment, escaped as RFC 6901 asks.
+/// `base` and one more segment, which is escaped as RFC 6901 requires.
 std::string JoinPointer(std::string_view base, std::string_view key);
 
 /// Parses strict JSON (RFC 8259) in UTF-8: no comments, no NaN, no lone surrogates. Limits: 64 MiB
-/// of text, 32 levels, two million values; no scenario comes near them, and no hostile text
-/// overflows the stack. Reports at most one mistake of form, and then returns nothing; reports each
-/// duplicate key, and then returns the tree all the same. `base` is the pointer of the whole.
+/// of text, 32 levels, two million values. No scenario comes near these limits, and no hostile text
+/// overflows the stack. Reports at most one mistake of syntax or size, and then returns nothing.
+/// Reports each duplicate key, and still returns the tree. `base` is the pointer of the root.
 std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
                                    MistakeList& mistakes, std::string_view base = "");
 

@@ -16,7 +16,7 @@
 namespace fogline {
 namespace {
 
-// A scenario with the tree that it was read from and the sources that places in it refer to.
+// A scenario, the tree from which it was read, and the sources to which places in the tree refer.
 struct Document {
   Scenario scenario;
   JsonValue root;

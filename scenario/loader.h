@@ -19,18 +19,19 @@ struct Mistake {
   int column = 0;       // 1-based, in characters
   std::string pointer;  // JSON pointer of the field, such as /arbitrator/threshold
   std::string rule;     // stable name of the broken rule, such as "range" (scenario/README.md)
-  std::string message;  // what is wrong, what is allowed, what may be meant
+  std::string message;  // the mistake, the allowed values, and a suggestion
 };
 
-/// Bad input of a user: a program prints what() and exits with code 2.
+/// Bad input of a user. A program prints what() and exits with code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A scenario that breaks rules. what() has one line for each mistake (20 at most), in the order of
-/// the file, as `file:line:column: error: /pointer: message`, then the overrides', then their
-/// number. mistakes() has at least one and 1000 at most.
+/// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
+/// `file:line:column: error: /pointer: message`: first those of the file in its order, then those
+/// of the overrides, then the number of mistakes. mistakes() has at least one mistake and at most
+/// 1000.
 class ScenarioError : public InputError {
  public:
   ScenarioError(const std::string& text, std::vector<Mistake> mistakes)
@@ -41,10 +42,10 @@ class ScenarioError : public InputError {
   std::vector<Mistake> mistakes_;
 };
 
-/// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as of --set) before
-/// it checks anything. Where the leader is recorded and lead.recorded.speeds_mps is empty, reads
-/// the CSV file (relative to the scenario's folder) and fills it with the speeds at steps 0 to
-/// steps - 1, interpolated linearly.
+/// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)
+/// before it checks anything. If the leader is recorded and lead.recorded.speeds_mps is empty,
+/// reads the CSV file (relative to the scenario's folder) and fills speeds_mps with the speeds at
+/// steps 0 to steps - 1, interpolated linearly.
 /// @throws ScenarioError
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
@@ -63,8 +64,8 @@ std::string PrintScenario(const Scenario& scenario);
 /// exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
 
-/// What a field or section is, for a person: meaning, type, unit, range, default, source. "/" or ""
-/// is the whole scenario; a list's item is /published/0 or /published/*.
+/// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"
+/// or "" is the whole scenario; an item of a list is /published/0 or /published/*.
 /// @throws InputError (no such field)
 std::string ExplainField(std::string_view pointer);
 

@@ -33,7 +33,7 @@ class LineCounter {
   int column() const { return column_; }
 
  private:
-  // UTF-8: every byte of a character but its first.
+  // Whether it is a byte of a UTF-8 character other than its first.
   static bool IsContinuation(char byte) { return (static_cast<unsigned char>(byte) >> 6U) == 2; }
 
   std::string_view text_;

@@ -11,21 +11,21 @@
 
 namespace fogline {
 
-/// What mistakes can be in: a file, or an override.
+/// A source of text that can have mistakes: a file or an override.
 struct Source {
   std::string name;
   std::string_view text;
   bool has_lines = true;  // false: a mistake is located by the name alone
 };
 
-/// Where something stands: a source, by its index, and the byte in that source's text.
+/// Place in a text: the index of a source, and the offset in bytes in the text of that source.
 struct Place {
   std::uint32_t source = 0;
   std::uint32_t offset = 0;
 };
 
-/// The mistakes found so far; once there are 1000 it is full and drops further ones, so that a
-/// hostile file costs neither memory nor time.
+/// The mistakes found so far. It keeps the first 1000 and drops further ones, so that a hostile
+/// file cannot use much memory or time.
 class MistakeList {
  public:
   void Add(Place place, std::string pointer, std::string_view rule, std::string message);

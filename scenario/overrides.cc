@@ -22,7 +22,8 @@ std::string FormHint(std::string_view text) {
   return FindField(pointer) == nullptr ? "" : DidYouMean(pointer);
 }
 
-// JSON, or else a plain text. Nothing if the JSON has mistakes of its own, such as duplicate keys.
+// The value as JSON, or as plain text if it is not JSON. Nothing if it is JSON that ParseJson()
+// refuses for another reason, such as its size.
 std::optional<JsonValue> ParseValue(std::string_view text, std::uint32_t source,
                                     std::string_view pointer, MistakeList& mistakes) {
   MistakeList trial;
@@ -34,15 +35,15 @@ std::optional<JsonValue> ParseValue(std::string_view text, std::uint32_t source,
 
 bool IsList(std::string_view pointer) { return FindField(std::string(pointer) + "/*") != nullptr; }
 
-// The list's item that a segment names, or null.
+// The item of the list that a segment names, or null.
 JsonValue* FindItem(JsonArray& items, std::string_view segment) {
   const auto index = ListIndex(segment);
   return index && *index < items.size() ? &items[*index] : nullptr;
 }
 
-// The value at `pointer`, a known field's. Makes missing sections on the way. Null where a list has
-// no such item, which is noted, and where the file has a value of a wrong type on the way, which
-// shows when the file is read.
+// The value at `pointer`, which names a known field. Adds missing sections of the path. Returns
+// null if a list has no such item (and notes this mistake), or if a section of the path has a value
+// of a wrong type (reading the tree notes this mistake).
 JsonValue* Walk(JsonValue& root, std::string_view pointer, Place place, MistakeList& mistakes) {
   JsonValue* at = &root;
   std::size_t begin = 0;

@@ -9,9 +9,10 @@
 
 namespace fogline {
 
-/// Puts the value of "/pointer=value" into the tree, in place of what is there, and makes missing
-/// sections on the way. The value is JSON, or else a plain text. Whether it suits its field shows
-/// when the tree is read, as for values of the file; places within it have source `source`.
+/// Puts the value of "/pointer=value" into the tree, replaces the value that is there, and adds
+/// missing sections of the path. If the value is not JSON, it is taken as plain text. Reading the
+/// tree checks whether the value suits its field, as for values of the file. Places in it have
+/// source `source`.
 void ApplyOverride(std::string_view text, std::uint32_t source, JsonValue& root,
                    MistakeList& mistakes);
 

@@ -77,7 +77,7 @@ class Printer {
   }
   void Needs(const NeedSpec&) {}
 
-  // `object` in braces; the braces stand at `depth`.
+  // Writes `object` in braces that are indented by `depth` levels.
   template <class T>
   void Object(const T& object, std::size_t depth) {
     out_ += '{';

@@ -25,8 +25,8 @@ std::optional<double> ToNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-// 3 and 3.0 alike, as in JSON schema. A number beyond int64 becomes int64's nearest end, which is
-// outside the range of every field.
+// Accepts 3 and 3.0, as JSON schema does. A number beyond int64 becomes the nearest limit of int64,
+// which is outside the range of every field.
 std::optional<std::int64_t> ToInteger(const JsonValue& value) {
   if (const auto* integer = value.As<std::int64_t>()) return *integer;
   const auto* number = value.As<double>();
@@ -37,7 +37,7 @@ std::optional<std::int64_t> ToInteger(const JsonValue& value) {
   return static_cast<std::int64_t>(*number);
 }
 
-// The number as it stands in the file, more or less. @pre ToNumber(value)
+// The number approximately as it is written in the file. @pre ToNumber(value)
 std::string TextOfNumber(const JsonValue& value) {
   if (const auto* integer = value.As<std::int64_t>()) return std::to_string(*integer);
   return NumberText(*ToNumber(value));
@@ -92,11 +92,11 @@ class ObjectReader {
   }
   void Needs(const NeedSpec& spec);
 
-  // To call after all fields: what is left over is unknown.
+  // Refuses every key that no field has taken; call it after all fields.
   void RefuseUnknownKeys();
   void Require(std::string_view name, std::string_view example);
 
-  // The value as an object with the fields of T.
+  // Reads the value as an object with the fields of T.
   template <class T>
   void ReadObject(const JsonValue& value, std::string pointer, T& out) {
     const auto* object = value.As<JsonObject>();
@@ -109,7 +109,7 @@ class ObjectReader {
  private:
   std::string Pointer(std::string_view name) const { return JoinPointer(pointer_, name); }
 
-  // The value of a key, which is known from now on.
+  // The value of a key; null if the object lacks it. From then on the key is known.
   const JsonValue* Take(std::string_view name) {
     known_.push_back(name);
     const JsonMember* member = FindMember(object_, name);
@@ -122,7 +122,7 @@ class ObjectReader {
                                         std::span<const std::string_view> names);
   std::string UnknownKeyMessage(std::string_view key) const;
 
-  // Wrong type.
+  // Notes a wrong type.
   void Refuse(const JsonValue& value, std::string pointer, std::string_view allowed,
               std::string_view hint = "") {
     mistakes_.Add(value.place, std::move(pointer), "type",
@@ -242,7 +242,7 @@ void ObjectReader::Needs(const NeedSpec& spec) {
   if (text == nullptr || *text != spec.value) return;
   if (const JsonMember* section = FindMember(object_, spec.section)) {
     const auto* fields = section->value.As<JsonObject>();
-    if (fields == nullptr) return;  // a wrong type, noted already
+    if (fields == nullptr) return;  // a wrong type, which has been noted
     const auto given = [fields](std::string_view name) {
       const JsonMember* field = FindMember(*fields, name);
       if (field == nullptr) return false;

@@ -7,7 +7,7 @@
 
 namespace fogline {
 
-/// The scenario that `root` describes. It is meant for use only if `mistakes` stays empty.
+/// The scenario that `root` describes. It is valid only if `mistakes` stays empty.
 Scenario ReadScenario(const JsonValue& root, MistakeList& mistakes);
 
 }  // namespace fogline

@@ -1,6 +1,6 @@
 // Sections of a scenario that only a run in real time uses: when an input counts as failed, and how
-// a car comes to a standstill when nobody is left to drive it. A period is step_s / speed of the
-// wall clock.
+// a car stops when neither automation nor human can drive it. A period is step_s of the wall clock,
+// divided by the speed of the run.
 #pragma once
 
 #include "scenario/field.h"

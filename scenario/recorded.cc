@@ -24,7 +24,7 @@ constexpr std::string_view kTimeColumn = "/lead/recorded/time_column";
 constexpr std::string_view kSpeedColumn = "/lead/recorded/speed_column";
 constexpr std::string_view kStart = "/lead/recorded/start_s";
 
-// Where the field, or the section nearest to it, stands.
+// Place of the field, or of the innermost section around it that the file has.
 Place FindPlace(const JsonValue& root, std::string_view pointer) {
   const JsonValue* at = &root;
   while (!pointer.empty()) {
@@ -39,7 +39,7 @@ Place FindPlace(const JsonValue& root, std::string_view pointer) {
   return at->place;
 }
 
-// The range that the scenario allows a recorded speed.
+// The range of a recorded speed, as the scenario's field allows it.
 NumberSpec SpeedRange() {
   struct Visitor {
     NumberSpec range{};
@@ -62,7 +62,8 @@ struct Recording {
   std::vector<CsvNumber> speeds_mps;
 };
 
-// Reads a recording; every step notes its mistakes and leaves the next one to run only without any.
+// Reads a recording in several stages. Each stage notes its mistakes; the next one runs only if
+// there are none.
 class RecordingReader {
  public:
   RecordingReader(const Scenario& scenario, const JsonValue& root, std::string csv_name,

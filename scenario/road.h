@@ -79,7 +79,7 @@ struct ChoiceNames<LeadProfile> {
       "a recorded speed from a CSV file"};
 };
 
-/// The leader goes linearly from its speed so far to `speed_mps` within `duration_s`.
+/// The leader's speed changes linearly from the one before to `speed_mps` within `duration_s`.
 struct SpeedBreakpoint {
   double duration_s = 1.0;
   double speed_mps = 20.0;
@@ -167,8 +167,8 @@ struct EmergencyBrakeSection {
 inline constexpr std::int64_t kMaxRecordedSpeeds = 1'000'000;
 
 /// A recorded speed. LoadScenario reads the file and fills `speeds_mps` with its speed at each
-/// step, so that no other machine needs the file. Where `speeds_mps` is given, `file` is only a
-/// note of its origin and is not read.
+/// step, so that no other machine needs the file. If the scenario has `speeds_mps`, `file` only
+/// states the origin and is not read.
 struct RecordedSection {
   std::string file;
   std::string time_column = "Time";

@@ -1,5 +1,5 @@
-// What an experiment is: the whole scenario file, with defaults, ranges and sources.
-// This header knows nothing of JSON; scenario/loader.h reads, checks and writes the files.
+// The whole scenario of an experiment, with defaults, ranges and sources. scenario/loader.h reads,
+// checks and writes the JSON files.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ struct PublishedRow {
   }
 };
 
-/// Thresholds and parameters of the measures (services/measures), with where they come from.
+/// Thresholds and parameters of the measures (services/measures), with their sources.
 struct MeasuresSection {
   double safety_floor_m = 0.001;
   double critical_ttc_s = 2.0;

@@ -17,8 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Control characters: C0, DEL and C1. As `not`, because `$` of a pattern that a whole text must
-// match would let a line feed at the end pass in some engines.
+// Control characters: C0, DEL and C1. The schema uses this pattern under `not`: with a pattern that
+// a whole text must match, `$` would accept a line feed at the end in some engines.
 constexpr std::string_view kControlCharacter = R"([\u0000-\u001f\u007f-\u009f])";
 
 // Integers without ".0", so that a person reads the bounds easily.
@@ -112,7 +112,7 @@ class SchemaBuilder {
   void Needs(const NeedSpec& spec) {
     Json any_of = Json::array();
     for (const std::string_view field : spec.fields) {
-      // minLength concerns a text, minItems a list; each leaves the other alone.
+      // minLength applies to texts only, and minItems to lists only.
       any_of.push_back(
           {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
     }

@@ -1,4 +1,4 @@
-// Sections of a scenario that say what the sensors measure and how fusion weighs it.
+// Sections of a scenario for the sensors and for the weights of their fusion.
 #pragma once
 
 #include "scenario/field.h"
@@ -73,7 +73,7 @@ struct RadarSection {
   }
 };
 
-/// What a LiDAR beam is, for fog model `beam` (Rasshofer et al. 2011; Hahner et al. 2021).
+/// Properties of a LiDAR beam, for fog model `beam` (Rasshofer et al. 2011; Hahner et al. 2021).
 struct LidarBeamSection {
   std::int64_t beams = 15;
   double pulse_half_width_ns = 5.0;

@@ -1,5 +1,5 @@
-// The section of a scenario that says what happens when the driver must first be asked: request,
-// take-over time, minimal risk manoeuvre.
+// The section of a scenario for a driver who must first be asked to take over: request, take-over
+// time, minimal risk manoeuvre.
 #pragma once
 
 #include <array>
@@ -61,8 +61,8 @@ struct TakeOverParameters {
   }
 };
 
-/// Seconds between a request to take over and the minimal risk manoeuvre, unless it is severe: no
-/// less, whatever the scenario (UN R157, 5.4.4.1).
+/// Least time in s between a request to take over and the minimal risk manoeuvre, unless the
+/// request is severe (UN R157, 5.4.4.1). No scenario can make it shorter.
 inline constexpr double kLeastLead_s = 10.0;
 
 /// Emergency fallback: request, escalation, minimal risk manoeuvre.

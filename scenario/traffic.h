@@ -1,4 +1,4 @@
-// The section of a scenario that says who drives behind the host.
+// The section of a scenario for the cars behind the host.
 #pragma once
 
 #include <array>
@@ -40,10 +40,10 @@ struct ChoiceNames<SafetyModelChoice> {
       "Responsibility-Sensitive Safety", "the fuzzy safety model of UN R157"};
 };
 
-/// Most cars that may follow the host: TRUTH has to fit one datagram.
+/// Greatest number of cars behind the host: TRUTH must fit one datagram.
 inline constexpr std::int64_t kMaxFollowers = 32;
 
-/// One following car that differs from the rest.
+/// One following car that differs from the other following cars.
 struct FollowerCar {
   FollowerDriver driver = FollowerDriver::kAcc;
   FollowerStyle style = FollowerStyle::kNormal;

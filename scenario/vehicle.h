@@ -1,4 +1,5 @@
-// Sections of a scenario that say how cars obey: which car it is, and what it drives on.
+// Sections of a scenario for the vehicles, which follow commands in different ways, and for the
+// road.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ struct ChoiceNames<Surface> {
 
 /// The road's slope at one place.
 struct GradePoint {
-  double position_m = 0;  // along the lane, as truth_t counts
+  double position_m = 0;  // along the lane, as in truth_t
   double grade = 0;       // rise per horizontal length, positive uphill: 0.05 is 5 %
 
   template <class Self, class Visitor>
@@ -57,7 +58,7 @@ struct GradePoint {
   }
 };
 
-/// What all cars drive on. The point mass does not feel it.
+/// The road under all cars. It has no effect on a point mass.
 struct RoadSection {
   Surface surface = Surface::kDry;
   std::vector<GradePoint> grade;

@@ -17,15 +17,18 @@ namespace {
 // Longest excerpt of a user's text in a message, in bytes.
 constexpr std::size_t kMaxExcerpt = 100;
 
-// Longer words get no suggestion: the distance costs the product of the lengths.
+// Longest word that gets a suggestion, in bytes. The time for a distance grows with the product of
+// the lengths.
 constexpr std::size_t kMaxCompared = 64;
 
-// A suggestion may differ in one character out of three, and in one of a very short word. The
-// beginning of a name (its unit left out, say) counts as one edit if it is long enough.
+// A suggestion may differ by one edit for each three characters, and by one in a shorter word. A
+// word that is the beginning of a name (for example a name without its unit) counts as one edit if
+// it is long enough.
 constexpr std::size_t kCharactersPerEdit = 3;
 constexpr std::size_t kMinBeginning = 2;
 
-// Bytes of the control character (C0, DEL, C1 in UTF-8) that `text` begins with; 0 if none.
+// Size in bytes of the control character (C0, DEL, C1 in UTF-8) at the beginning of `text`; 0 if
+// there is none.
 std::size_t ControlCharacterSize(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
@@ -33,7 +36,8 @@ std::size_t ControlCharacterSize(std::string_view text) {
   return 0;
 }
 
-// A character at the beginning of a text; none if what stands there is not UTF-8.
+// The character at the beginning of a text; without code point if the text does not begin with
+// UTF-8.
 struct Character {
   std::size_t bytes = 1;
   std::optional<char32_t> code_point;
@@ -42,7 +46,7 @@ struct Character {
 Character FirstCharacter(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {.bytes = 1, .code_point = byte(0)};
-  // The first byte has as many leading ones as there are bytes.
+  // The number of leading ones of the first byte is the number of bytes of the character.
   const std::size_t bytes = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
   if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < bytes) return {};
   char32_t code_point = byte(0) & (0x7fU >> bytes);
@@ -57,8 +61,8 @@ Character FirstCharacter(std::string_view text) {
   return {.bytes = bytes, .code_point = code_point};
 }
 
-// Control characters (Unicode's general category Cc), and those that are not seen but change what
-// is: the invisible ones of its category Cf, and the separators of lines and paragraphs.
+// Whether it is a control character (Unicode's general category Cc), an invisible character of
+// category Cf, or a separator of lines or paragraphs.
 bool IsUnseen(char32_t c) {
   struct Block {
     char32_t first, last;
@@ -71,7 +75,7 @@ bool IsUnseen(char32_t c) {
       kUnseen, [c](const Block& block) { return c >= block.first && c <= block.last; });
 }
 
-// As in a JSON string: in units of UTF-16.
+// The escape sequence of a JSON string, in units of UTF-16.
 std::string Escaped(char32_t c) {
   if (c < 0x10000) return fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c));
   const std::uint32_t rest = c - 0x10000;
@@ -185,7 +189,8 @@ std::string Names(std::span<const std::string_view> names) {
 }
 
 std::size_t EditDistance(std::string_view a, std::string_view b) {
-  // Rows of the distances between prefixes: row i - 2, i - 1 and i of a against every one of b.
+  // Distances between the prefixes of a and b: rows i - 2, i - 1 and i. A row has one prefix of a
+  // and every prefix of b.
   std::vector<std::size_t> before(b.size() + 1);
   std::vector<std::size_t> previous(b.size() + 1);
   std::vector<std::size_t> current(b.size() + 1);

@@ -1,4 +1,5 @@
-// Words of messages about scenarios: what a field allows, what stands there, what may be meant.
+// Parts of messages about scenarios: the values that a field allows, excerpts of the file,
+// suggestions.
 #pragma once
 
 #include <cstddef>
@@ -15,25 +16,25 @@ namespace fogline {
 /// The shortest text that reads back as the same number, sign of zero included.
 std::string NumberText(double value);
 
-/// A time in s, of which a run has whole microseconds: "899.9" for a sum that is 899.9000000000001.
+/// A time in s, rounded to microseconds, the resolution of a run: "899.9" for 899.9000000000001.
 std::string TimeText(double time_s);
 
-/// As any terminal may be shown the text, in one line: control characters (C0, DEL, C1) are escaped
-/// as in JSON, and those that are not seen but change what is (directions of writing, zero width);
-/// what is not UTF-8 is written as "\xff".
+/// The text in one line that any terminal can show safely. Control characters (C0, DEL, C1) and
+/// invisible characters that change the text around them (directions of writing, zero width) are
+/// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
 
-/// The same, but line feeds stay. JSON stays JSON of the same meaning.
+/// The same, but line feeds stay. JSON stays JSON with the same meaning.
 std::string EscapeLines(std::string_view text);
 
-/// The name of a file as it may be printed.
+/// The name of a file, escaped for a terminal.
 std::string PathText(const std::filesystem::path& file);
 
-/// `text` with '?' for everything but ASCII letters, digits, signs and spaces: for what comes from
-/// the network, of which not even the encoding is known.
+/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. For
+/// text of unknown encoding from the network.
 std::string Printable(std::string_view text);
 
-/// As a JSON string: in double quotes, control characters escaped.
+/// The text as a JSON string: in double quotes, with control characters escaped.
 std::string Quote(std::string_view text);
 
 /// For a message: as Quote, but long texts are cut.
@@ -49,22 +50,24 @@ std::string WithUnit(std::string_view text, std::string_view unit);
 std::string Range(const NumberSpec& spec);
 std::string Range(const IntegerSpec& spec);
 
-/// What a field allows, such as "a number in [0, 70] m/s".
+/// The values that a field allows, such as "a number in [0, 70] m/s".
 std::string Allowed(const NumberSpec& spec);
 std::string Allowed(const IntegerSpec& spec);
 std::string AllowedText();
 
-/// How many items a list may have, such as "0 to 100".
+/// The allowed number of items of a list, such as "0 to 100".
 std::string Range(const ListSpec& spec);
 
 /// The names in double quotes: `"box", "half_sine", "triangle"`.
 std::string Names(std::span<const std::string_view> names);
 
-/// Fewest insertions, deletions, substitutions and swaps of neighbours that turn one word into the
-/// other (optimal string alignment: Damerau-Levenshtein without repeated edits of one place).
+/// Least number of insertions, deletions, substitutions and swaps of neighbours that turn one word
+/// into the other (optimal string alignment: Damerau-Levenshtein without repeated edits of one
+/// place).
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
-/// The candidate nearest to `word`, the first of equals, if it is near enough to be meant.
+/// The candidate nearest to `word`, if it is near enough for a suggestion. Of several equally near
+/// ones it is the first.
 std::optional<std::string_view> Nearest(std::string_view word,
                                         std::span<const std::string_view> candidates);
 

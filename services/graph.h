@@ -1,5 +1,5 @@
-// The table of Fogline: every role and every channel, once. The nodes' wiring, the recorder, the
-// digest, the monitors, the tests and the README's tables are made from it.
+// The table of every role and every channel of Fogline. The wiring of the nodes, the recorder, the
+// digest, the monitors, the tests and the README's tables use it.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ enum class Role : std::uint8_t {
   kArbitrator,
   kFollower,
   kRecorder,
-  kRunner,  // `fogline run`: starts and ends a run, takes no part in its steps
+  kRunner,  // `fogline run`: starts and ends a run, and computes nothing in its steps
 };
 
 /// A set of roles.
@@ -72,30 +72,30 @@ inline constexpr std::array kRoles{
     RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
 };
 
-/// All of `kRoles`, and the runner.
+/// All roles of `kRoles`, and the runner.
 inline constexpr RoleSet kEveryone{
     Role::kWorld,  Role::kRadar,      Role::kLidar,    Role::kFusion,   Role::kAcc,
     Role::kDriver, Role::kArbitrator, Role::kFollower, Role::kRecorder, Role::kRunner};
 
 /// How often a channel carries a message.
 enum class Pace : std::uint8_t {
-  kStep,     // exactly one message in every step, by its producer
-  kControl,  // as needed, outside the sequence of steps
+  kStep,     // its producer sends exactly one message in every step
+  kControl,  // messages as needed, outside the sequence of steps
 };
 
-/// One channel. Every channel has a message type of its own, so a type names its channel.
+/// One channel. Every channel has its own message type, so a type identifies its channel.
 template <class M>
 struct Channel {
   using Message = M;
   std::string_view name;
   Pace pace;
   Role from;
-  RoleSet to;  // who works on it; the recorder takes every kStep channel besides
+  RoleSet to;  // roles that use it; the recorder receives every kStep channel, too
   std::string_view what;
-  RoleSet on_demand = {};  // who reads it besides, where the scenario demands it
+  RoleSet on_demand = {};  // roles that use it only if the scenario demands it
 };
 
-/// Every channel. The kStep channels stand in an order in which a step can be evaluated.
+/// Every channel. The order of the kStep channels is one in which a step can be evaluated.
 inline constexpr std::tuple kGraph{
     Channel<run_t>{"RUN", Pace::kControl, Role::kRunner, kEveryone,
                    "phase of the run; the scenario, in parts"},
@@ -166,11 +166,12 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// The recorder logs every kStep channel, and RUN, so that a log explains itself.
+  /// Whether the recorder logs the channel: every kStep channel, and RUN, so that a log contains
+  /// its scenario.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 
-/// `kGraph` without types, same order.
+/// `kGraph` without types, in the same order.
 inline constexpr auto kChannels = std::apply(
     [](const auto&... channel) {
       return std::array{ChannelInfo{channel.name, channel.pace, channel.from, channel.to,
@@ -209,8 +210,8 @@ constexpr void ForEachStepChannel(Visit&& visit) {
   (std::make_index_sequence<kNumChannels>{});
 }
 
-/// How many steps older than the step that `reader` computes the message of `producer` is that it
-/// uses: none if the producer comes first in the order of evaluation, one otherwise.
+/// Age, in steps, of the message of `producer` that `reader` uses in a step: 0 if the producer
+/// comes first in the order of evaluation, 1 otherwise.
 constexpr std::int64_t LagOf(Role producer, Role reader) {
   for (const RoleInfo& info : kRoles) {
     if (info.role == reader) return 1;
@@ -219,10 +220,10 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
   return 0;
 }
 
-/// Simulated time in messages (header_t, utime) is in microseconds.
+/// The unit of simulated time in messages (header_t, utime) is the microsecond.
 inline constexpr double kMicrosPerSecond = 1e6;
 
-/// The place in kChannels of the channel with this name, kNumChannels if no channel has it.
+/// Index in kChannels of the channel with this name; kNumChannels if no channel has it.
 constexpr std::size_t ChannelNamed(std::string_view name) {
   std::size_t place = 0;
   while (place < kNumChannels && kChannels[place].name != name) ++place;

@@ -9,8 +9,9 @@
 namespace fogline {
 namespace {
 
-// A car has done what was commanded if its acceleration is this close to it, in m/s2: far above the
-// rounding of an integration over substeps, far below what anyone notices.
+// A car has followed its command if its acceleration differs by no more than this, in m/s2: far
+// above the rounding of an integration over substeps, far below any difference that a person
+// notices.
 constexpr double kSameAcceleration = 1e-6;
 
 QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
@@ -88,11 +89,12 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
          model.gamma(kOwnAcceleration) * control;
 }
 
-// The u that the rate limit counts from: the own one if the car did what it was told, otherwise the
-// one that would hold the acceleration that the car has. Brought within the limits of u, because
-// the driver may have braked harder than the automation is allowed to. A vehicle never does quite
-// what it is told: its u goes on, but no further ahead of the one that would hold the acceleration
-// than a ramp at the jerk limit is ahead of the engine's lag. Whoever drives, it cannot run away.
+// The u from which the rate limit counts: the last own u if the car followed its command, otherwise
+// the u that would hold the acceleration that the car has. It is clamped to the limits of u,
+// because the driver may brake harder than the automation is allowed to. A vehicle never follows
+// its command exactly. Its u continues from the last own u, but stays near the u that would hold
+// the acceleration: no further ahead than a ramp at the jerk limit is ahead of an engine with the
+// model's lag. So u cannot drift away while the human drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;
   double control = holding;
@@ -106,7 +108,7 @@ double AccController::PreviousControl(double acceleration_mps2) const {
   return std::clamp(control, program_.MinControl(), program_.MaxControl());
 }
 
-// Computes plan_; false if there is none.
+// Computes plan_; returns false if there is no plan.
 bool AccController::Solve(const AccSituation& now, Output& output) {
   const Eigen::Vector4d parameters(now.state(kDeltaD), now.state(kDeltaV),
                                    now.state(kOwnAcceleration), now.previous_control);

@@ -1,4 +1,4 @@
-// The ACC itself, for the host and a following car alike.
+// The controller of the ACC, for the host and for following cars.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 namespace fogline {
 
 /// Model predictive adaptive cruise control: holds the safe distance d_r = T_hw v + d_0 to the
-/// preceding car. Knows distances and speeds, and nothing of sensors, messages or who drives.
+/// preceding car. Uses distances and speeds; sensors, messages and authority have no place here.
 ///
-/// The unconstrained optimum is linear in the situation, so its gain is computed once; a plan that
-/// meets every limit is taken as it is, and only otherwise is the quadratic program solved.
-/// To a point mass, which does at once what it is told, the command is the model's acceleration one
-/// step ahead, from the acceleration that the car really has: whoever drove before, it goes on from
-/// there. A vehicle has a lag of its own in the place of the model's: its command is the
-/// acceleration -K_e u that u asks for, and its u is ahead of the acceleration that it has by no
-/// more than the model's engine would be behind at the jerk limit.
+/// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
+/// of this gain meets every limit, the controller uses it; otherwise it solves the quadratic
+/// program. A point mass applies its command at once. Its command is the model's acceleration one
+/// step ahead, and starts from the acceleration that the car really has, so it is continuous after
+/// a take-over. A vehicle has its own lag in place of the model's. Its command is -K_e u, the
+/// acceleration to which u leads in the end. Its u is ahead of the acceleration that the vehicle
+/// has by no more than the lag of the model's engine at the jerk limit.
 class AccController {
  public:
   struct Input {
@@ -30,10 +30,10 @@ class AccController {
     double relative_speed_mps;  // preceding minus own
     double speed_mps;           // own
     double acceleration_mps2;   // applied during the step that ended now
-    bool has_target;            // whether the first two mean something
+    bool has_target;            // whether the first two are valid
   };
 
-  /// Where a command comes from; the numbers are those of accel_command_t.
+  /// How a command was computed; the numbers are those of accel_command_t.
   enum class Solver : std::int8_t {
     kUnconstrained = 0,  // the precomputed optimum, within all limits
     kActiveSet = 1,      // the optimum on the limits
@@ -48,16 +48,17 @@ class AccController {
     std::int32_t iterations;  // of the active-set solver
   };
 
-  /// @throws InputError if the section's weights make no well-conditioned problem.
-  /// @param vehicle what obeys the commands
+  /// @throws InputError if the section's weights make an ill-conditioned problem.
+  /// @param vehicle model of the car that receives the commands
   AccController(const AccSection& section, double step_s,
                 VehicleModel vehicle = VehicleModel::kPointMass);
 
   Output Step(const Input& input);
 
-  /// Begins anew, as AccController(section, step_s, vehicle) would, and keeps what is computed once
-  /// if these are the parameters that it has: most of the cost of a short run.
-  /// @throws InputError as the constructor; it is then as it was.
+  /// Resets the object to the state of a new AccController(section, step_s, vehicle). If section
+  /// and step_s are unchanged, it keeps what is computed once, which is most of the cost of a short
+  /// run.
+  /// @throws InputError as the constructor; the object is then unchanged.
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
 

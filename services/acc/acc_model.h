@@ -16,9 +16,9 @@ enum AccState : Eigen::Index { kDeltaD = 0, kDeltaV = 1, kOwnAcceleration = 2 };
 ///
 ///     A = [0 1 -T_hw; 0 0 -1; 0 0 -1/T_e]    B = [0; 0; -K_e/T_e]    C = [0 0 1]
 ///
-/// as printed by Sourav & Cheng, RTSS 2024. Mind the sign of B: a positive u decelerates, and a
-/// constant u leads to the acceleration -K_e u. (Takahama & Akasaka 2018, the source of that model,
-/// have +K_e/T_e.)
+/// as printed by Sourav & Cheng, RTSS 2024. Because of the sign of B a positive u decelerates, and
+/// a constant u leads to the acceleration -K_e u. (Takahama & Akasaka 2018, the source of that
+/// model, have +K_e/T_e.)
 struct AccModel {
   Eigen::Matrix3d a;     // 3x3, A
   Eigen::Vector3d b;     // 3x1, B
@@ -31,7 +31,7 @@ struct DiscreteAccModel {
   Eigen::Vector3d gamma;
 };
 
-/// The matrices above with the parameters of `section`.
+/// The model above with the parameters of `section`.
 AccModel MakeAccModel(const AccSection& section);
 
 /// Exact for a u that is constant over each step (zero-order hold; Van Loan 1978):

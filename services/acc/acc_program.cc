@@ -46,8 +46,8 @@ void AccProgram::BuildCost(const AccSection& section) {
   gradient_.setZero(n + 1, 4);
   hessian_(kSlack, kSlack) = 2 * section.min_gap_weight;
 
-  // x(j) = Phi^j x(0) + sum_i response(j-1-i) u_i. Weighted products of responses, summed over j:
-  // an entry of this block is its lower right neighbour and one product more.
+  // x(j) = Phi^j x(0) + sum_i response(j-1-i) u_i. The entries of this block are sums over j of
+  // weighted products of responses: each is its lower right neighbour plus one more product.
   auto controls = hessian_.bottomRightCorner(n, n);
   for (Index i = n - 1; i >= 0; --i) {
     for (Index k = i; k >= 0; --k) {
@@ -113,7 +113,7 @@ AccProgram::Reach AccProgram::ReachOf(const AccSituation& now) const {
   const double settled = SettledSpeed(now);
   const double fastest = settled + duration_s_ * section_.max_acceleration_mps2;
   const double slowest = settled + duration_s_ * section_.min_acceleration_mps2;
-  // The gap under the strongest acceleration is concave in time, so smallest at an end.
+  // The gap under the strongest acceleration is concave in time, so its minimum is at one end.
   const double acceleration = std::max(now.state(kOwnAcceleration), section_.max_acceleration_mps2);
   const double gap = Gap(now.state, now.speed_mps + now.state(kDeltaV));
   const double last_gap =

@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// What the plan starts from.
+/// The situation from which a plan starts.
 struct AccSituation {
   Eigen::Vector3d state;    // x(k), see AccState
   double speed_mps;         // own speed
@@ -35,16 +35,16 @@ struct AccSituation {
 /// optimum that touches them swings from step to step.)
 ///
 /// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
-/// allow it) at the fastest allowed change of u. It meets the first three limits whatever the
+/// allow it) at the fastest allowed change of u. It meets the first three limits in every
 /// situation, and s >= 0 can grow until the last two are met, so the program always has a solution.
-/// A car that is faster than v_max, because its driver was, is thereby brought back no later than
-/// by the fall-back plan. s, in m, is the shortfall of the gap that the plan allows itself; less
-/// and less of it is forgiven towards the end of the horizon, or a gap that is too small now would
-/// excuse one that stays too small. s needs no sign, as no s < 0 is ever cheaper than 0.
+/// If the human drove faster than v_max, the car comes back below v_max no later than with the
+/// fall-back plan. s, in m, is the shortfall of the gap that the plan allows. The allowed part of s
+/// decreases towards the end of the horizon; otherwise a gap that is too small at the start could
+/// stay too small. The program needs no limit s >= 0, because s < 0 is never cheaper than 0.
 class AccProgram {
  public:
-  /// By how much a limit may be broken (m/s2, m/s or m) and still count as met: far above rounding,
-  /// far below anything that a car can do.
+  /// A limit that is broken by no more than this (m/s2, m/s or m) counts as met: far above
+  /// rounding, far below any difference that a car can make.
   static constexpr double kTolerance = 1e-10;
 
   AccProgram(const AccSection& section, double step_s);
@@ -57,10 +57,10 @@ class AccProgram {
   const Eigen::MatrixXd& hessian() const { return hessian_; }
   const Eigen::MatrixXd& gradient() const { return gradient_; }
 
-  /// The limits' rows C, 5N x (N+1), N of each kind in the order above.
+  /// Matrix C of the limits, 5N x (N+1): five rows for each step.
   const Eigen::MatrixXd& constraints() const { return constraints_; }
 
-  /// Limits of C z. Those of speed and gap that no plan can reach within the horizon are infinite.
+  /// Limits of C z. Limits of speed or gap that no plan can reach within the horizon are infinite.
   void Limits(const AccSituation& now, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
 
   /// Whether a plan u_0, ..., u_{N-1} meets every limit with s = 0.
@@ -74,7 +74,7 @@ class AccProgram {
   double FallbackControl(double previous_control) const;
 
  private:
-  // Which limits of the predicted states any plan within the limits of u can reach at all.
+  // Which limits of the predicted states a plan within the limits of u can reach.
   struct Reach {
     bool speed;
     bool gap;

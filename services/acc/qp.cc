@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Index;
 
-// Reciprocal condition number below which a Hessian counts as singular: x would have fewer than
-// three digits.
+// A Hessian with a smaller reciprocal condition number counts as singular: x would have fewer than
+// three correct digits.
 constexpr double kMinReciprocalCondition = 1e-13;
 
-// A normal counts as a combination of the active ones when the part of it that is orthogonal to
-// them is this small against the whole; rounding leaves about 1e-16.
+// A normal counts as a combination of the active ones if its part orthogonal to them is no larger
+// than this share of the whole normal; rounding leaves about 1e-16.
 constexpr double kDependent = 1e-11;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,10 +88,10 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// Step 0 of the paper, from the last active set instead of the empty one: the minimum where its
-// limits are equalities, less the limits whose multipliers come out negative. With N = Q R their
-// normals, y = L'x and y0 the unconstrained minimum, that is y = y0 + Q t where R't = b - N'y0, and
-// R lambda = t.
+// Step 0 of the paper, from the last active set instead of the empty one: finds the minimum at
+// which the limits of this set are equalities, and drops limits with negative multipliers. Let N =
+// Q R be their normals, y = L'x, and y0 the unconstrained minimum. Then y = y0 + Q t with R't = b -
+// N'y0, and R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;
@@ -144,14 +144,14 @@ QpSolver::Limit QpSolver::MostViolated(const Eigen::VectorXd& lower,
   return worst;
 }
 
-// Step 2 of the paper: towards `limit`, as far as all multipliers stay non-negative.
+// Step 2 of the paper: a step towards `limit`, as long as all multipliers stay non-negative.
 QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
   const double norm = SplitNormal(limit);
   auto fall = dual_direction_.head(active_);
   fall = along_.head(active_);
   r_.topLeftCorner(active_, active_).triangularView<Eigen::Upper>().solveInPlace(fall);
 
-  double dual_step = kInfinity;  // at which a multiplier becomes zero
+  double dual_step = kInfinity;  // size at which a multiplier becomes zero
   Index blocking = 0;
   for (Index i = 0; i < active_; ++i) {
     if (fall(i) > 0 && lambda_(i) < dual_step * fall(i)) {
@@ -159,7 +159,7 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
       blocking = i;
     }
   }
-  // At which `limit` is met; never, if its normal depends on the active ones.
+  // Size at which `limit` is met; infinite if its normal depends on the active ones.
   const double primal_step = norm > 0 ? limit.violation / (norm * norm) : kInfinity;
   const double step = primal_step < dual_step ? primal_step : dual_step;
   if (step == kInfinity) return StepKind::kInfeasible;
@@ -191,8 +191,8 @@ double QpSolver::SplitNormal(const Limit& limit) {
   const double whole = rest_.norm();
   along.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * along;
-  // Once more: the first pass leaves a rounding error relative to the whole normal in a rest that
-  // may be much smaller. Twice is enough.
+  // A second pass: the first one leaves a rounding error relative to the whole normal, and the rest
+  // may be much smaller than that. Two passes are enough.
   correction.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * correction;
   along += correction;
@@ -210,7 +210,7 @@ void QpSolver::Add(const Limit& limit, double multiplier, double norm) {
   ++active_;
 }
 
-// Takes a column out of R and rotates what is left back into a triangle.
+// Removes a column from R and rotates the remaining columns back into a triangle.
 void QpSolver::Drop(Index position) {
   --active_;
   for (Index i = position; i < active_; ++i) {

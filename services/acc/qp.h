@@ -1,5 +1,5 @@
-// A small dense solver for strictly convex quadratic programs that differ in their linear term and
-// limits only. Not for many hundreds of variables, and not for problems without curvature.
+// A small dense solver for strictly convex quadratic programs that differ only in their linear term
+// and limits. It is not made for many hundreds of variables, nor for problems without curvature.
 #pragma once
 
 #include <cstdint>
@@ -14,37 +14,37 @@ namespace fogline {
 ///
 ///     min 1/2 x'Hx + g'x   subject to   lower <= C x <= upper
 ///
-/// It adds one violated limit after the other to a set of active ones, and drops those that are in
-/// the way. It needs no feasible start, and few iterations where few limits are active.
+/// It adds one violated limit after the other to a set of active ones, and drops those that block a
+/// step. It needs no feasible start, and few iterations if few limits are active.
 ///
 /// With the Cholesky factor H = L L', the normal of a limit is the column L^-1 c. The active
 /// normals are held as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
 /// with reorthogonalisation and Givens rotations: J. W. Daniel, W. B. Gragg, L. Kaufman and
-/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2), and a
-/// row of C only the part between its outermost nonzeros.
+/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2). Of a
+/// row of C it uses only the part between the outermost nonzeros.
 ///
-/// The factors depend on H and C alone. So every call but the first starts from the active set of
-/// the call before, which is nearly right where problems follow each other in time. The minimum is
-/// the same from any start, but for rounding; equal sequences of calls give equal bits.
+/// The factors depend on H and C alone. So every call except the first starts from the active set
+/// of the call before, which is nearly right if problems follow each other in time. The minimum is
+/// the same from any start except for rounding; equal sequences of calls give equal bits.
 ///
-/// Allocates in its constructor, never afterwards.
+/// Only the constructor allocates memory.
 class QpSolver {
  public:
   enum class Status : std::uint8_t {
     kOptimal,         // solution() is the minimum
     kInfeasible,      // no x meets all limits
-    kIterationLimit,  // gave up; solution() breaks at least one limit
+    kIterationLimit,  // stopped at max_iterations; solution() breaks at least one limit
   };
 
   struct Options {
     std::int64_t max_iterations = 1000;
-    // A limit counts as met when it is broken by no more than this, in the units of its row of C.
+    // A limit that is broken by no more than this, in the units of its row of C, counts as met.
     double tolerance = 1e-10;
   };
 
   struct Result {
     Status status = Status::kOptimal;
-    std::int64_t iterations = 0;  // steps of the method: each adds a limit or drops one
+    std::int64_t iterations = 0;  // steps of the method; each adds or drops one limit
   };
 
   /// `hessian` is n x n, symmetric; `constraints` (C) is m x n, without rows of zeros.
@@ -59,14 +59,14 @@ class QpSolver {
   /// H^-1 times each column of `columns`: minus the unconstrained minimum for that linear term.
   Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
 
-  /// Forgets the calls before: the next Solve() starts from no active limit, as the first one did.
+  /// Forgets the calls before: the next Solve() starts without active limits, as the first one did.
   void Restart() { active_ = 0; }
 
   /// x of the last Solve().
   const Eigen::VectorXd& solution() const { return x_; }
 
-  /// After kOptimal, the Lagrange multiplier y of every row: H x + g = C' y, with y > 0 only where
-  /// the lower limit is active, y < 0 only where the upper one is, and y = 0 elsewhere.
+  /// After kOptimal, the Lagrange multiplier y of every row: H x + g = C' y. y > 0 only if the
+  /// lower limit is active, y < 0 only if the upper one is active, otherwise y = 0.
   const Eigen::VectorXd& multipliers() const { return multipliers_; }
 
  private:
@@ -74,10 +74,10 @@ class QpSolver {
   struct Limit {
     Eigen::Index row;
     double side;       // 1: lower, -1: upper
-    double violation;  // by how much it is broken
+    double violation;  // amount by which it is broken
   };
 
-  // Where a row of C is not zero.
+  // The part of a row of C between its outermost nonzeros.
   struct Span {
     Eigen::Index begin;
     Eigen::Index size;
@@ -108,7 +108,7 @@ class QpSolver {
   Eigen::MatrixXd q_;              // n x n, orthonormal basis of the active normals
   Eigen::MatrixXd r_;              // n x n, upper triangular: active normals = Q R
 
-  // Of the limit that is being added, whose normal is Q along_ + rest_.
+  // Of the limit that is being added. Its normal is Q along_ + rest_.
   Eigen::VectorXd along_;             // n, the first `active_` entries count
   Eigen::VectorXd rest_;              // n, orthogonal to Q
   Eigen::VectorXd correction_;        // n, of `along_`

@@ -50,14 +50,14 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.threshold = wish.threshold;
   const double wanted = steady_.Step(wish, out_.doc);
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
-  // The paper's driver is always at it: what is wanted is granted at once.
+  // The paper's driver is always ready: he gets the wanted authority at once.
   granted_ = wanted;
   if (take_over_ && !Ask(wanted, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
-  // Who has more authority; the human where both have half.
+  // The mode names the side with more authority; the human if both have half.
   out_.mode =
       state.lambda_human < kMainAuthority ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
   if (take_over_) {
@@ -101,11 +101,11 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     return false;
   }
   if (asked.authority == Authority::kHuman) {
-    // He shares the wheel only with an automation that is there, and not off for the rest of the
-    // run.
+    // The driver shares authority only with an automation that is there and is not off for the rest
+    // of the run.
     const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
     granted_ = shared ? wanted : 1;
-    // On a ramp the automation that leaves goes on easing: it does not accelerate again.
+    // On a ramp from the automation to the driver, the automation does not accelerate again.
     eased_mps2_ = std::max(0.0, eased_mps2_ - easing_per_step_);
     if (!shared) offers.automation_mps2 = std::min(offers.automation_mps2, eased_mps2_);
   } else {
@@ -113,7 +113,7 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     offers.automation_mps2 = asked.acceleration_mps2;
     eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
-  // Who ends a manoeuvre has the wheel at once: the automation is off and has no share to give.
+  // A driver who ends a manoeuvre has the whole authority at once, because the automation is off.
   if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});
   return true;
 }

@@ -12,16 +12,16 @@
 
 namespace fogline {
 
-/// DoC = 1/(1 + exp(-slope (x - centre))) of what the scenario's measure says of the conflict: of z
-/// (services/conflict/doc.h), as the paper has it, or of the score x of any other row of
-/// services/conflict/measures.cc. Or, with measure_scale probability, that score itself.
+/// DoC = 1/(1 + exp(-slope (x - centre))). x is z (services/conflict/doc.h), as in the paper, or
+/// the score of another row of services/conflict/measures.cc, as the scenario's measure says. With
+/// measure_scale probability the DoC is the score itself.
 class ConflictMeter {
  public:
-  /// @throw InputError if measure_scale takes a measure for a probability that is none
+  /// @throw InputError if measure_scale is probability but the measure's score is not a probability
   explicit ConflictMeter(const Scenario& scenario);
 
-  /// The values of a step. `track` is the witness of measures that need one; it is left out unless
-  /// it is of the same step.
+  /// Adds the values of a step. `track` is the witness for measures that need one; a track of
+  /// another step than radar's is not used.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
     if (!measure_) return doc_.Observe(evidence);
@@ -31,9 +31,9 @@ class ConflictMeter {
     score_ = measure_->Step(evidence);
   }
 
-  /// Of all steps that have been observed: z in m, or the score in the measure's own unit.
+  /// Conflict of all steps that were observed: z in m, or the score in the measure's own unit.
   double conflict() const { return measure_ ? score_ : doc_.conflict_m(); }
-  /// DoC of such a conflict.
+  /// DoC of this value of conflict().
   double DocOf(double conflict) const {
     if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
     return DegreeOfConflict(conflict, slope_, centre_);

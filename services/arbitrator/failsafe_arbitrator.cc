@@ -5,22 +5,23 @@
 namespace fogline {
 namespace {
 
-// The automation can drive if its command is there, the track that the command is made of, and both
-// sensors in pairs of one step, without which no Degree of Conflict tells whether to trust it. The
-// worst of these decides.
+// The automation can drive if its command is there, the track from which the command is computed,
+// and both sensors in pairs of one step. Without pairs no Degree of Conflict says whether to trust
+// the automation. The result is the worst of these.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
 }
 
-// What stands for a message that has never come.
+// The newest message; an empty message if none has come.
 template <class M>
 const M& OrNone(const Heard<M>& input) {
   static const M kNone{};
   return input.newest != nullptr ? *input.newest : kNone;
 }
 
-// Or that is too old: the offer of somebody who is gone, and his readiness.
+// The newest message if it is usable, otherwise an empty one: for the offers of the two sides, and
+// for the driver's readiness.
 template <class M>
 const M& UsableOrNone(const Heard<M>& input) {
   static const M kNone{};
@@ -40,7 +41,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
                                               const ArbitratorInputs& inputs) {
   const std::int64_t known = pairs_.newest();
   const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
-  // A pair counts once, however often it is the newest.
+  // A pair counts only once, also if it stays the newest for several steps.
   if (pairs_.newest() > known) {
     arbitrator_.Observe(pairs_.radar(), pairs_.lidar(), OrNone(inputs.track));
   }
@@ -50,7 +51,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
     case Decision::kRegular:
       break;
     case Decision::kAutomation:
-      if (arbitrator_.asks()) break;  // nor is he relied on while he is asked
+      if (arbitrator_.asks()) break;  // the regular decision does not rely on the driver here
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
@@ -70,8 +71,8 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision on the pairs that have been. Offers that are not there are not used for it,
-// only passed on; Judge() sees to it that none of those is.
+// The regular decision, from the pairs so far. It replaces an offer that is not there by 0; Judge()
+// ensures that a command with such an offer is not sent.
 void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automation) {
   arbitrator_.SetAutomationThere(automation != kGone);
   out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track),
@@ -83,7 +84,7 @@ Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pa
   if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
   if (demanded_) return Decision::kMinimalRisk;
   const Offer automation = AutomationOffer(inputs, pairs);
-  // There is no time to ask anybody when the automation has failed.
+  // If the automation has failed, there is no time to ask the driver.
   const bool unasked = automation == kGone && arbitrator_.must_ask();
   const Offer human = unasked ? kGone : OfferOf(inputs.driver.state);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();

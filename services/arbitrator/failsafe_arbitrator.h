@@ -1,5 +1,6 @@
-// The arbitrator in real time: it decides in every step with what there is. With all inputs there
-// it is the Arbitrator, bit by bit; without some of them the table of failsafe_table.h decides.
+// The arbitrator in real time: it decides in every step with the inputs that are there. If all
+// inputs are there, it computes the same as Arbitrator, bit by bit. If some are missing, the table
+// of failsafe_table.h decides.
 #pragma once
 
 #include <optional>
@@ -15,8 +16,8 @@
 
 namespace fogline {
 
-/// Everything that the arbitrator reads, as far as it has come. The odometry brings the step: there
-/// is no decision without it.
+/// Everything that the arbitrator reads, as far as it has come. The odometry triggers the decision
+/// of a step, so it is always there.
 struct ArbitratorInputs {
   Heard<ego_t> ego;
   Heard<radar_t> radar;
@@ -30,24 +31,25 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// As the Arbitrator's; while nothing is heard, the last that was holds.
+  /// As in Arbitrator. If Hear() is not called, the last values stay in force.
   static bool Demands(const Scenario& scenario) { return Arbitrator::Demands(scenario); }
   void Hear(const truth_t& truth) { arbitrator_.Hear(truth); }
 
-  /// The host's command for the step of `header`. Once per decision; steps may be left out. Valid
-  /// until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK and both authorities
-  /// are 0; the conflict is that of the last pairs of sensor values, whatever their age.
+  /// The host's command for the step of `header`. Call it once per decision; steps may be left out.
+  /// The result is valid until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK
+  /// and both authorities are 0; the conflict is that of the last pairs of sensor values, whatever
+  /// their age.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
-  /// The manoeuvre begins at the next step whatever the inputs: the vehicle is in one already, or
-  /// the instance of this role before this one was.
+  /// The manoeuvre begins at the next step, whatever the inputs. To call if the vehicle, or an
+  /// earlier instance of this role, is already in a manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
-  /// What it does instead of its regular work, "" if it does that.
+  /// Text that says what it does instead of its regular work; "" if it does its regular work.
   std::string_view fallback() const { return FallbackText(decision_); }
-  /// Cars that are in a minimal risk manoeuvre that nobody ends, bits of status_t.
+  /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
   std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
-  /// Which row of the table the last step took.
+  /// The decision of the last step.
   Decision decision() const { return decision_; }
 
  private:

@@ -1,4 +1,5 @@
-// Who drives the host when inputs of the arbitrator have failed: the whole rule, as one table.
+// The rule that decides which side drives the host when inputs of the arbitrator have failed, as
+// one table.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 
 namespace fogline {
 
-/// What there is of something that the decision needs, from best to worst. Bits, so that a row of
-/// the table can name several.
+/// Availability of the automation or of the human, from best to worst. The values are bits, so that
+/// a row of the table can name several.
 enum Offer : std::uint8_t {
   kThere = 1,   // may be used; while it is STALE its last value holds
   kNotYet = 2,  // has never come, and is not overdue
@@ -23,15 +24,15 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// Whether the regular decision would be that the human drives; bits as well.
+/// Whether in the regular decision the human would drive (kDisputed); bits as well.
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {
   kRegular,      // both can drive: as in lockstep
-  kAutomation,   // the human cannot, and need not
-  kHuman,        // the automation cannot
-  kHold,         // something that has just begun may still come: the last command stays
-  kMinimalRisk,  // nobody can
+  kAutomation,   // the human cannot drive, and need not
+  kHuman,        // the automation cannot drive
+  kHold,         // an input that has not come yet may still come: the last command holds
+  kMinimalRisk,  // neither can drive
 };
 
 struct FailsafeRow {
@@ -58,13 +59,13 @@ inline constexpr std::array kFailsafeTable{
 };
 // clang-format on
 
-/// Whether a row is for this case.
+/// Whether the row applies to this case.
 constexpr bool Applies(const FailsafeRow& row, Offer automation, Offer human, Conflict conflict) {
   return (row.automation & automation) != 0 && (row.human & human) != 0 &&
          (row.conflict & conflict) != 0;
 }
 
-/// The decision of the row that applies: there is exactly one.
+/// The decision of the row that applies; exactly one row does.
 constexpr Decision Decide(Offer automation, Offer human, Conflict conflict) {
   return std::ranges::find_if(
              kFailsafeTable,
@@ -89,7 +90,8 @@ static_assert(
     }(),
     "exactly one row of kFailsafeTable applies to each case");
 
-/// What the arbitrator does instead of its regular work, for STATUS; "" if it does that.
+/// Text for STATUS that says what the arbitrator does instead of its regular work; "" if it does
+/// that.
 constexpr std::string_view FallbackText(Decision decision) {
   switch (decision) {
     case Decision::kRegular:

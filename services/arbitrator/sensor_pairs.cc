@@ -29,8 +29,8 @@ void SensorPairs::Match() {
   }
 }
 
-// The age of a pair is 0 at the decision of its own step. Where there has been none, it is as if
-// the last one had been of the step before the first decision.
+// The age of a pair is 0 at the decision of its own step. If there has been no pair, the age counts
+// from the step before the first decision.
 void SensorPairs::Judge(std::int64_t step) {
   const auto age = static_cast<double>(step - (has_pair() ? pair_step_ : began_ - 1));
   const bool in_time = age <= section_.stale_periods;

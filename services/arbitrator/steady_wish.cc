@@ -9,7 +9,8 @@
 namespace fogline {
 namespace {
 
-// ln(p/(1 - p)). Beyond 1e-12 from 0 or 1, where a DoC has been rounded, p counts as this near.
+// ln(p/(1 - p)). A p closer than 1e-12 to 0 or 1 counts as 1e-12 away: there a DoC is only
+// rounding.
 double LogOdds(double probability) {
   constexpr double kNearest = 1e-12;
   const double p = std::clamp(probability, kNearest, 1 - kNearest);

@@ -19,7 +19,7 @@ MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
 }
 
-/// Bound of the time in which a car stands (services/minimal_risk/README.md).
+/// Upper bound of the time until the car stands (services/minimal_risk/README.md).
 double LongestTimeToRest_s(double speed_mps, double acceleration_mps2, double deceleration_mps2,
                            double jerk_mps3, double step_s) {
   const double push = std::max(acceleration_mps2, 0.0);
@@ -92,7 +92,7 @@ void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverIn
   if (stage) BeginStage(row.authority, step, inputs);
 }
 
-// The driver's answer is drawn here, once: it is the same whatever happens before it comes.
+// Draws the driver's answer once: nothing that happens before the answer changes it.
 void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
   const double time_s = time_.Draw(random_, step);

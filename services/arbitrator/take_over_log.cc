@@ -15,8 +15,8 @@ const TakeOverStateInfo* StateOf(std::int8_t mode) {
   return info == kTakeOverStates.end() ? nullptr : info;
 }
 
-/// What the table says of a change of state, and for changes that it does not have - of drivers who
-/// need not be asked, of failed inputs in real time - what they come to.
+/// The text of the table for this change of state. A change that is not in the table (the driver
+/// need not be asked, or inputs have failed in real time) gets a text of its own.
 std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   const TakeOverStateInfo* a = StateOf(from);
   const TakeOverStateInfo* b = StateOf(to);
@@ -91,10 +91,10 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   if (state->state == TakeOverState::kDemand) {
     requests_.push_back({.requested = command.header.step});
   }
-  // Where nobody was asked there is no request that could come to anything.
+  // If the driver was never asked, there is no request to update.
   if (requests_.empty()) return;
   requests_.back().Enter(state->state, command.header.step);
-  // Until Transfer() finds one: his share may be small.
+  // Transfer() sets this: in kRecovering the driver's share may still be small.
   if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
 }
 

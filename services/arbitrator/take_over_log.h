@@ -1,5 +1,6 @@
-// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD), from what every log
-// has: the commands of the host. Not only of runs whose driver must be asked: every change of mode.
+// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD). It reads them from
+// the commands of the host, which every log has. It lists every change of mode, also in runs whose
+// driver need not be asked.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +13,28 @@
 
 namespace fogline {
 
-/// How the state of a mode of HOST_COMMAND is called; "UNKNOWN" for a mode that is none.
+/// Name of the state that belongs to a mode of HOST_COMMAND; "UNKNOWN" for an invalid mode.
 std::string_view NameOfMode(std::int8_t mode);
 
-/// What happened in a step. Where only a driver's input became effective, or a ramp of the
-/// authorities passed the half, the mode stays.
+/// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
+/// `from` and `to` are the same mode.
 struct TakeOverEntry {
   std::int64_t step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // modes
   std::int8_t to = 0;
-  bool transfer = false;  // the main authority went to or from the driver, as measures count it
+  bool transfer = false;  // the main authority changed, as the measures count it
   std::string_view logged;
 };
 
 /// Reads commands in the order of steps; some may be missing.
 ///
-/// A state tells whether the driver has been given a share of the wheel, lambda_H how large it is:
-/// it may be small, 0 even, and it may be growing. So his getting a share is one thing, and the
-/// transfer another, where lambda_H passes kMainAuthority. Where one step does both one entry says
-/// so. His input is effective by what it does to the command, lambda_H (a_H - a), a the command
-/// before he got his share: what the automation does with the rest is not his.
+/// The state says whether the driver has a share of the authority, and lambda_H how large this
+/// share is. It may be small, even 0, and it may be growing. So two events differ: the driver gets
+/// a share; and the transfer, at which lambda_H passes kMainAuthority. If both happen in one step,
+/// one entry covers both. The driver's input is effective if it changes the command enough: the
+/// measure is lambda_H (a_H - a), with a the command before he got his share. The automation's part
+/// of the command does not count.
 class TakeOverLog {
  public:
   /// @param human_mps2 a_H, the driver's offer; nullopt if that is not known
@@ -47,8 +49,8 @@ class TakeOverLog {
   void Drive(const arbitration_t& command, double human_mps2);
 
   std::optional<arbitration_t> last_;
-  // Of the driver who has a share of the wheel: the command before he got it, until he has changed
-  // it; and whether he was asked.
+  // If the driver has a share of the authority: the command before he got it (empty after his first
+  // effective input), and whether he was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
   std::vector<TakeOverEntry> entries_;

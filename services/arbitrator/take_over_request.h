@@ -1,4 +1,4 @@
-// When what became of a request to take over.
+// The times of a request to take over.
 #pragma once
 
 #include <cmath>
@@ -9,20 +9,21 @@
 
 namespace fogline {
 
-/// Least change of the command by the driver alone by which an input counts as effective, in m/s2.
-/// Chosen: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or engine
-/// is set more finely.
+/// Least change of the command by the driver alone for which an input counts as effective, in m/s2.
+/// Our choice: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or
+/// engine has a finer setting.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
 
-/// Whether what a driver offers makes itself felt: by his share of it, against the command before
-/// he had one.
+/// Whether the driver's offer changes the command noticeably: his share times the difference
+/// between his offer and the command before he had a share.
 inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
   return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }
 
-/// The times of one request, as steps. What is empty has not been. To the state machine the driver
-/// is there when he gets his share of the wheel (`transferred`), and it does not ask what he does
-/// with it; a log tells from the authorities (take_over_log.h).
+/// The times of one request, as steps. A field is empty if its event has not happened. For the
+/// state machine `transferred` is the step in which the driver gets a share of the authority, and
+/// `effective` stays empty. TakeOverLog finds both from the authorities and commands
+/// (take_over_log.h).
 struct TakeOverRequest {
   std::int64_t requested = 0;
   std::optional<std::int64_t> escalated;
@@ -36,7 +37,7 @@ struct TakeOverRequest {
   void Enter(TakeOverState state, std::int64_t step) {
     using enum TakeOverState;
     if (state == kUrgentDemand) escalated = step;
-    // Who comes during the manoeuvre answers by taking over.
+    // A driver who takes over during the manoeuvre thereby answers the request.
     if (!acknowledged && (state == kHandover || state == kRecovering)) acknowledged = step;
     if (state == kRecovering) transferred = step;
     if (!manoeuvre && (state == kMrmComfort || state == kMrmEmergency)) manoeuvre = step;

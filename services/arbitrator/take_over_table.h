@@ -1,4 +1,4 @@
-// What becomes of a request to take over: the whole state machine, as one table.
+// The state machine of a request to take over, as one table.
 #pragma once
 
 #include <algorithm>
@@ -14,31 +14,31 @@ namespace fogline {
 enum class TakeOverState : std::uint8_t {
   kAutomated,
   kDemand,        // the driver is asked
-  kUrgentDemand,  // he is asked urgently
-  kHandover,      // he has acknowledged; his readiness is awaited
-  kRecovering,    // he drives, and has just come
+  kUrgentDemand,  // the driver is asked urgently
+  kHandover,      // the driver has acknowledged, but may not be ready yet
+  kRecovering,    // the driver drives, since less than recovery_s
   kManual,
   kMrmComfort,    // minimal risk manoeuvre, first stage
-  kMrmEmergency,  // second stage
-  kMrmDone,       // stands, and stays so until the end of the run
+  kMrmEmergency,  // minimal risk manoeuvre, second stage
+  kMrmDone,       // the car stands until the end of the run
   kMrmFailed,     // the brake does not bring it to a standstill
 };
 
-/// What a step can find. Several may hold in one step; then the first row of the table decides.
+/// Conditions of a step. Several may hold in one step; then the first row of the table decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
-  kCalm,          // it does not
+  kCalm,          // the policy does not want the human to drive
   kEscalation,    // escalation_s after the request
   kAcknowledged,  // the driver has answered within lead_s
-  kReady,         // he has answered, be it late, and his readiness is at least required_readiness
+  kReady,         // he has answered, maybe late, and his readiness is at least required_readiness
   kDeadline,      // lead_s after the request
   kSevere,        // time to collision with the preceding car, by the track, below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
   kStandstill,
-  kOverdue,  // the stage of the manoeuvre takes longer than its brake can need
+  kOverdue,  // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
 };
 
-/// The events of a step, a bit each.
+/// The events of a step, one bit each.
 using TakeOverEvents = std::uint16_t;
 constexpr TakeOverEvents Bit(TakeOverEvent event) {
   return static_cast<TakeOverEvents>(1U << static_cast<unsigned>(event));
@@ -49,13 +49,13 @@ enum class TakeOverGuard : std::uint8_t {
   kFresh,  // there has been no minimal risk manoeuvre in this run
 };
 
-/// Who has authority, and by that what acceleration is applied.
+/// Which side has authority. This determines the acceleration that is applied.
 enum class Authority : std::uint8_t {
-  kAutomation,  // its offer
+  kAutomation,  // the automation's offer
   kEasing,      // the automation's offer, but it does not accelerate
-  kHuman,       // his offer
-  kComfort,     // nobody: the manoeuvre with comfort_deceleration_mps2
-  kHard,        // nobody: the manoeuvre with emergency_deceleration_mps2
+  kHuman,       // the human's offer
+  kComfort,     // neither side: the manoeuvre with comfort_deceleration_mps2
+  kHard,        // neither side: the manoeuvre with emergency_deceleration_mps2
 };
 
 struct TakeOverRow {
@@ -75,15 +75,19 @@ using enum TakeOverGuard;
 using enum Authority;
 using Row = TakeOverRow;
 
-/// Rows of a state stand in the order in which they are looked at. Where no row applies the state
-/// stays, and with it the authority. Sources, by paragraph of UN R157:
-///   - Only deactivation or the manoeuvre ends a request (5.4.4): that the policy has changed its
-///     mind does not.
+/// The rows of a state are tried in this order. If no row applies, state and authority stay.
+/// Sources, by paragraph of UN R157:
+///   - Only deactivation or the manoeuvre ends a request (5.4.4); a change of the policy's wish
+///   does
+///     not.
 ///   - No manoeuvre within lead_s of the request (5.4.4.1) unless it is severe (5.4.4.1.1).
-///   - A driver who comes late ends the manoeuvre, until the car stands (5.5.2, 5.5.3), in either
-///     stage: whoever is there and able may always drive. SUMO's ToC device has it so, too.
-///   - After any manoeuvre, also one that he has ended, the automation is not activated again
-///     before the next run cycle (5.5.5). What stands stays: driving off (5.5.4) is a new run.
+///   - A driver who is late ends the manoeuvre, in either stage, as long as the car moves (5.5.2,
+///     5.5.3): a driver who is there and able may always drive. SUMO's ToC device has the same
+///     rule.
+///   - After any manoeuvre, also one that the driver has ended, the automation is not activated
+///   again
+///     before the next run cycle (5.5.5). A car that stands stays: driving off (5.5.4) is a new
+///     run.
 ///   - The manoeuvre only escalates (Autoware's mrm_handler).
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged
@@ -123,8 +127,8 @@ inline constexpr std::array kTakeOverTable{
 
 using take_over_internal::kTakeOverTable;
 
-/// The row by which a step leaves `state`, nullptr if it stays.
-/// @param manoeuvred there has been a minimal risk manoeuvre in this run
+/// The row that applies in `state`; nullptr if the state stays.
+/// @param manoeuvred whether there has been a minimal risk manoeuvre in this run
 constexpr const TakeOverRow* TakeOverRowOf(TakeOverState state, TakeOverEvents events,
                                            bool manoeuvred) {
   const auto* row = std::ranges::find_if(kTakeOverTable, [&](const TakeOverRow& r) {
@@ -134,7 +138,7 @@ constexpr const TakeOverRow* TakeOverRowOf(TakeOverState state, TakeOverEvents e
   return row == kTakeOverTable.end() ? nullptr : row;
 }
 
-/// How a state is called, and which mode of HOST_COMMAND says that the host is in it.
+/// Name of a state, and the mode of HOST_COMMAND that stands for it.
 struct TakeOverStateInfo {
   TakeOverState state;
   std::int8_t mode;
@@ -158,7 +162,7 @@ constexpr const TakeOverStateInfo& InfoOf(TakeOverState state) {
   return kTakeOverStates[static_cast<std::size_t>(state)];
 }
 
-/// Who has authority in a state: what the rows that lead there say.
+/// The authority in a state, as given by the rows that lead to it.
 constexpr Authority AuthorityOf(TakeOverState state) {
   return std::ranges::find(kTakeOverTable, state, &TakeOverRow::next)->authority;
 }

@@ -10,13 +10,13 @@
 namespace fogline {
 namespace {
 
-// k of the sigmoid: the paper's slope of the DoC, over a duration instead of a metre. Its steepest
-// change is 2.53 times that of the linear ramp.
+// k of the sigmoid: the paper's slope of the DoC, per duration instead of per metre. The steepest
+// change of the sigmoid is 2.53 times that of the linear ramp.
 constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
-// S, from [0, 1] to itself.
+// S maps [0, 1] to itself.
 double Sigmoid(double progress) {
   static const double kLowest = Logistic(-kSteepness / 2);
   return (Logistic(kSteepness * (progress - 0.5)) - kLowest) / (1 - 2 * kLowest);
@@ -28,7 +28,7 @@ double InverseSigmoid(double authority) {
   return 0.5 + std::log(p / (1 - p)) / kSteepness;
 }
 
-// `from` moved towards `to` by at most `change`, and exactly to it if it is as near as that.
+// `from` moved towards `to` by at most `change`; exactly `to` if it is no further away.
 double Towards(double from, double to, double change) {
   if (std::abs(to - from) <= change) return to;
   return to > from ? from + change : from - change;
@@ -72,7 +72,7 @@ double Transfer::AuthorityTowards(double wanted) {
     return progress_ = Towards(progress_, wanted, progress_per_step_);
   }
   if (section_.profile != TransferProfile::kSigmoid) return wanted;
-  // The ends are exact, whatever the logarithm makes of them.
+  // At the ends the target is exact: the logarithm would round.
   const double target = wanted == 0 || wanted == 1 ? wanted : InverseSigmoid(wanted);
   progress_ = Towards(progress_, target, progress_per_step_);
   if (progress_ == target) return wanted;

@@ -1,4 +1,4 @@
-// How authority and command go from one driver of the host to the other.
+// Transfer of authority and command between the automation and the human.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,22 @@
 
 namespace fogline {
 
-/// From the authority that the human is to have to the one that he has, and the command that
-/// follows, a = lambda_H a_H + lambda_A a_A. Profiles:
+/// Moves the human's authority lambda_H towards the wanted one, and computes the command
+/// a = lambda_H a_H + lambda_A a_A. Profiles:
 ///
-///     step          lambda_H is what is wanted, at once (the paper's)
+///     step          lambda_H is the wanted authority at once (as in the paper)
 ///     linear        lambda_H moves by at most step/duration
 ///     sigmoid       lambda_H = S(p), p moves by at most step/duration,
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
-///     jerk_limited  as step, but until it has caught up the command changes by no more than jerk
+///     jerk_limited  as step, but the command changes by no more than jerk until it reaches a
 ///
-/// The gate limits the command itself, in any profile, for gate_s after a transfer began, and its
-/// change until it has caught up. A transfer begins when more than half of the authority is wanted
-/// for the other one. Neither limit holds for braking harder than yield_mps2, which ends both.
+/// In any profile the gate limits the command itself for gate_s after the begin of a transfer, and
+/// the change of the command until it reaches a. A transfer begins when the other side is wanted to
+/// have the main authority (kMainAuthority). Braking harder than yield_mps2 is exempt from both
+/// limits and ends them.
 ///
-/// With lambda_H at 0 or 1 and no limit in force an offer is passed on bit by bit, whatever the
-/// other one is. What it makes of the automation's return: services/arbitrator/README.md.
+/// If lambda_H is 0 or 1 and no limit is in force, the command is that side's offer, bit by bit. On
+/// the automation's return see services/arbitrator/README.md.
 class Transfer {
  public:
   struct Offers {
@@ -37,13 +38,14 @@ class Transfer {
   Transfer(const TransferSection& section, double step_s);
 
   /// @param wanted authority of the human, in [0, 1]
-  /// @param applied_mps2 acceleration of the host, from which the first command goes on
+  /// @param applied_mps2 acceleration of the host, from which the first command continues
   State Step(double wanted, const Offers& offers, double applied_mps2) {
     if (plain_) return {wanted, Weighted(wanted, offers)};
     return Smooth(wanted, offers, applied_mps2);
   }
 
-  /// What happens in this step was decided elsewhere: later steps go on from it.
+  /// To call if authority and command of this step were decided elsewhere: later steps continue
+  /// from them.
   void Overrule(const State& actual);
 
  private:
@@ -57,13 +59,13 @@ class Transfer {
   double Limited(double target_mps2, double previous_mps2);
 
   TransferSection section_;
-  bool plain_;                // a step without gate
+  bool plain_;                // profile step, without gate
   double progress_per_step_;  // of the ramps
   double change_per_step_;    // m/s2; of a limited command
   std::int64_t gate_steps_;
 
   double progress_ = 0;
-  bool to_human_ = false;  // who was wanted last
+  bool to_human_ = false;  // the human was wanted in the last step
   bool limiting_ = false;
   std::int64_t gate_left_ = 0;
   std::optional<double> previous_mps2_;  // commanded

@@ -1,6 +1,6 @@
-// The whole experiment in one process without messages: the same Step functions in the order of the
-// graph table. For sweeps, calibration and tests; what it computes is what the distributed run
-// does.
+// The whole experiment in one process without transport of messages: the same Step functions in the
+// order of the graph table. For sweeps, calibration and tests. Its results equal those of the
+// distributed run.
 #pragma once
 
 #include "scenario/scenario.h"
@@ -29,7 +29,7 @@ struct StepView {
   const arbitration_t& host;
   const follower_command_t& follower;
 
-  /// Calls `visit(message)` for each, in the order of the graph table.
+  /// Calls `visit(message)` for each message, in the order of the graph table.
   template <class Visit>
   void ForEachMessage(Visit&& visit) const {
     visit(truth);
@@ -50,15 +50,16 @@ struct StepView {
 
 class ClosedLoop {
  public:
-  /// @throws InputError for an ACC whose weights make no well-conditioned problem.
+  /// @throws InputError if the weights of an ACC make an ill-conditioned problem.
   explicit ClosedLoop(const Scenario& scenario);
 
-  /// Makes it ready for another run: what follows is, bit by bit, what ClosedLoop(scenario) would
-  /// do. Cheaper than that, because an ACC whose section is the same keeps its precomputed gains.
+  /// Resets the object for another run, which equals that of a new ClosedLoop(scenario) bit by bit.
+  /// It is cheaper than a new object, because an ACC with an unchanged section keeps its
+  /// precomputed gains.
   /// @throws as the constructor; Restart() must then succeed before the next Run()
   void Restart(const Scenario& scenario);
 
-  /// Computes the steps from 0 to the last, calling `visit(const StepView&)` after each. Call it
+  /// Computes the steps from 0 to the last, and calls `visit(const StepView&)` after each. Call it
   /// once after construction, and once after each Restart().
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
@@ -85,7 +86,7 @@ class ClosedLoop {
   }
 
  private:
-  /// Who hears in this scenario what it reads on demand (services/runtime/algorithm.h).
+  /// Which roles receive their channels on demand in this scenario (services/runtime/algorithm.h).
   struct Demands {
     explicit Demands(const Scenario& scenario)
         : fusion(AlgorithmTraits<Fusion>::Demands(scenario)),

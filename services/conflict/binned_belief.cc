@@ -9,10 +9,11 @@
 namespace fogline {
 namespace {
 
-// Bins of one belief: 6 standard deviations to either side up to a standard deviation of 5 widths;
-// of wider ones the outermost bins have what is beyond.
+// Greatest number of bins of one belief. It covers 6 standard deviations on each side if the
+// standard deviation is at most 5 widths. For larger ones the outermost bins contain the
+// probability beyond.
 constexpr std::int64_t kMostBins = 64;
-constexpr double kReach = 6;  // standard deviations; 2e-9 is beyond
+constexpr double kReach = 6;  // standard deviations; the probability beyond is 2e-9
 
 // Probabilities of the bins first, first + 1, ..., which add up to 1.
 struct Bins {
@@ -56,7 +57,7 @@ double PlainProduct(double common, double eta_a, double eta_b) {
   return common + (1 - eta_a) * (1 - eta_b);
 }
 
-// 1 - ab/sqrt(aa bb), kept in [0, 1] where rounding leaves it.
+// 1 - ab/sqrt(aa bb), clamped to [0, 1] because of rounding.
 double OneMinusCosine(double ab, double aa, double bb) {
   return std::clamp(1 - ab / std::sqrt(aa * bb), 0.0, 1.0);
 }
@@ -64,7 +65,8 @@ double OneMinusCosine(double ab, double aa, double bb) {
 }  // namespace
 
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters) {
-  // The sign decides on which side of the radar the LiDAR is, and the grid is the same either way.
+  // The sign of the difference has no effect: the grid is the same on both sides of the radar's
+  // reading.
   const double distance_m = std::abs(disagreement.difference_m);
   const Bins radar = OnBins(0, disagreement.radar_std_m, parameters.bin_width_m);
   const Bins lidar = OnBins(distance_m, disagreement.lidar_std_m, parameters.bin_width_m);

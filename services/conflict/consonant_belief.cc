@@ -18,12 +18,12 @@ const double kDensityFactor = std::sqrt(2 / std::numbers::pi);
 
 double MaxwellDensity(double y) { return kDensityFactor * y * y * std::exp(-y * y / 2); }
 
-// Length of [-a, a] and [d - b, d + b] in common.
+// Length of the intersection of [-a, a] and [d - b, d + b].
 double Overlap(double distance, double a, double b) {
   return std::max(0.0, std::min(a, distance + b) - std::max(-a, distance - b));
 }
 
-// What N(0, s1^2) has in [low, high] more than N(d, s2^2) has.
+// Probability of [low, high] under N(0, s1^2), minus that under N(d, s2^2).
 double Excess(double low, double high, double d, double s1, double s2) {
   return NormalBelow(high / s1) - NormalBelow(low / s1) -
          (NormalBelow((high - d) / s2) - NormalBelow((low - d) / s2));
@@ -41,8 +41,8 @@ double ConsonantPlausibility(double y) {
 }
 
 double ConsonantConflict(const Disagreement& disagreement) {
-  // Integrated over the narrow belief's intervals: F of the other one then varies slowly. Beyond
-  // 9 standard deviations f has 1e-16.
+  // The integral is over the intervals of the narrow belief, because F of the wide one varies
+  // slowly there. Beyond 9 standard deviations the integral of f is 1e-16.
   constexpr double kReach = 9;
   constexpr int kNodes = 30;
   const double d = std::abs(disagreement.difference_m);
@@ -59,11 +59,12 @@ double ConsonantPignisticDistance(const Disagreement& disagreement) {
   const double d = std::abs(disagreement.difference_m);
   const double s1 = disagreement.radar_std_m;
   const double s2 = disagreement.lidar_std_m;
-  // Equal densities: a x^2 + b x + c = 0, x from the first mean.
+  // The densities are equal at a x^2 + b x + c = 0, with x relative to the first mean.
   const double a = 1 / (s1 * s1) - 1 / (s2 * s2);
   const double b = 2 * d / (s2 * s2);
   const double c = -d * d / (s2 * s2) - 2 * std::log(s2 / s1);
-  // b >= 0: q is free of cancellation. The roots are q/a, infinite for equal precisions, and c/q.
+  // As b >= 0, q has no cancellation. The roots are q/a, which is infinite for equal precisions,
+  // and c/q.
   const double q = -(b + std::sqrt(std::max(0.0, b * b - 4 * a * c))) / 2;
   if (q == 0) return 0;  // equal readings
   const auto [low, high] = std::minmax({q / a, c / q});
@@ -71,7 +72,7 @@ double ConsonantPignisticDistance(const Disagreement& disagreement) {
 }
 
 ConsonantBeliefs::ConsonantBeliefs(int levels) : levels_(std::clamp(levels, 1, kMostLevels)) {
-  const boost::math::chi_squared squares(3);  // of y, which is the length of three normal numbers
+  const boost::math::chi_squared squares(3);  // y is the length of a vector of 3 normal numbers
   for (int i = 0; i < levels_; ++i) {
     const double share = (i + 0.5) / levels_;
     half_widths_[static_cast<std::size_t>(i)] = std::sqrt(boost::math::quantile(squares, share));

@@ -8,14 +8,14 @@
 
 namespace fogline {
 
-/// Of all belief densities whose pignistic probability is the sensor's Gaussian N(mu, s^2), the one
-/// that commits to least has the nested intervals [mu - y s, mu + y s] as focal sets, with the
+/// The least-committed of all belief densities that have as pignistic probability the sensor's
+/// Gaussian N(mu, s^2). Its focal sets are the nested intervals [mu - y s, mu + y s], with the
 /// Maxwell density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al.
-/// 2008). There is no frame to be cut into bins, and no reliability to be chosen.
+/// 2008). It needs neither a frame with bins nor a reliability.
 ///
 /// Dempster's k and the pignistic distance are computed from the density itself. The others need
-/// sums over pairs of focal sets: there the density is `levels` intervals of mass 1/levels each, at
-/// the quantiles (i + 1/2)/levels of f, and |A| is the length of A.
+/// sums over pairs of focal sets. For them `levels` intervals of mass 1/levels each, at the
+/// quantiles (i + 1/2)/levels of f, replace the density; |A| is the length of A.
 class ConsonantBeliefs {
  public:
   static constexpr int kMostLevels = 64;
@@ -29,14 +29,14 @@ class ConsonantBeliefs {
   /// c11, the same for every reading.
   double JaccardSquare() const { return jaccard_square_; }
 
-  /// Integral over x of pl1(x) pl2(x), in m: pl, the plausibility of single points (contour), has
-  /// all that there is to know of a consonant belief.
+  /// Integral over x of pl1(x) pl2(x), in m. pl is the plausibility of single points (contour); it
+  /// determines a consonant belief completely.
   double ContourProduct(double distance_m, double std1_m, double std2_m) const;
 
   /// d_J, in [0, 1].
   double JousselmeDistance(const Disagreement& disagreement) const;
-  /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves is of no use here:
-  /// intervals of two readings are never the same set, so it is 0 for all but equal readings.
+  /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves would be 0 for all
+  /// but equal readings, because intervals of two different readings are never the same set.
   double CosineConflict(const Disagreement& disagreement) const;
   /// 1 - r, in [0, 1].
   double CorrelationConflict(const Disagreement& disagreement) const;
@@ -60,9 +60,10 @@ double ConsonantPlausibility(double y);
 /// in [0, 1], with k(0) = 0. By quadrature, to 1e-9.
 double ConsonantConflict(const Disagreement& disagreement);
 
-/// difBetP: the pignistic probabilities are the Gaussians themselves, and the largest difference
-/// over sets of two probabilities is their total variation, the difference of what they have
-/// between the points of equal density. In [0, 1]; not 0 at d = 0 where the precisions differ.
+/// difBetP, in [0, 1]. The pignistic probabilities are the Gaussians themselves. The largest
+/// difference of two probabilities over all sets is their total variation: the difference of their
+/// probabilities between the points of equal density. At d = 0 it is above 0 if the precisions
+/// differ.
 double ConsonantPignisticDistance(const Disagreement& disagreement);
 
 }  // namespace fogline

@@ -1,4 +1,4 @@
-// How much radar and LiDAR disagree: the windowed conflict z and the Degree of Conflict made of it
+// The windowed conflict z of radar and LiDAR, and the Degree of Conflict that is computed from it
 // (Sourav & Cheng 2024).
 #pragma once
 
@@ -13,26 +13,26 @@ namespace fogline {
 /// DoC = 1 / (1 + exp(-slope (z - centre))), in [0, 1].
 double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m);
 
-/// The differences radar - LiDAR of the last W steps, of which z >= 0 is the average. A step can be
-/// there without a difference: its place is empty, and it ages like any other. Before W steps have
-/// been, the average is that of those there were.
+/// The differences radar - LiDAR of the last W steps; z >= 0 is their average. A step without a
+/// difference has an empty place, which leaves the window like any other. Before step W, the
+/// average is over the steps so far.
 ///
-/// The sum is made anew over the window in every step, oldest first, and never carried on: z
-/// depends on what the window holds, to the last bit, and on nothing that was before.
+/// Every step computes the whole sum over the window again, oldest first. So z depends only on the
+/// contents of the window, to the last bit.
 class ConflictWindow {
  public:
   /// @param steps W, at least 1.
   explicit ConflictWindow(std::size_t steps) : differences_(steps) {}
 
-  /// Adds a step; the oldest of W leaves. nullopt: a step without a difference.
+  /// Adds a step and removes the oldest of the W steps. nullopt: a step without a difference.
   void Push(std::optional<double> difference_m);
 
-  /// z as `reading` has it: the mean of the absolute differences or the absolute value of their
-  /// mean; 0 when no step in the window has a difference.
+  /// z according to `reading`: the mean of the absolute differences, or the absolute value of their
+  /// mean; 0 if no step in the window has a difference.
   double Conflict(ConflictReading reading) const;
 
  private:
-  std::vector<std::optional<double>> differences_;  // a ring; begins with empty places
+  std::vector<std::optional<double>> differences_;  // a ring; all places are empty at first
   std::size_t oldest_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The difference of the two sensors, and what stands for it when one of them has no value. All
-// measures of two sensors see their evidence through this, so that they differ in nothing else.
+// The difference of the two sensors, and its substitute if one of them has no value. All measures
+// of two sensors use this class, so that they treat their evidence in the same way.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace fogline {
 
-/// d = radar - LiDAR, above 0 where the LiDAR reads short, as it does in fog.
+/// d = radar - LiDAR, above 0 if the LiDAR's range is too short, as in fog.
 struct Disagreement {
   double difference_m;
   double radar_std_m;
   double lidar_std_m;
 
-  /// S = s1^2 + s2^2, m2: the variance of d while both sensors do what they state. The filter's
+  /// S = s1^2 + s2^2, m2: the variance of d if both sensors have the stated noise. The filter's
   /// prediction cancels in d, so its covariance is not in S.
   double variance_m2() const { return radar_std_m * radar_std_m + lidar_std_m * lidar_std_m; }
   /// d/sqrt(S): standard normal without a fault.
@@ -24,13 +24,13 @@ struct Disagreement {
 
 class DisagreementSource {
  public:
-  /// Whether `offset_m` is taken off the difference.
+  /// Whether `offset_m` is subtracted from the difference.
   enum class Offset { kSubtracted, kKept };
 
   explicit DisagreementSource(const ConflictParameters& parameters,
                               Offset offset = Offset::kSubtracted);
 
-  /// The disagreement of this step. A step without radar or LiDAR value, by rule:
+  /// The disagreement of this step. For a step without radar or LiDAR value the rule says:
   ///   hold      the last measured disagreement; before the first one nullopt
   ///   skip      nullopt
   ///   conflict  d = missing_conflict_m with the last stated standard deviations

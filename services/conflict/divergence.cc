@@ -16,7 +16,7 @@ double Bhattacharyya(const Disagreement& disagreement) {
          std::log(disagreement.variance_m2() / (2 * product_m2)) / 2;
 }
 
-// expm1: 1 - exp(-x) without cancellation for readings that hardly differ.
+// expm1 computes 1 - exp(-x) without cancellation for readings that hardly differ.
 double Hellinger(const Disagreement& disagreement) {
   return std::sqrt(-std::expm1(-Bhattacharyya(disagreement)));
 }

@@ -1,4 +1,4 @@
-// The paper's Degree of Conflict as a measure among others.
+// The paper's Degree of Conflict as a conflict measure.
 #pragma once
 
 #include "services/conflict/degree_of_conflict.h"
@@ -8,8 +8,8 @@ namespace fogline {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
 /// services/conflict/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi) with the mean of
-/// absolutes: the only measure here with a scale of its own, in metres. The offset of the sensors
-/// stays in it. Skipped steps leave their place in the window empty.
+/// absolutes: only this measure has a scale in metres. The offset of the sensors is not subtracted.
+/// Skipped steps leave their place in the window empty.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);
@@ -17,9 +17,9 @@ class Doc final : public ConflictMeasure {
   double Step(const Evidence& evidence) override;
   void Reset() override;
 
-  /// The two halves of a Step: the step takes its place in the window, ...
+  /// First half of a Step(): adds the step to the window.
   void Observe(const Evidence& evidence);
-  /// ... and what the window holds is z, in m.
+  /// Second half of a Step(): z of the window, in m.
   double conflict_m() const { return window_.Conflict(reading_); }
 
  private:

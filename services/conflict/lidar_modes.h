@@ -1,4 +1,4 @@
-// What the LiDAR is ranging: the car, the fog, or nothing.
+// Modes of the LiDAR: it measures the range of the car, of the fog, or of nothing.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ namespace fogline {
 ///
 ///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / sum
 ///
-/// With a reference range r, the radar's or, without it, the prediction's, the likelihood of an
-/// echo at z is Lambda_j = P_echo,j times
+/// The reference range r is the radar's, or the prediction's if the radar has none. The likelihood
+/// of an echo at z is Lambda_j = P_echo,j times
 ///     clean       N(r - z; offset, S)
 ///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R     E, V: of the scatter a Beta(2, 20)
-///     dropout     1/R                                       what echo there is can be anywhere
-/// with share e of stray echoes over the range R; that of no echo is 1 - P_echo,j. A missing LiDAR
-/// value is evidence of a mode and thus neither held nor skipped. An echo without any reference
-/// says nothing, and the chain goes on alone.
+///     dropout     1/R                                       an echo can be anywhere
+/// with share e of stray echoes over the range R. The likelihood of no echo is 1 - P_echo,j. A
+/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. Of an
+/// echo without any reference no likelihood is computed: only the Markov chain advances.
 class LidarModes {
  public:
   using Probabilities = std::array<double, kLidarModes>;  // order of LidarMode; add up to 1

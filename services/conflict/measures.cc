@@ -76,7 +76,7 @@ constexpr std::string_view kUnchanged = "by rule; skipped: no change";
 
 using Beliefs = ConsonantBeliefs;
 
-// One row a measure.
+// One row for each measure.
 constexpr ConflictMeasureRow kConflictMeasures[] = {
     {"doc", "1/(1 + exp(-10 (z - 1 m))), z the windowed |radar - LiDAR|", "Sourav & Cheng 2024",
      kUnit, kWindowed, Make<Doc>},

@@ -1,4 +1,4 @@
-// THE table of conflict measures: studies, policies, documents and tests come from it.
+// The tables of conflict measures. Studies, policies, documents and tests use them.
 #pragma once
 
 #include <memory>
@@ -14,12 +14,12 @@ namespace fogline {
 template <class Measure>
 struct MeasureRow {
   std::string_view name;        // lower_snake, unique in its table
-  std::string_view definition;  // in a line
+  std::string_view definition;  // in one line
   std::string_view source;
   std::string_view range;    // with unit, if it has one
-  std::string_view missing;  // what a step without radar or LiDAR value is
+  std::string_view missing;  // treatment of a step without radar or LiDAR value
   std::unique_ptr<Measure> (*make)(const ConflictParameters& parameters);
-  bool posterior = false;  // a posterior probability of conflict by all evidence so far
+  bool posterior = false;  // the score is the posterior probability of conflict by all evidence
 };
 
 using ConflictMeasureRow = MeasureRow<ConflictMeasure>;
@@ -27,10 +27,10 @@ using BlameMeasureRow = MeasureRow<BlameMeasure>;
 
 /// All measures of conflict, in the order of services/conflict/README.md.
 std::span<const ConflictMeasureRow> ConflictMeasures();
-/// All measures of who is wrong.
+/// All measures of which sensor is wrong.
 std::span<const BlameMeasureRow> BlameMeasures();
 
-/// The row of that name; nullptr if there is none.
+/// The row with this name; nullptr if there is none.
 const ConflictMeasureRow* FindConflictMeasure(std::string_view name);
 const BlameMeasureRow* FindBlameMeasure(std::string_view name);
 

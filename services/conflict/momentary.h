@@ -8,8 +8,8 @@
 
 namespace fogline {
 
-/// A measure that is a function of the disagreement of the step alone: double(Disagreement). A step
-/// that is skipped, or held before there is anything to hold, scores 0.
+/// A measure that is a function of the disagreement of the step alone: double(Disagreement). A
+/// skipped step scores 0, and so does, under `hold`, a missing value before the first measured one.
 template <class Score>
 class Momentary final : public ConflictMeasure {
  public:

@@ -1,5 +1,5 @@
-// Normalised squares and means of the difference: what chi-square and Gauss tests are made of
-// (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
+// Normalised squares and means of the difference, for chi-square and Gauss tests (Bar-Shalom, Li &
+// Kirubarajan 2001, section 5.4).
 #pragma once
 
 #include "services/conflict/disagreement.h"
@@ -7,8 +7,8 @@
 
 namespace fogline {
 
-/// NIS = d^2/S, at least 0. Chi-square with one degree of freedom without a fault:
-/// above 3.84, 6.63, 10.83 in 5, 1, 0.1 % of the steps.
+/// NIS = d^2/S, at least 0. Without a fault it is chi-square with one degree of freedom: above
+/// 3.84, 6.63, 10.83 in 5, 1, 0.1 % of the steps.
 inline double NormalisedSquare(const Disagreement& disagreement) {
   const double u = disagreement.standardised();
   return u * u;
@@ -28,10 +28,10 @@ class WindowedNis final : public ConflictMeasure {
   Window squares_;
 };
 
-/// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number:
-/// standard normal without a fault, and mean(d) sqrt(n/S) while S is constant. Above 0 where the
-/// LiDAR is short; a LiDAR that is long counts as the opposite of conflict. Best for a constant
-/// bias. A skipped step leaves its place empty; an empty window scores 0.
+/// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number.
+/// Without a fault T is standard normal; it is mean(d) sqrt(n/S) while S is constant. T is above 0
+/// if the LiDAR's range is too short; a range that is too long counts as the opposite of conflict.
+/// T is best for a constant bias. A skipped step leaves its place empty; an empty window scores 0.
 class SignedNis final : public ConflictMeasure {
  public:
   explicit SignedNis(const ConflictParameters& parameters);

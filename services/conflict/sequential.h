@@ -1,4 +1,4 @@
-// Sequential tests of the difference: they add up what single steps can't tell.
+// Sequential tests of the difference: they add up the evidence of many steps.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,14 @@
 
 namespace fogline {
 
-/// One-sided cumulative sum of u = d/sqrt(S), for fog shortens the LiDAR's range (Page 1954):
+/// Cumulative sum of u = d/sqrt(S) (Page 1954). It is one-sided, because fog shortens the LiDAR's
+/// range:
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
-/// in standard deviations. kappa = 0.5 and a threshold of 4 or 5: mean run length 168 or 465 steps
-/// to a false alarm of two such tests, one of either sign, and 8.4 or 10.4 to the alarm after a
-/// shift by one standard deviation. A skipped step changes nothing.
+/// in standard deviations. With kappa = 0.5 and a threshold of 4 or 5, two such tests of opposite
+/// sign have a mean run length of 168 or 465 steps to a false alarm, and of 8.4 or 10.4 steps to
+/// the alarm after a shift by one standard deviation. A skipped step changes nothing.
 class Cusum final : public ConflictMeasure {
  public:
   explicit Cusum(const ConflictParameters& parameters);
@@ -34,8 +35,8 @@ class Cusum final : public ConflictMeasure {
 ///
 ///     max over j of (sum from j to now of u_i)^2/(2 n_j),        at least 0
 ///
-/// over the n_j differences since step j, no further back than the window. A skipped step leaves
-/// its place empty; an empty window scores 0.
+/// over the n_j differences since step j, which lies in the window. A skipped step leaves its place
+/// empty; an empty window scores 0.
 class Glr final : public ConflictMeasure {
  public:
   explicit Glr(const ConflictParameters& parameters);
@@ -56,13 +57,13 @@ struct SprtBounds {
 };
 SprtBounds WaldBounds(double alpha, double beta);
 
-/// SPRT of "the LiDAR is short by delta" against "it is not":
+/// SPRT of "the LiDAR's range is too short by delta" against "it is not":
 ///
 ///     L+ = L + (delta/S)(d - delta/2),        in [accept_agreement, ceiling accept_conflict]
 ///
-/// L is kept at the lower bound, where agreement is accepted and the test begins again, so its two
-/// bounds are a hysteresis with known errors. Scores from accept_conflict on accept the conflict. A
-/// skipped step changes nothing.
+/// At the lower bound the test accepts agreement and begins again, so L never falls below this
+/// bound. The two bounds are a hysteresis with known errors. Scores from accept_conflict on accept
+/// the conflict. A skipped step changes nothing.
 class Sprt final : public ConflictMeasure {
  public:
   explicit Sprt(const ConflictParameters& parameters);

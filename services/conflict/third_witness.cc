@@ -14,8 +14,8 @@ double Similarity(double product, double square) {
   return 1 - std::sqrt(std::max(0.0, square - product) / square);
 }
 
-// Credibilities of radar and LiDAR from the similarities of the pairs; equal shares where nothing
-// resembles anything.
+// Credibilities of radar and LiDAR from the similarities of the pairs; equal shares if all
+// similarities are 0.
 Support Credibility(double radar_lidar, double radar_prediction, double lidar_prediction) {
   const double sum = 2 * (radar_lidar + radar_prediction + lidar_prediction);
   if (sum <= 0) return {1.0 / 3, 1.0 / 3};
@@ -65,7 +65,8 @@ void SensorResidual::Reset() {
 
 NisBlame::NisBlame(const ConflictParameters& parameters)
     : offset_m_(parameters.offset_m),
-      // d = radar - LiDAR = missing_conflict_m: a radar that is long, or a LiDAR that is short.
+      // d = radar - LiDAR = missing_conflict_m: the radar's range is too long, or the LiDAR's too
+      // short.
       radar_(parameters, parameters.nominal_radar_std_m, parameters.missing_conflict_m),
       lidar_(parameters, parameters.nominal_lidar_std_m, -parameters.missing_conflict_m) {}
 

@@ -1,9 +1,9 @@
-// Who is wrong: two values that differ can't say, a third one can. The witness is the filter's
-// prediction of the range from all that was before this step.
+// Finds the sensor that is wrong. Two different values are not enough for this, so a third one, the
+// witness, is needed: the filter's prediction of the range from all steps before this one.
 //
-// Every judgement here begins with the offset of the sensors taken off the radar's range. Without a
-// prediction there is no witness and nobody is blamed. A witness is only as good as what it heard
-// before: a filter that has followed a slowly drifting sensor blames the other one.
+// All measures here first subtract the offset of the sensors from the radar's range. Without a
+// prediction there is no witness, and the blame of both sensors is 0. A witness is only as good as
+// its earlier input: a filter that has followed a slowly drifting sensor blames the other one.
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@ namespace fogline {
 
 /// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
 /// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. With one step T^2 is
-/// the NIS. Residuals of several steps are correlated by the prediction's error, so that T of a
-/// long window scatters more than a standard normal number.
+/// the NIS. The prediction's error correlates the residuals of several steps, so T of a long window
+/// scatters more than a standard normal number.
 class SensorResidual {
  public:
-  /// @param nominal_std_m stands for the standard deviation before one has been stated
-  /// @param missing_error_m what a missing value is off by where it counts as conflict
+  /// @param nominal_std_m standard deviation to use before the sensor has stated one
+  /// @param missing_error_m error of a missing value if it counts as conflict
   SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
                  double missing_error_m);
 
@@ -46,17 +46,17 @@ class SensorResidual {
   Window residuals_;
 };
 
-/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)): one less the level
-/// at which the test of T would just refuse the sensor. Even over [0, 1] for a sensor without
-/// fault.
+/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)). This is 1 minus
+/// the smallest level at which the test of T would reject the sensor. For a sensor without fault it
+/// is uniformly distributed over [0, 1].
 class NisBlame final : public BlameMeasure {
  public:
   explicit NisBlame(const ConflictParameters& parameters);
 
   Blame Step(const Evidence& evidence) override;
   void Reset() override;
-  /// max T^2 of the two sensors in the last step, at least 0: for whoever needs to tell apart what
-  /// is 1 as blame.
+  /// max T^2 of the two sensors in the last step, at least 0. It still distinguishes large T for
+  /// which the blame rounds to 1.
   double largest_square() const { return largest_square_; }
 
  private:
@@ -79,7 +79,7 @@ class NisWitness final : public ConflictMeasure {
 };
 
 /// Products c under Jousselme's D of three consonant beliefs: the square, which is the same for
-/// all, and that of each pair.
+/// each belief, and the product of each pair.
 struct BeliefProducts {
   double square;
   double radar_lidar;
@@ -94,21 +94,21 @@ struct Support {
 };
 
 /// Deng et al. 2004: credibility Crd_i = Sup_i/sum of Sup, Sup_i = sum over j of Sim_ij, with
-/// Sim = 1 - d_J/sqrt(c11). (Without sqrt(c11), the largest d_J of consonant beliefs, disjoint
-/// evidence would still support each other.)
+/// Sim = 1 - d_J/sqrt(c11). (sqrt(c11) is the largest d_J of consonant beliefs. Without this
+/// divisor disjoint bodies of evidence would still support each other.)
 Support DengSupport(const BeliefProducts& products);
-/// Murphy 2000 averages the evidence. Here: 1 - d_J/sqrt(c11) of a body from the average of the two
-/// others.
+/// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11), with d_J its
+/// distance from the average of the two others.
 Support MurphySupport(const BeliefProducts& products);
-/// As Deng's, with Sim = cos of the angle that the law of cosines gives between two bodies as
-/// vectors under Jousselme's metric. After the published description of Zhang et al. 2014 (vector
-/// space, cosine theorem, degree of mutual support, an extension of Deng's rule), whose equations
-/// are not at hand: a reading of it, not a copy.
+/// As Deng's support, but Sim is the cosine of the angle between two bodies as vectors under
+/// Jousselme's metric, by the law of cosines. It is our reading of the published description of
+/// Zhang et al. 2014 (vector space, cosine theorem, degree of mutual support, an extension of
+/// Deng's rule); their equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
-/// Blame = 1 - support/support0, cut off at 0: support0 is what the same three precisions would
-/// give each other with equal means. So bodies that agree are not to blame for being of unequal
-/// precision. A missing value, by rule: the last blame; none; all the blame on that sensor.
+/// Blame = 1 - support/support0, at least 0. support0 is the support for the same three precisions
+/// and equal means, so bodies that agree are not blamed for unequal precision. For a missing value
+/// the rule says: hold, the last blame; skip, no blame; conflict, all the blame on that sensor.
 class BeliefBlame final : public BlameMeasure {
  public:
   using SupportFunction = Support (*)(const BeliefProducts&);
@@ -120,7 +120,7 @@ class BeliefBlame final : public BlameMeasure {
 
  private:
   Blame Judge(const Evidence& evidence) const;
-  // With means in the order radar, LiDAR, prediction.
+  // Means and standard deviations are in the order radar, LiDAR, prediction.
   BeliefProducts Products(const std::array<double, 3>& means_m,
                           const std::array<double, 3>& stds_m) const;
 

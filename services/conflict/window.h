@@ -7,9 +7,9 @@
 
 namespace fogline {
 
-/// The values of the last W steps; a step can be there without a value, and ages like any other.
-/// Whoever sums does so anew in every step, oldest first: a result depends on what the window holds
-/// and on nothing that was before.
+/// The values of the last W steps. A step without a value has an empty place, which leaves the
+/// window like any other. A measure computes the whole sum again in every step, so its result
+/// depends only on the contents of the window.
 class Window {
  public:
   /// @param steps W, at least 1
@@ -25,7 +25,7 @@ class Window {
     oldest_ = 0;
   }
 
-  /// Calls visit(value) for each value that is there, oldest first.
+  /// Calls visit(value) for each value, oldest first; leaves out empty places.
   template <class Visitor>
   void ForEach(Visitor&& visit) const {
     for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -34,7 +34,7 @@ class Window {
     }
   }
 
-  /// Calls visit(value) for each value that is there, newest first.
+  /// Calls visit(value) for each value, newest first; leaves out empty places.
   template <class Visitor>
   void ForEachBackwards(Visitor&& visit) const {
     for (std::size_t i = values_.size(); i > 0; --i) {

@@ -46,9 +46,9 @@ Driver::Driver(const Scenario& scenario)
   }
 }
 
-// In every mode but AUTOMATION he drives or has been asked to, also while the car stops because he
-// has not come yet: he may still end that. Where nothing waits for him he need not look: the car
-// has stopped for good, or stops in a manoeuvre that has asked nobody.
+// In most modes other than AUTOMATION he drives or has been asked to drive, also while the car
+// stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
+// no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
 void Driver::Hear(const arbitration_t& host) {
   const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
   task_ = monitors ? DriverTask::kMonitors : DriverTask::kDrives;

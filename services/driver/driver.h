@@ -1,5 +1,5 @@
-// The human driver of the host: sees the road, or what fog leaves of it, never a sensor. He is
-// always at it; whether the host obeys him is the arbitrator's decision.
+// The human driver of the host. He sees the road as far as fog allows, and does not use the
+// sensors. He makes an offer in every step; the arbitrator decides whether the host follows it.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace fogline {
 
-/// By default the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground truth,
-/// perceived perfectly and at once in fog as in clear air, and as ready as the scenario says. Each
-/// switch of scenario section `human` takes away some of that (services/driver_models).
+/// By default the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground truth.
+/// He perceives it perfectly and without delay, in fog as in clear air; his readiness is the
+/// scenario's. Each switch of scenario section `human` replaces a part of this by a more realistic
+/// model (services/driver_models).
 class Driver {
  public:
-  /// @throws InputError if a step is so short that he cannot remember his reaction time
+  /// @throws InputError if a step is so short that the reaction time is more than 254 steps
   explicit Driver(const Scenario& scenario);
 
-  /// One whose awareness depends on who drives has to know that.
+  /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
   static bool Demands(const Scenario& scenario) { return scenario.human.loses_awareness; }
-  /// Who has driven in the step that ends with the next Step().
+  /// The command of the step that ends with the next Step(): it says who drove.
   void Hear(const arbitration_t& host);
 
-  /// What he would do now. In order; has no memory unless he misjudges or loses awareness. The
-  /// result is valid until the next call.
+  /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
+  /// memory only if he misjudges or loses awareness. The result is valid until the next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:

@@ -1,4 +1,4 @@
-// How much of the road a driver has in mind, and how it fades and returns.
+// How much of the road a driver is aware of, and how his awareness fades and returns.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 namespace fogline {
 
 enum class DriverTask {
-  kMonitors,  // automation drives and has asked for nothing
-  kDrives,    // or has been asked to, and may still come
+  kMonitors,  // the automation drives and has not asked him to take over
+  kDrives,    // he drives, or has been asked to and may still take over
 };
 
-/// Awareness A in [0, 1], from step to step exactly:
+/// Awareness A in [0, 1], integrated exactly from step to step:
 ///
 ///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
 ///
-/// and what follows from it: reaction time T_r0 + k (1 - A), and the size of his errors. SUMO's
-/// driver state has a relative error of the gap of 0.75 and an error of the closing speed of 0.15
-/// per second and gap, times a process of standard deviation 0.2 (1 - A).
+/// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state: a
+/// relative error of the gap of 0.75 and an error of the closing speed of 0.15 per second and gap,
+/// each times a process of standard deviation 0.2 (1 - A).
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.
@@ -32,7 +32,7 @@ class Awareness {
     if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
   }
 
-  /// A after this time of it.
+  /// A after this duration of the task.
   double Step(DriverTask task, double duration_s) {
     if (task == DriverTask::kDrives) {
       awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);
@@ -48,13 +48,13 @@ class Awareness {
     return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - awareness_);
   }
 
-  /// The most that it becomes from now on.
+  /// The longest reaction time that can occur from now on.
   double LongestReactionTime_s() const {
     const double least = std::min(awareness_, parameters_.monitoring);
     return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - least);
   }
 
-  /// V_s and r_c of human_driver.h as SUMO's driver state has them.
+  /// V_s and r_c of human_driver.h, as in SUMO's driver state.
   double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
   double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
 
-// z^(2 a / a_free) has no limit as v reaches v_0; z < 1 to this power is nothing by then.
+// Limit of the exponent of z^(2 a / a_free), which goes to infinity as v goes to v_0. z < 1 to this
+// power is practically 0.
 constexpr double kLargestExponent = 100;
 
 }  // namespace
@@ -61,7 +62,7 @@ double Following::ConstantAccelerationHeuristic(double speed_mps, const CarAhead
   const double closing = speed_mps - lead;
   const double denominator = lead * lead - 2.0 * s * a;
   if (lead * closing <= -2.0 * s * a && denominator > 0.0) {
-    return speed_mps * speed_mps * a / denominator;  // it will stand when he does
+    return speed_mps * speed_mps * a / denominator;  // the car ahead stands when he stops
   }
   const double approach = std::max(closing, 0.0);
   return a - approach * approach / (2.0 * s);

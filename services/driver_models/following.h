@@ -1,5 +1,5 @@
-// Car-following models that answer the same question as the IDM: how to accelerate now. Formulas
-// only; what of the world reaches the driver is decided elsewhere (fog_sight.h, human_driver.h).
+// Car-following models that compute the acceleration, as the IDM does. This file has only formulas;
+// fog_sight.h and human_driver.h decide what the driver perceives.
 #pragma once
 
 #include "scenario/control.h"
@@ -9,11 +9,11 @@
 
 namespace fogline {
 
-/// The IDM of services/driver and the two that Kesting, Treiber & Helbing (Philosophical
+/// The IDM of services/driver, and the two models that Kesting, Treiber & Helbing (Philosophical
 /// Transactions of the Royal Society A 368:4585, 2010) and Treiber & Kesting (Traffic Flow
-/// Dynamics, 2013) made of it. With s* and the parameters of idm.h and z = s* / s:
+/// Dynamics, 2013) derived from it. With s* and the parameters of idm.h and z = s* / s:
 ///
-/// Improved IDM (IIDM), whose equilibrium gap below v_0 is s_0 + v T and not more:
+/// Improved IDM (IIDM); its equilibrium gap below v_0 is exactly s_0 + v T:
 ///
 ///     v <= v_0:  a_free = a_max [1 - (v / v_0)^delta]
 ///                a = a_max (1 - z^2)                        z >= 1
@@ -22,17 +22,18 @@ namespace fogline {
 ///                a = a_free + a_max (1 - z^2)               z >= 1
 ///                a = a_free                                 z < 1
 ///
-/// ACC-IDM, which does not brake hard for a car that cuts in close but drives away. With the
-/// constant-acceleration heuristic, where a~ = min(a_lead, a_max), v_l = the speed ahead:
+/// ACC-IDM, which does not brake hard for a car that cuts in at a short gap but drives away. It
+/// uses the constant-acceleration heuristic a_CAH, with a~ = min(a_lead, a_max) and v_l the speed
+/// of the car ahead:
 ///
 ///     a_CAH = v^2 a~ / (v_l^2 - 2 s a~)                     v_l (v - v_l) <= -2 s a~
 ///     a_CAH = a~ - max(v - v_l, 0)^2 / (2 s)                else
 ///     a = a_IIDM                                            a_IIDM >= a_CAH
 ///     a = (1 - c) a_IIDM + c [a_CAH + b tanh((a_IIDM - a_CAH) / b)]      else
 ///
-/// with the coolness c in [0, 1]: 0 is the IIDM, the paper's is 0.99.
+/// with the coolness c in [0, 1]: 0 gives the IIDM; the paper has 0.99.
 ///
-/// As for the IDM, max_deceleration_mps2 is the strongest braking, and the answer to a gap <= 0.
+/// As in the IDM, max_deceleration_mps2 is the strongest braking, and the result at a gap <= 0.
 class Following {
  public:
   static constexpr double kPapersCoolness = 0.99;

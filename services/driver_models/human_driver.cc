@@ -16,7 +16,7 @@ const HumanParameters& Checked(const HumanParameters& human) {
   return human;
 }
 
-// A time as whole steps and the rest.
+// A time as a number of whole steps and the rest, in steps.
 struct Steps {
   double whole;
   double rest;
@@ -88,7 +88,8 @@ Situation HumanDriver::Remembered(double reaction_time_s) const {
   const auto steps = static_cast<std::size_t>(whole);
   const Situation& newer = SeenAgo(steps);
   const Situation& older = SeenAgo(steps + 1);
-  // A car that appeared or vanished between the two was there, or not, as at the nearer of them.
+  // If a car appeared or vanished between the two situations, the nearer one decides whether it is
+  // there.
   Situation then = rest < 0.5 ? newer : older;
   then.speed_mps = Mix(newer.speed_mps, older.speed_mps, rest);
   then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, rest);

@@ -1,4 +1,5 @@
-// A driver who misjudges, is late and knows it: around any car-following model.
+// A driver with errors of perception, reaction time and anticipation, around any car-following
+// model.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace fogline {
 
-/// What of a driver may change from step to step.
+/// Properties of a driver that may change from step to step.
 struct Attention {
   double reaction_time_s;    // T_r
   double gap_error;          // V_s
@@ -25,34 +26,36 @@ struct Attention {
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
 ///     v_l,est = v_l - s r_c w_l
 ///
-/// He acts on what he saw T_r ago, between two steps in proportion. If he anticipates, he takes his
-/// own acceleration and the closing speed of then for constant since:
+/// He acts on the situation of T_r ago, interpolated linearly between two steps. If he anticipates,
+/// he assumes that his own acceleration and the closing speed have been constant since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
-///     v_l' = v' - (v - v_l,est)                    all of t - T_r
+///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r
 ///
-/// The equations are the paper's as they are generally given; of its text only the abstract was
-/// checked. Without errors and reaction time this is the model within, bit by bit.
+/// The equations are those that the literature quotes from the paper; of the paper only the
+/// abstract was checked. Without errors and reaction time this equals the car-following model, bit
+/// by bit.
 class HumanDriver {
  public:
   /// Longest reaction time in steps.
   static constexpr std::size_t kMaxReactionSteps = 254;
 
-  /// @param human with the longest reaction time that he will have
-  /// @param random whose errors they are: a stream of its own for each driver
+  /// @param human its reaction time is the longest that the driver will have
+  /// @param random for the driver's errors; each driver has a stream of its own
   /// @throw std::invalid_argument for a parameter out of its range or a reaction time too long.
   HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
               double step_s);
 
-  /// What he does in this step. Once per step, in order: his errors and what he has seen go with
-  /// him from step to step. Before T_r is over he goes by the first situation.
+  /// The acceleration in this step. Call it once per step, in the order of steps: errors and memory
+  /// continue from step to step. Until T_r has passed, he acts on the first situation.
   double Step(std::int64_t step, const Situation& seen);
-  /// The same for one who is not always the same.
+  /// The same for a driver whose attention changes. A reaction time above that of the constructor
+  /// counts as the latter.
   double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:
   Situation Misjudged(std::int64_t step, const Situation& seen, const Attention& attention);
-  // What was seen so long ago.
+  // The situation seen this time ago.
   Situation Remembered(double reaction_time_s) const;
   const Situation& SeenAgo(std::size_t steps) const;
 

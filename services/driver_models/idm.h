@@ -1,4 +1,4 @@
-// The Intelligent Driver Model as a formula; who uses it, and what he sees, is not its business.
+// The Intelligent Driver Model as a formula.
 #pragma once
 
 #include "scenario/control.h"
@@ -13,8 +13,8 @@ namespace fogline {
 /// with v the own speed, dv = v - v_preceding the closing speed and s the gap, bumper to bumper.
 /// a = 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta) behind a car of equal speed.
 ///
-/// The formula has no lower limit as s goes to 0. Here it has one, max_deceleration_mps2, which is
-/// also the answer where the formula has none (s <= 0).
+/// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2, which
+/// is also the result for s <= 0, where the formula has no value.
 class Idm {
  public:
   explicit Idm(const DriverSection& driver);

@@ -1,12 +1,12 @@
-// Noise with a memory: what a person misjudges now he still misjudges a second later.
+// Correlated noise: an error of perception lasts for some time.
 #pragma once
 
 #include <cmath>
 
 namespace fogline {
 
-/// Ornstein-Uhlenbeck process of mean 0, variance 1 and correlation e^(-t / tau), from step to step
-/// exactly (Gillespie, Physical Review E 54:2084, 1996):
+/// Ornstein-Uhlenbeck process of mean 0, variance 1 and correlation e^(-t / tau). Its steps are
+/// exact (Gillespie, Physical Review E 54:2084, 1996):
 ///
 ///     w' = e^(-h / tau) w + sqrt(1 - e^(-2 h / tau)) eta          eta ~ N(0, 1)
 ///

@@ -1,4 +1,4 @@
-// What a driver, or a model of one, goes by.
+// The situation that a driver, or a model of a driver, uses.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ struct CarAhead {
 
 /// Truth or perception of one driver at one moment.
 struct Situation {
-  double speed_mps = 0;  // the own
+  double speed_mps = 0;  // of the own car
   double acceleration_mps2 = 0;
-  std::optional<CarAhead> ahead;  // without one the road is free, as far as he can tell
+  std::optional<CarAhead> ahead;  // empty if the driver sees no car ahead
 };
 
 }  // namespace fogline

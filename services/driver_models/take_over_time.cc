@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSumoDraws = 100;
 
-// P(Z > z) of the standard normal distribution, and back.
+// P(Z > z) of the standard normal distribution, and its inverse.
 double UpperTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 double UpperQuantile(double probability) {
   return std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * probability);
@@ -68,7 +68,7 @@ double TakeOverTime::LateProbability() const {
 
 double TakeOverTime::Quantile(double probability) const {
   if (!normal_) return std::exp(location_ + scale_ * UpperQuantile(1.0 - probability));
-  const double above_0 = UpperTail(-location_ / scale_);  // what is below is drawn again
+  const double above_0 = UpperTail(-location_ / scale_);  // values below 0 are drawn again
   return location_ + scale_ * UpperQuantile((1.0 - probability) * above_0);
 }
 

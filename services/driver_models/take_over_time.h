@@ -1,4 +1,4 @@
-// How long a driver takes from the request to take over until he does.
+// Distribution of the time from the request to take over until the driver takes over.
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,29 @@
 
 namespace fogline {
 
-/// Take-over time T for a request t before the automation gives up.
+/// Take-over time T for a request with lead time t. A driver is late if T > t.
 ///
 ///     log-normal:  ln T ~ N(mu, s^2)    s^2 = ln(1 + std^2 / mean^2)    mu = ln mean - s^2 / 2
-///     SUMO:        T ~ N(m, ((t - m) / z)^2), T >= 0    m = min(2 sqrt(t), 0.7 t)    P(Z > z) =
-///     P(late) by lead:     log-normal with mean m and P(T > t) = P(late):  s = z - sqrt(z^2 - 2
-///     ln(t / m))
+///     SUMO:        T ~ N(m, ((t - m) / z)^2), T >= 0    m = min(2 sqrt(t), 0.7 t)
+///                  P(Z > z) = P(late)
+///     by lead:     log-normal with mean m and P(T > t) = P(late):
+///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
-/// SUMO (MSDevice_ToC) draws again what is negative, up to 100 times, and then takes the mean; so
-/// of a lead time of minutes P(late) is more than asked for. SUMO has a table for (t - m) / z.
+/// SUMO (MSDevice_ToC) draws negative values again, up to 100 times, and then takes the mean. So
+/// for a lead time of minutes P(T > t) is larger than P(late). SUMO has a table for (t - m) / z.
 class TakeOverTime {
  public:
   /// @param lead_s t, above 0
   /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
-  /// distribution has this P(late), z^2 < 2 ln(t / m): above 19.9 % for t up to 8.2 s, 5 % for 60
-  /// s.
+  /// distribution has this P(late), because z^2 < 2 ln(t / m): this is so above 19.9 % for t up to
+  /// 8.2 s, and above 5 % for 60 s.
   TakeOverTime(const TakeOverParameters& parameters, double lead_s);
 
-  /// T in s for the request made in this step: the same whoever asks, and in whatever order.
+  /// T in s for a request in this step. It depends only on `random` and the step, not on the order
+  /// of calls.
   double Draw(const Random& random, std::int64_t step) const;
 
-  /// P(T > t) exactly.
+  /// The exact P(T > t).
   double LateProbability() const;
 
   /// The time in s that T exceeds with probability 1 - `probability`, in (0, 1).

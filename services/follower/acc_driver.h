@@ -7,14 +7,14 @@
 
 namespace fogline {
 
-/// The same ACC as the host's (services/acc), with parameters of its own and with perfect sensors.
+/// The same ACC as the host's (services/acc), with its own parameters and with perfect sensors.
 class AccDriver final : public CarDriver {
  public:
-  /// @throws InputError if the section's weights make no well-conditioned problem.
+  /// @throws InputError if the section's weights make an ill-conditioned problem.
   explicit AccDriver(const Scenario& scenario)
       : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model) {}
 
-  /// Begins anew, as a new one would; cheaper where its parameters are the same.
+  /// Resets the object to the state of a new one. Cheaper if the ACC's parameters are equal.
   /// @throws as the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);

@@ -11,12 +11,12 @@ class CarDriver {
  public:
   struct Action {
     double acceleration_mps2 = 0;
-    double safe_distance_m = 0;  // T_hw v + d_0, as this driver holds it safe at the present speed
+    double safe_distance_m = 0;  // T_hw v + d_0 of this driver at the present speed
   };
 
   virtual ~CarDriver() = default;
 
-  /// What to do in this step. Once per step, in order.
+  /// The driver's action in this step. Call it once per step, in the order of steps.
   /// @param now the truth, with a car ahead
   /// @param visibility_m meteorological optical range
   virtual Action Step(std::int64_t step, const Situation& now, double visibility_m) = 0;

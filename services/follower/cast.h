@@ -1,4 +1,4 @@
-// Who drives which following car: as the scenario says, or drawn by its seed.
+// Chooses the driver of each following car: as the scenario says, or drawn with its seed.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,15 @@
 
 namespace fogline {
 
-/// One who drives.
+/// Driver of a following car.
 struct Part {
   bool has_acc = true;
   Style style = Style::kNormal;  // of a person
 };
 
-/// Who drives this following car, counted from 0 from behind the host. What is drawn is drawn for
-/// each car by itself: more cars, or other parameters of one of them, change no other.
+/// The driver of this following car; the car behind the host has number 0. Random choices are drawn
+/// for each car independently: a further car, or other parameters of one car, change no other
+/// driver.
 Part PartOf(const Scenario& scenario, std::size_t car);
 
 }  // namespace fogline

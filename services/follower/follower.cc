@@ -27,7 +27,7 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
   }
 }
 
-/// The driver of this car; `before` again if that can begin anew.
+/// The driver of this car: `before`, restarted, if both are an ACC; otherwise a new one.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {
   const Part part = PartOf(scenario, car);
@@ -39,7 +39,7 @@ std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
   return std::make_unique<AccDriver>(scenario);
 }
 
-/// What the driver of this following car goes by.
+/// The true situation of this following car.
 Situation SituationOf(const truth_t& truth, std::size_t car) {
   const bool first = car == 0;
   return {.speed_mps = truth.follower_speed_mps[car],

@@ -12,21 +12,22 @@
 
 namespace fogline {
 
-/// Drives the following cars, each behind the one before it: with the same ACC as the host's
-/// (acc_driver.h) or as a person (person.h). They see the truth: the gap, and the speeds of both
-/// cars. They stand for the traffic that a host which slows down for no reason endangers, and are
-/// no part of the host's automation.
+/// Drives the following cars, each behind the car in front of it: with the same ACC as the host's
+/// (acc_driver.h) or as a person (person.h). They receive the truth: the gap, and the speeds of
+/// both cars. They represent the traffic that a host endangers if it slows down for no reason, and
+/// are not part of the host's automation.
 class Follower {
  public:
-  /// @throws InputError if the weights of scenario.follower make no well-conditioned problem, or a
-  ///     person's reaction time is too many steps
+  /// @throws InputError if the weights of scenario.follower make an ill-conditioned problem, or a
+  ///     person's reaction time is more than 254 steps
   explicit Follower(const Scenario& scenario) { Restart(scenario); }
 
-  /// Begins anew, as Follower(scenario) would; cheaper where an ACC's parameters are the same.
+  /// Resets the object to the state of a new Follower(scenario). Cheaper if an ACC's parameters are
+  /// equal.
   /// @throws as the constructor; Restart() must then succeed before the next Step()
   void Restart(const Scenario& scenario);
 
-  /// One command for each following car, nearest to the host first; none where `truth` has none.
+  /// One command for each following car in `truth`, nearest to the host first.
   const follower_command_t& Step(const truth_t& truth);
 
  private:

@@ -1,5 +1,5 @@
-// The following car as a process: answers TRUTH with FOLLOWER_COMMAND. It is traffic, not a part of
-// the host's automation.
+// The following cars as a process: answers TRUTH with FOLLOWER_COMMAND. They are traffic, not a
+// part of the host's automation.
 #include "services/follower/follower.h"
 #include "services/runtime/service.h"
 

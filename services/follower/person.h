@@ -1,4 +1,4 @@
-// A person in a following car: of some temper, with human errors, and perhaps careful in danger.
+// A person in a following car: with a style, human errors, and optionally a safety model.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace fogline {
 
-/// The IDM with the parameters of his style, seen through the Human Driver Model with its reaction
-/// time (services/follower_models/style.h, services/driver_models/human_driver.h). With a safety
-/// model on top he takes the smaller of its acceleration and his own; that model does not misjudge,
-/// and has a reaction time of its own (services/follower_models/safety_response.h). With sight fog
-/// both have what fog leaves of the truth, as the host's driver
+/// The IDM with the parameters of his style (services/follower_models/style.h), inside the Human
+/// Driver Model with its errors and reaction time (services/driver_models/human_driver.h). With a
+/// safety model he applies the smaller of its acceleration and his own. The safety model has no
+/// errors, and its own reaction time (services/follower_models/safety_response.h). With sight fog
+/// both models receive only what he sees in fog, as the host's driver
 /// (services/driver_models/fog_sight.h).
 class Person final : public CarDriver {
  public:
   /// @param sight nullopt if he sees perfectly
-  /// @param errors the random numbers of his errors, a stream of his own
+  /// @param errors random numbers for his errors; each person has his own stream
   /// @throw std::invalid_argument if his reaction time has too many steps (HumanDriver)
   Person(Style style, const std::optional<FogSight>& sight, SafetyModelChoice safety,
          const Random& errors, double step_s);

@@ -1,4 +1,4 @@
-// How far behind is safe, by three rules: RSS, and the fuzzy safety model's two.
+// Three rules for the safe distance behind a car: that of RSS, and two of the fuzzy safety model.
 #pragma once
 
 #include "services/driver_models/situation.h"
@@ -14,8 +14,8 @@ struct RssParameters {
   double most_braking_mps2 = 8.0;   // b_max of the car ahead, above 0
 };
 
-/// d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2 b_max)) in
-/// m.
+/// In m: d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2
+/// b_max))
 double RssSafeDistance(const RssParameters& rss, double speed_mps, double lead_speed_mps);
 
 /// Fuzzy safety model (Mattas, Makridis, Botzoris, Kriston, Minarini, Papadopoulos, Re, Rognelund &
@@ -26,29 +26,30 @@ struct FuzzyParameters {
   double comfortable_braking_mps2 = 4;  // b_c, above 0
   double hard_braking_mps2 = 6;         // b_h, above b_c
   double lead_braking_mps2 = 7;         // b_l, above 0
-  double standstill_m = 2;              // d_1 that is left at rest, at least 0
-  double safe_margin_m = 2;             // d_2 more for being entirely safe, at least 0
+  double standstill_m = 2;              // d_1, gap that remains at rest, at least 0
+  double safe_margin_m = 2;             // d_2, extra distance that is entirely safe, at least 0
 };
 
-/// Proactive fuzzy surrogate: if the car ahead braked now as hard as it can, 0 if comfortable
-/// braking would do, 1 if hard braking would not, between them in proportion to the distance s -
-/// d_1:
+/// Proactive fuzzy surrogate PFS. It assumes that the car ahead brakes with b_l. PFS is 0 if
+/// comfortable braking is enough then, 1 if hard braking is not enough, and linear in the distance
+/// s - d_1 between them:
 ///
 ///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
 ///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)
 double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
-/// Critical fuzzy surrogate: the same if the car ahead goes on at its speed and the own
-/// acceleration a, at least -b_c, lasts through the response. With the closing speed c' = v + a rho
-/// - v_l then:
+/// Critical fuzzy surrogate CFS. It assumes that the car ahead keeps its speed, and that the own
+/// acceleration a, at least -b_c, lasts during the response. The closing speed after the response
+/// is c' = v + a rho - v_l. CFS is computed as PFS, but from the gap s:
 ///
 ///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)         d_unsafe: with b_h
 ///
-/// If c' < 0 he is already braking enough, and it is 1 or 0 as s < (v - v_l)^2 / (2 |a|) or not.
+/// If c' < 0, the car already brakes enough to end the closing. CFS is then 1 if
+/// s < (v - v_l)^2 / (2 |a|), otherwise 0.
 double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
-/// Deceleration in m/s2 that the model asks for, 0 if none:
-/// CFS > 0: b_c + CFS (b_h - b_c), else PFS b_c.
+/// Deceleration in m/s2 that the model demands, 0 if none: b_c + CFS (b_h - b_c) if CFS > 0,
+/// otherwise PFS b_c.
 double FuzzyDeceleration(const FuzzyParameters& fuzzy, const Situation& seen);
 
 }  // namespace fogline

@@ -1,5 +1,5 @@
-// Extended Kalman filter for the car ahead, without sensors: prediction, and one scalar correction
-// at a time. What a sensor sees is in line_of_sight.h; which measurements are used, in fusion.h.
+// Extended Kalman filter for the car ahead: prediction, and correction by one scalar value at a
+// time. line_of_sight.h has the model of a sensor; fusion.h decides which measurements are used.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,39 +7,39 @@
 namespace fogline {
 
 /// State x = [d, dv, a_p]: distance (m) and relative speed (m/s) of the preceding car, preceding
-/// minus host, and its *own* acceleration (m/s2). The host's acceleration a_h is known, so it
-/// enters as an input and the host's braking is no disturbance to the estimate:
+/// minus host, and the *own* acceleration of the preceding car (m/s2). The host's acceleration a_h
+/// is known, so it enters as an input, and the host's braking does not disturb the estimate:
 ///
 ///     d+   = d + T dv + T^2/2 (a_p - a_h)
 ///     dv+  =       dv + T     (a_p - a_h)
 ///     a_p+ =                   a_p
 ///
-/// which is exact while both accelerations are constant within a step. a_p is driven by white-noise
-/// jerk of power spectral density q (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.3).
+/// which is exact if both accelerations are constant within a step. White-noise jerk of power
+/// spectral density q drives a_p (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.3).
 ///
-/// The prediction is linear. Only a sensor that is off the lane's line makes a measurement
-/// nonlinear; without lateral offsets this is a Kalman filter in the strict sense.
+/// The prediction is linear. Only the lateral offset of a sensor makes a measurement nonlinear;
+/// without lateral offsets this is a Kalman filter in the strict sense.
 class Ekf {
  public:
   using State = Eigen::Vector3d;
-  using Covariance = Eigen::Matrix3d;   // order of State, squared units
+  using Covariance = Eigen::Matrix3d;   // order of State, products of its units
   using Jacobian = Eigen::RowVector3d;  // of one measured value with respect to State
 
   /// @param step_s T.  @param jerk_density_m2ps5 q.
   Ekf(double step_s, double jerk_density_m2ps5);
 
-  /// Begins anew from an estimate and its (symmetric positive definite) covariance.
+  /// Sets the estimate and its (symmetric positive definite) covariance.
   void Start(const State& state, const Covariance& covariance);
 
-  /// One step ahead, in which the host's acceleration was `host_acceleration_mps2` throughout.
+  /// Predicts one step ahead; `host_acceleration_mps2` is the host's acceleration during this step.
   void Predict(double host_acceleration_mps2);
 
   /// Variance H P H' + R of the innovation of a value with Jacobian H and noise variance R.
   double InnovationVariance(const Jacobian& jacobian, double noise_variance) const;
 
-  /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. In
-  /// Joseph's form, P = (I - K H) P (I - K H)' + K R K', which keeps P positive definite whatever
-  /// the rounding of K (Bucy & Joseph 1968).
+  /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. It uses
+  /// Joseph's form, P = (I - K H) P (I - K H)' + K R K', which keeps P positive definite in spite
+  /// of rounding in K (Bucy & Joseph 1968).
   void Correct(const Jacobian& jacobian, double innovation, double noise_variance);
 
   const State& state() const { return state_; }

@@ -12,13 +12,13 @@
 namespace fogline {
 namespace {
 
-// A range of less than this many lateral offsets says too little about the distance ahead to start
-// from: at 2 the cosine is 0.87.
+// A range of less than this many lateral offsets is too uncertain about the distance ahead for a
+// start: at 2 the cosine is 0.87.
 constexpr double kStartRangePerOffset = 2.0;
 
 constexpr double Square(double x) { return x * x; }
 
-// Distance ahead of a target seen at `range_m`, if the filter can start from there.
+// Distance ahead of a target at `range_m`, if the filter can start from it.
 std::optional<double> StartDistance(double range_m, double lateral_offset_m) {
   if (range_m <= kStartRangePerOffset * std::abs(lateral_offset_m)) return std::nullopt;
   return std::sqrt(Square(range_m) - Square(lateral_offset_m));
@@ -70,8 +70,8 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   return out_;
 }
 
-// The state that explains the radar's two values exactly, with their noise carried over:
-// P = J^-1 R J^-T, J the Jacobian of both values. Of the acceleration they say nothing.
+// Starts with the state that exactly explains the radar's two values. Its covariance is that of
+// their noise: P = J^-1 R J^-T, J the Jacobian of both values. The values contain no acceleration.
 bool Fusion::StartFromRadar(const radar_t& radar) {
   const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
   const std::int8_t usage = distance ? track_t::USED : track_t::GATED;
@@ -151,7 +151,8 @@ void Fusion::Record(Value value, double innovation, double variance, std::int8_t
   out_.usage[value] = usage;
 }
 
-// The host's acceleration is known, so taking it off the preceding car's leaves the covariance.
+// The host's acceleration is known, so subtracting it from that of the preceding car does not
+// change the covariance.
 void Fusion::Report(double host_acceleration_mps2) {
   const Ekf::State& state = ekf_.state();
   out_.valid = 1;

@@ -1,6 +1,6 @@
-// Radar and LiDAR fused into one estimate of the car ahead. Knows the sensors' geometry, and
-// nothing of fog: what the LiDAR reports in fog it believes as much as in clear air (unless gating
-// is on), which is the weakness that the experiment is about.
+// Fuses radar and LiDAR into one estimate of the car ahead. It knows the geometry of the sensors,
+// but not whether there is fog: it trusts the LiDAR in fog as much as in clear air (unless gating
+// is on). The experiment is about this weakness.
 #pragma once
 
 #include <array>
@@ -17,34 +17,37 @@
 namespace fogline {
 
 /// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
-/// one value after the other in this order. The state at which a value is predicted contains the
-/// values before it; their noises are independent, so without lateral offsets the result is that of
-/// a joint correction. Values that are missing or refused by the gate are skipped.
+/// one value after the other in this order. The predicted value is that of the state after the
+/// values before it. The noises of the values are independent, so without lateral offsets the
+/// result is that of a joint correction. Values that are missing or that the gate refuses are
+/// skipped.
 ///
-/// The noise that it assumes is that of the scenario's section `fusion`. What the sensors state
-/// of themselves (range_std_m and its kind) is left alone: a sensor deceived by fog does not know.
+/// The assumed noise is that of the scenario's section `fusion`. The filter does not use the
+/// standard deviations that the sensors state (range_std_m and the like): a sensor does not know
+/// when fog deceives it.
 ///
-/// A policy with a say in the fusion (services/policies) judges each step's values against the
-/// prediction first. A sensor that it does not trust is compared, and corrects nothing.
+/// A policy that selects sensors (services/policies) first judges each step's values against the
+/// prediction. The values of a sensor that it does not trust are compared with the prediction, but
+/// correct nothing.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy wants to know the truth: Hear() is then called before every
-  /// Step().
+  /// Whether the scenario's policy needs the truth: Hear() is then called before every Step().
   static bool Demands(const Scenario& scenario);
-  /// The gap is for the policy alone; nothing else of the truth is looked at.
+  /// Takes only the gap from the truth, for the policy alone.
   void Hear(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
-  /// The track of this step. Once per step, in order, beginning with the first: `ego` has the
-  /// host's acceleration during the step that ended here. The result is valid until the next call.
+  /// The track of this step. Call it once per step, in the order of steps, beginning with the
+  /// first. `ego` has the host's acceleration during the step that ended here. The result is valid
+  /// until the next call.
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
  private:
   /// Values in order of use; index of track_t's innovation, innovation_variance and usage.
   enum Value : std::size_t { kRadarRange, kRadarRangeRate, kLidarRange, kNumValues };
 
-  /// One measured value against what the estimate says that it should be.
+  /// One measured value, and the value that the estimate predicts.
   struct Comparison {
     double measured;
     double predicted;
@@ -53,15 +56,15 @@ class Fusion {
 
   static std::array<Gate, kNumValues> MakeGates(const FusionSection& section);
 
-  /// Begin the track with this measurement; false if the target is too far to the side for that.
+  /// Begin the track with this measurement; return false if the target is too far to the side.
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
-  /// What the policy thinks of the values of this step. @pre the filter has predicted
+  /// The policy's trust in the sensors in this step. @pre the filter has predicted
   Trust Judge(const radar_t& radar, const lidar_t& lidar);
   void CorrectByRadar(const radar_t& radar);
   void CorrectByLidar(const lidar_t& lidar);
   void Correct(Value value, const Comparison& comparison);
-  /// What becomes of a value, where not every value is used.
+  /// Whether a value is used, if gate or policy may refuse values.
   std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);
@@ -74,7 +77,7 @@ class Fusion {
   double lidar_offset_m_;
   double initial_speed_variance_;
   double initial_acceleration_variance_;
-  std::unique_ptr<EngagementPolicy> policy_;  // none if it has no say here
+  std::unique_ptr<EngagementPolicy> policy_;  // none if the policy does not select sensors
   bool selects_ = false;                      // whether gate or policy may refuse a value
   Trust trust_;
   std::optional<double> true_gap_m_;

@@ -1,5 +1,5 @@
 // The process that fuses radar and LiDAR into a track of the car ahead (RADAR, LIDAR, HOST_EGO to
-// TRACK). It is not told whether there is fog.
+// TRACK). It does not know whether there is fog.
 #include "services/fusion/fusion.h"
 #include "services/runtime/service.h"
 

@@ -7,14 +7,14 @@ namespace fogline {
 
 /// Gate on the normalised innovation squared of one measured value, nu^2 / S, which is chi-square
 /// distributed with one degree of freedom while the filter's model holds (Bar-Shalom, Li &
-/// Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row the world has changed
-/// rather than the measurement failed: the gate stays open until a value is inside it again.
+/// Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row a change of the scene is
+/// more likely than failed measurements: the gate stays open until a value is inside it again.
 class Gate {
  public:
-  /// @param probability Mass inside the gate, in (0, 1).
+  /// @param probability probability that a good value is inside the gate, in (0, 1)
   Gate(double probability, std::int64_t reopen_after);
 
-  /// Whether a value of this normalised innovation squared is to be used. Call once per value.
+  /// Whether to use a value with this normalised innovation squared. Call it once per value.
   bool Admits(double normalised_innovation_squared);
 
   /// Largest normalised innovation squared inside the gate.

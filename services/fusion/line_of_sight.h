@@ -1,4 +1,4 @@
-// What a range sensor beside the lane's line sees of the car ahead.
+// Measurement model of a range sensor with a lateral offset.
 #pragma once
 
 #include <cmath>
@@ -12,9 +12,9 @@ namespace fogline {
 ///     range        r = sqrt(d^2 + y^2)        dr/dd = d / r
 ///     range rate     = dv d / r               d/dd = dv y^2 / r^3,   d/ddv = d / r
 ///
-/// With y = 0 both are linear: r = d, and the range rate is dv. Where an estimate has overshot to
-/// d < 0 the range counts as negative, so that the next measurement pulls it back to the front
-/// instead of fixing it at the mirror image behind.
+/// With y = 0 both are linear: r = d, and the range rate is dv. If an estimate has d < 0, the range
+/// counts as negative. Then the next measurement pulls the estimate back to the front; with a
+/// positive range it could stay at the mirror image behind the sensor.
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {
@@ -29,7 +29,7 @@ class LineOfSight {
   double range_m() const { return range_m_; }
   double RangeRate(double relative_speed_mps) const { return relative_speed_mps * cosine_; }
 
-  /// d / r: how much of a distance shows in the range.
+  /// d / r, the derivative of the range with respect to the distance.
   double cosine() const { return cosine_; }
 
   /// dcosine/dd.
@@ -41,7 +41,7 @@ class LineOfSight {
   }
 
  private:
-  // Closer than this the direction is lost in rounding; the target counts as straight ahead.
+  // At a smaller range rounding dominates the direction; the target then counts as straight ahead.
   static constexpr double kTouching_m = 1e-9;
 
   double range_m_ = 0;

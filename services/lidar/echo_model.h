@@ -1,5 +1,5 @@
-// Expected echo powers of target and fog on one beam, step by step: services/lidar/fog_beam.h with
-// the numbers of a scenario, and its costly part in a table.
+// Expected echo powers of target and fog on one beam: the formulas of services/lidar/fog_beam.h
+// with the parameters of a scenario. Their costly part is tabulated.
 #pragma once
 
 #include <array>
@@ -11,24 +11,24 @@
 namespace fogline {
 
 /// Powers as ln(P / P_min), P_min being the detection threshold: an echo above 0 is detected.
-/// Minus infinity where there is no echo at all.
+/// Minus infinity if there is no echo.
 struct EchoPowers {
   double target;
   double fog;
-  double fog_range_m;  // where the fog's echo is strongest
+  double fog_range_m;  // range at which the fog's echo is strongest
 };
 
 class EchoModel {
  public:
-  /// For extinctions from `from_pm` to `to_pm` in 1/m; the shape of the fog's echo beyond is that
-  /// at the nearer end.
+  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside, the shape of the
+  /// fog's echo is that at the nearer end.
   EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
 
   /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
   ///     P_t / P_min = (Gamma / Gamma_c) (R_c / R)^2 xi(R) exp(-2 alpha R)
   ///     P_f / P_min = (pi beta / Gamma_c) R_c^2 J
-  /// A target nearer than r* hides the fog behind it: the fog's echo is then that at R, with J in
-  /// proportion to g(R). Up to R1, where the beam is blind, there is no echo.
+  /// A target nearer than r* hides the fog behind it: the fog's echo then lies at R, with J scaled
+  /// by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
   EchoPowers At(double range_m, double visibility_m) const;
 
   /// Power relative to that of the target in clear air at `range_m`, the distance of the echo:
@@ -36,7 +36,8 @@ class EchoModel {
   double Intensity(double log_power, double range_m) const;
 
  private:
-  // Linear between: 0.2 % in J and 2 cm in r* up to the densest fog of scenarios (5 m).
+  // Nodes of the table. Linear interpolation has an error of 0.2 % in J and 2 cm in r*, up to the
+  // densest fog of scenarios (5 m).
   static constexpr std::size_t kNodes = 33;
 
   struct LogPeak {

@@ -16,12 +16,13 @@ using std::numbers::pi;
 constexpr double kSpeedOfLight_mps = 299'792'458.0;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
-// Nodes on each smooth piece of the integrand; 2^-14 in r* is 2^-28 in J, which is flat there.
+// kQuadratureNodes is per smooth piece of the integrand. A precision of 2^-14 in r* gives 2^-28 in
+// J, because J is at its maximum there.
 constexpr unsigned kQuadratureNodes = 20;
 constexpr int kPeakBits = 14;
 
-// sin^2 pulse folded with g, received from the pulse's reach behind `end_m`. In two pieces: g has a
-// kink at R2.
+// sin^2 pulse folded with g, over the pulse length that ends at `end_m`. The integral has two
+// pieces, because g has a kink at R2.
 double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m) {
   const auto integrand = [&](double r) {
     const double wave = std::sin(pi * (end_m - r) / optics.pulse_length_m);
@@ -36,8 +37,9 @@ double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m)
   return sum;
 }
 
-// Where g is largest: d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0 below R2, or R2 itself. The
-// root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 in the form that holds for alpha = 0 too.
+// Range at which g is largest: d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0 below R2, or R2
+// itself. The root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 has the form that holds for alpha
+// = 0, too.
 double StrongestGainRange(const BeamOptics& optics, double extinction_pm) {
   const double start_m = optics.overlap_start_m;
   const double b = 1.0 - 2.0 * extinction_pm * start_m;
@@ -64,8 +66,9 @@ double ChannelGain(const BeamOptics& optics, double extinction_pm, double range_
 }
 
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm) {
-  // g rises to its one peak and falls from there on, and so does g folded with the pulse: before
-  // the peak of g enters the pulse it still rises, after it has left the pulse it falls.
+  // g has one maximum, and so has g folded with the pulse: it rises until the pulse reaches the
+  // maximum of g, and falls after the pulse has passed it. So its maximum lies between these two
+  // places.
   const double from_m = StrongestGainRange(optics, extinction_pm);
   const auto negative = [&](double end_m) { return -FoldedPulse(optics, extinction_pm, end_m); };
   const auto [end_m, value] = boost::math::tools::brent_find_minima(

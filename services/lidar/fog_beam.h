@@ -1,4 +1,4 @@
-// A LiDAR beam in fog: what comes back from the target and what from the fog in front of it.
+// A LiDAR beam in fog: the echo of the target, and the echo of the fog in front of it.
 // Pure functions after Rasshofer, Spies & Spies, Adv. Radio Sci. 9 (2011) 49-60, and Hahner et al.,
 // ICCV 2021 (arXiv 2108.05249). The received power is the pulse folded with the channel:
 //
@@ -8,15 +8,16 @@
 //   fog before R: P_f = K beta J                                     beta: backscatter in 1/(m sr)
 //   J = max over R' of  integral over [R' - L, R'] of  sin^2(pi (R' - r) / L) g(r) dr      in 1/m
 //
-// K is the same in both: the target's delta pulse keeps the factor 2/c, which Hahner et al. put
-// into their Gamma (their 1e-6 is 150 here). The fog's peak is seen at r* = R' - L / 2.
+// K is the same in both: the target's delta pulse has the factor 2/c here, which Hahner et al.
+// include in their Gamma (their 1e-6 is 150 here). The maximum of the fog's echo lies at r* = R' -
+// L / 2.
 #pragma once
 
 #include "scenario/sensing.h"
 
 namespace fogline {
 
-/// What shapes the echo of the fog.
+/// Parameters that shape the echo of the fog.
 struct BeamOptics {
   double pulse_length_m;   // L = c tau
   double overlap_start_m;  // R1, xi = 0 up to here
@@ -41,20 +42,20 @@ struct FogPeak {
 /// J = L g(r*) / 2 with r* where g is largest.) extinction_pm >= 0.
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 
-/// Range R at which R exp(alpha R) = `clear_range_m`: where a target is just detected whose limit
-/// is `clear_range_m` in clear air, since (R / R_c)^2 exp(2 alpha R) = 1. With Lambert's W,
-/// R = W(alpha R_c) / alpha.
+/// Maximum range in fog of a target that can be detected up to R_c = `clear_range_m` in clear air.
+/// It is the range R with (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
+/// Lambert's W, R = W(alpha R_c) / alpha.
 double AttenuatedRange_m(double clear_range_m, double extinction_pm);
 
-/// Range beyond which the echo of the fog is stronger than that of the target: where the ratio
+/// Range beyond which the echo of the fog is stronger than that of the target. There the ratio
 ///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
-/// is 1, thus AttenuatedRange of sqrt(Gamma / (pi beta J)).
+/// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
 double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
                         double extinction_pm);
 
 /// Beta(2, 20) distributed number from two uniform ones in (0, 1): the second smallest of 21
-/// uniform numbers. The smallest is 1 - u^(1/21), and the next divides what is left of the
-/// interval like the smallest of the other 20 (Devroye 1986, V.3): exact, without rejection.
+/// uniform numbers. The smallest is 1 - u^(1/21). The next one divides the rest of the interval
+/// like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs no rejection.
 double Beta2And20(double u, double v);
 
 }  // namespace fogline

@@ -24,7 +24,7 @@ const lidar_t& Lidar::Step(const truth_t& truth) {
   output_ = {};
   output_.header = truth.header;
   if (DropsOut(truth.header.step)) return output_;
-  // Of cars that have run into each other the bumpers touch.
+  // The gap is negative if the cars have collided; their bumpers then count as touching.
   const double x = std::max(truth.host_gap_m, 0.0);
   const double target_m = std::sqrt(x * x + lidar_.lateral_offset_m * lidar_.lateral_offset_m);
   const std::optional<Echo> echo =
@@ -54,11 +54,11 @@ std::optional<Lidar::Echo> Lidar::PlainEcho(const truth_t& truth, double target_
 std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target_m) {
   CollectEchoes(truth, target_m);
   if (2 * static_cast<std::int64_t>(echoes_.size()) < lidar_.beam.beams) return std::nullopt;
-  // Of an even number the nearer one of the middle two: the range is that of an echo.
+  // Of an even number it is the nearer one of the middle two, so that the range is that of an echo.
   const auto median = echoes_.begin() + static_cast<std::ptrdiff_t>((echoes_.size() - 1) / 2);
   std::nth_element(echoes_.begin(), median, echoes_.end());
-  // The time of arrival jitters with 1 / SNR in its variance, here equal to the constant part at
-  // the detection threshold.
+  // The variance of the time of arrival has a part proportional to 1 / SNR. At the detection
+  // threshold this part equals the constant part.
   const double jitter = std::sqrt(1.0 + std::exp(-median->log_power));
   return Echo{.range_m = median->range_m,
               .range_std_m = lidar_.range_std_m * jitter,

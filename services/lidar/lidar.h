@@ -1,5 +1,5 @@
-// The host's LiDAR: one distance of the preceding car a step, or none. It tracks nothing, filters
-// nothing, and does not tell an echo of the fog from one of the car: that is the point.
+// The host's LiDAR: in each step it measures one distance of the preceding car, or none. It tracks
+// nothing, filters nothing, and cannot distinguish an echo of the fog from one of the car.
 #pragma once
 
 #include <compare>
@@ -16,38 +16,38 @@
 namespace fogline {
 
 /// With x the gap and y the lateral offset, the target is at r = sqrt(x^2 + y^2), and the LiDAR
-/// reports range = d + bias + noise with Gaussian white noise, where by the scenario's fog model
+/// reports range = d + bias + noise with Gaussian white noise. The scenario's fog model gives d:
 ///     none   d = r
 ///     bias   d = r - fog.bias_m * fog level              (Sourav & Cheng 2024)
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
 /// On each beam the echo powers of target and fog are lognormal and independent; the stronger one
 /// is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus a
 /// Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
-/// an echo: so the LiDAR detects with chance 1/2 where a single beam does, at any number of
-/// beams, and a minority can't speak for the whole.
+/// an echo. So the range at which a single beam detects with probability 1/2 is also that of the
+/// LiDAR, for any number of beams, and a minority of the beams cannot determine the result.
 class Lidar {
  public:
-  /// Indices of the draws within a step: of stream kLidar ...
+  /// Indices of the draws of stream kLidar within a step.
   static constexpr std::uint32_t kNoiseDraw = 0;    // Normal2: range, second unused
   static constexpr std::uint32_t kDropoutDraw = 1;  // Uniform2: first number, second unused
-  /// ... and of stream kLidarBeam, for beam n from 0.
+  /// Indices of the draws of stream kLidarBeam within a step, for beam n from 0.
   static constexpr std::uint32_t PowerDraw(std::uint32_t n) { return 2 * n; }  // target, fog
   static constexpr std::uint32_t ScatterDraw(std::uint32_t n) { return 2 * n + 1; }
 
   explicit Lidar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends on scenario and truth alone, never on the
+  /// The measurement in the step of `truth`. It depends on scenario and truth alone, not on the
   /// steps before.
   const lidar_t& Step(const truth_t& truth);
 
  private:
-  // Echo on one beam. The order is total, so that the median is one certain echo.
+  // Echo on one beam. The order is total, so that the median is unique.
   struct BeamEcho {
     double range_m;
     double log_power;  // ln(P / P_min)
     auto operator<=>(const BeamEcho&) const = default;
   };
-  // What the LiDAR makes of all its beams.
+  // Result from all beams.
   struct Echo {
     double range_m;
     double range_std_m;

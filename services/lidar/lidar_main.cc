@@ -1,5 +1,5 @@
-// The process `lidar`: measures the preceding car once a step, and in fog sometimes the fog. It
-// never sees a radar; the wiring is in services/runtime/service.h.
+// The process `lidar`: measures the preceding car once per step, and in fog sometimes the fog. It
+// does not receive the radar's values. services/runtime/service.h connects it to its channels.
 #include "services/lidar/lidar.h"
 #include "services/runtime/service.h"
 

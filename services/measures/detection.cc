@@ -19,7 +19,7 @@ double LidarError(const Sample& sample, const LidarSection& lidar) {
 DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)
     : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar) {}
 
-// A value that is not there (NaN) is not off.
+// A missing value (NaN) does not count as deceived.
 bool DetectionAccumulator::IsDeceived(const Sample& sample) const {
   return std::abs(LidarError(sample, lidar_)) > tolerance_m_;
 }

@@ -1,4 +1,5 @@
-// Who drives against who should: what an oracle that knows the true gap makes of a run.
+// Compares the side that drives with the side that should drive, judged by an oracle that knows the
+// true gap.
 #pragma once
 
 #include <optional>
@@ -8,32 +9,33 @@
 
 namespace fogline {
 
-/// In a step the LiDAR is *deceived* if it has a value that is off by more than a tolerance: off
-/// what it would read, mounted as it is, of the true gap. Otherwise it is *right*; a LiDAR without
-/// a value deceives nobody. An *alarm* lasts while the Degree of Conflict is at least the threshold
-/// in force, whatever the policy then makes of it.
+/// In a step the LiDAR is *deceived* if it has a value with an error (LidarError) of more than a
+/// tolerance. Otherwise it is *right*; a LiDAR without a value counts as right. An *alarm* lasts
+/// while the Degree of Conflict is at least the threshold in force, under any policy.
 struct DetectionMeasures {
-  /// Time under the wrong controller, s, weighed by authority: of the human while the LiDAR is
-  /// right, ...
+  /// Time under the wrong controller, s: time of the human while the LiDAR is right, weighted by
+  /// his authority.
   double wrong_human_s = 0;
-  /// ... and of the automation while the LiDAR is deceived and the fused distance is off by more
-  /// than the tolerance too. A policy that does without the deceived LiDAR is not blamed for it.
+  /// Time of the automation, s, weighted by its authority, while the LiDAR is deceived and the
+  /// error of the fused distance is more than the tolerance, too. So a policy that does not use the
+  /// deceived LiDAR is not blamed for it.
   double wrong_automation_s = 0;
-  /// From the first step in which the LiDAR is deceived to the first one of an alarm from there on,
-  /// s: 0 if the alarm lasts already, as where fog shows in the Degree of Conflict before the LiDAR
-  /// is off by the tolerance. nullopt if it never is deceived, or if no alarm follows. Delays that
-  /// count from the begin of the fog are those of `fogline study conflict`.
+  /// Time from the first step in which the LiDAR is deceived to the first step with an alarm from
+  /// then on, s. 0 if the alarm is already there, for example if fog raises the Degree of Conflict
+  /// before the LiDAR's error exceeds the tolerance. nullopt if the LiDAR is never deceived, or if
+  /// no alarm follows. `fogline study conflict` has delays that count from the begin of the fog.
   std::optional<double> deception_to_alarm_s;
-  /// Alarms that begin in clear air with a LiDAR that is right, per hour of that; nullopt without
-  /// such time.
+  /// Alarms that begin in clear air while the LiDAR is right, per hour of such time; nullopt
+  /// without such time.
   std::optional<double> false_alarms_ph;
 };
 
-/// How far the LiDAR's value is from what it would read, mounted as it is, of the true gap, m:
-/// below 0 where it reads short. NaN without a value.
+/// Error of the LiDAR's value, m: its difference to the value without noise and fog for the true
+/// gap, with the LiDAR's bias and lateral offset. Below 0 if the value is too short. NaN without a
+/// value.
 double LidarError(const Sample& sample, const LidarSection& lidar);
 
-/// Collects them, step by step.
+/// Collects the measures, step by step.
 class DetectionAccumulator {
  public:
   explicit DetectionAccumulator(const Scenario& scenario);
@@ -43,7 +45,7 @@ class DetectionAccumulator {
 
  private:
   bool IsDeceived(const Sample& sample) const;
-  /// Integrates what was found at the step before.
+  /// Integrates the findings of the step before.
   void Pass(double duration_s);
 
   double tolerance_m_;
@@ -53,7 +55,7 @@ class DetectionAccumulator {
   // Of the step before.
   double time_s_ = 0;
   bool alarm_ = false;
-  bool quiet_ = false;  // clear air, and a LiDAR that is right
+  bool quiet_ = false;  // clear air, and the LiDAR is right
   double wrong_human_ = 0;
   double wrong_automation_ = 0;
 

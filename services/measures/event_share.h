@@ -1,11 +1,11 @@
-// How often something happens in runs of which each either has it or not: collisions, detections.
+// Share of runs that have an event, such as a collision or a detection.
 #pragma once
 
 #include <cstdint>
 
 namespace fogline {
 
-/// A share of runs, with exact bounds of the probability behind it.
+/// A share of runs, with exact bounds of the event's probability.
 struct EventShare {
   std::int64_t events = 0;
   std::int64_t runs = 0;
@@ -14,8 +14,8 @@ struct EventShare {
   double upper = 1;
 };
 
-/// Clopper & Pearson 1934: bounds that hold with at least `confidence`, whatever the probability.
-/// With 0 of n events the upper one is about 3/n at 95 % (both tails: 3.7/n).
+/// Clopper & Pearson 1934: bounds that hold with at least `confidence` for any probability. With 0
+/// events in n runs, the upper bound at 95 % is 3.7/n. (A one-sided bound would be about 3/n.)
 /// @param events in [0, runs]  @param runs at least 1  @param confidence in (0, 1)
 /// @throws std::invalid_argument
 EventShare ClopperPearson(std::int64_t events, std::int64_t runs, double confidence = 0.95);

@@ -1,4 +1,4 @@
-// What happens to each of the cars that follow the host, in one pass and constant memory.
+// Measures of each car that follows the host, in one pass and constant memory.
 #pragma once
 
 #include <array>
@@ -13,20 +13,22 @@
 
 namespace fogline {
 
-/// Measures of one following car; "ahead" is the car before it, for the first one the host.
-/// nullopt: the run has no step that the measure looks at.
+/// Measures of one following car. The car ahead of the first following car is the host.
+/// nullopt: the run has no step that is relevant for the measure.
 struct FollowerMeasures {
   /// Smallest true gap to the car ahead, m.
   std::optional<double> min_gap_m;
-  /// Smallest time to collision with it, s (Hayward 1972; surrogate.h).
+  /// Smallest time to collision with the car ahead, s (Hayward 1972; surrogate.h).
   std::optional<double> min_ttc_s;
-  /// Largest compromised safety CS, m, and the mean of CS over the steps in fog: what its gap lacks
-  /// of the dynamic safe distance of its own driver (Sourav & Cheng 2024).
+  /// Largest compromised safety CS, m, and the mean of CS over the steps in fog. CS is the
+  /// shortfall of the gap below the dynamic safe distance of the car's own driver (Sourav & Cheng
+  /// 2024).
   std::optional<double> max_compromised_safety_m;
   std::optional<double> mean_compromised_safety_fog_m;
 };
 
-/// Calls `visit(name, value, unit, description)` for each, as VisitMeasures() for those of the run.
+/// Calls `visit(name, value, unit, description)` for each measure, as VisitMeasures() does for a
+/// run.
 template <class Visitor>
 void VisitFollowerMeasures(const FollowerMeasures& m, Visitor&& visit) {
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
@@ -39,14 +41,14 @@ void VisitFollowerMeasures(const FollowerMeasures& m, Visitor&& visit) {
          "mean shortfall of the safe distance in fog");
 }
 
-/// Collects the measures of all following cars, step by step. Add() allocates nothing.
+/// Collects the measures of all following cars, step by step. Add() allocates no memory.
 class FollowerAccumulator {
  public:
-  /// One step. Where a run in real time lacks `commands` (no followers in it), safe distances are
-  /// unknown and the rest is counted.
+  /// Adds a step. If `commands` of a run in real time are missing (no followers in them), safe
+  /// distances are unknown, and only the other measures count the step.
   void Add(const truth_t& truth, const follower_command_t& commands);
 
-  /// One entry for each following car that was there, nearest to the host first.
+  /// One entry for each following car, nearest to the host first.
   std::vector<FollowerMeasures> Result() const;
 
  private:

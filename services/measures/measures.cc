@@ -14,7 +14,7 @@ namespace {
 constexpr double kPercent = 100.0;
 constexpr double kSecondsPerMinute = 60.0;
 
-// Times are whole microseconds: two that differ by less are the same.
+// Times are whole microseconds: two times that differ by less count as equal.
 constexpr double kSameTime_s = 0.5e-6;
 
 std::optional<double> Root(std::optional<double> mean_square) {
@@ -34,8 +34,8 @@ MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
       follower_(scenario.measures),
       detection_(scenario) {}
 
-// AddMotion() before AddAuthority(): a jerk belongs to the transfers before its step, for what is
-// commanded in a step shows in the next.
+// AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
+// the command of a step is applied only in the next one.
 void MeasureAccumulator::Add(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
   ++measures_.steps;
@@ -85,7 +85,7 @@ void MeasureAccumulator::AddTransfer(const Sample& sample) {
   transferred_s_ = sample.time_s;
 }
 
-// The acceleration at step 0 is a convention, not one that was applied.
+// The acceleration at step 0 is a convention; none was applied.
 void MeasureAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
   Raise(measures_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));

@@ -1,5 +1,5 @@
-// What a run is judged by, computed from its samples alone, in one pass and constant memory: a run
-// in this process and a log of a million messages go the same way.
+// Measures of a run, computed from its samples alone, in one pass and constant memory. They are the
+// same for a run in this process and for a log of a million messages.
 #pragma once
 
 #include <array>
@@ -17,8 +17,9 @@
 
 namespace fogline {
 
-/// Measures of one run. A step stands for the time until the next one. "Fog" is the fog window;
-/// "clear air" is every step outside it. nullopt: the run has no step that the measure looks at.
+/// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
+/// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
+/// for the measure.
 struct RunMeasures {
   /// Number of samples.
   std::int64_t steps = 0;
@@ -43,30 +44,32 @@ struct RunMeasures {
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
-  /// (Sourav & Cheng 2024): lambda_H > 0, as HumanIsEngaged() in services/minimal_risk/modes.h. In
-  /// traded control he drives then; in shared control he may have a small part.
+  /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
+  /// services/minimal_risk/modes.h. In traded control he then drives; in shared control he may have
+  /// a small part.
   std::optional<double> rhe_pct;
-  /// Time during which the human is engaged, s. The last step's command is never carried out.
+  /// Time during which the human is engaged, s. It ends with the last step: its command is never
+  /// carried out.
   double human_time_s = 0;
-  /// Hand-overs in either direction: the human drives in one of two successive steps only, as
-  /// HumanDrives(lambda_H) in services/minimal_risk/modes.h says. `fogline events` has the same
-  /// ones, in the same steps.
+  /// Hand-overs in either direction: the human drives in only one of two successive steps, by
+  /// HumanDrives(lambda_H) in services/minimal_risk/modes.h. `fogline events` lists the same
+  /// hand-overs, in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;
-  /// Least time between two hand-overs, s; nullopt with less than two.
+  /// Least time between two hand-overs, s; nullopt with fewer than two hand-overs.
   std::optional<double> min_dwell_s;
   /// Largest change of the commanded acceleration from the step before a hand-over to the step of
-  /// it, m/s2; 0 without a hand-over.
+  /// the hand-over, m/s2; 0 without a hand-over.
   double max_handover_jump_mps2 = 0;
   /// Largest |jerk| of the host within `handover_s` after a change of the authorities, m/s3;
-  /// nullopt without one. A ramp of the authorities counts from its first step to `handover_s`
-  /// after its last.
+  /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
+  /// step until `handover_s` after its last step.
   std::optional<double> max_handover_jerk_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
   DetectionMeasures detection;
 
-  /// Largest |acceleration| of the host, applied, m/s2. Step 0 has none.
+  /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
   /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
   /// next, divided by the time between them.
@@ -76,8 +79,8 @@ struct RunMeasures {
 
   /// Largest Degree of Conflict, in [0, 1].
   std::optional<double> max_doc;
-  /// Smallest and largest windowed conflict z in clear air, m. Steps after the fog whose window
-  /// still reaches into it are clear air.
+  /// Smallest and largest windowed conflict z in clear air, m. Steps after the fog count as clear
+  /// air, also if their window still contains steps in fog.
   std::optional<double> min_conflict_clear_m;
   std::optional<double> max_conflict_clear_m;
   /// Root of the mean square of fused distance minus true gap over the steps with a track, m.
@@ -86,20 +89,21 @@ struct RunMeasures {
 
 /// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
 /// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
-/// tables and reports are made from these calls.
+/// tables and reports use these calls.
 template <class Visitor>
 void VisitMeasures(const RunMeasures& m, Visitor&& visit);
 
-/// Compromised safety of a step, m: of the first following car behind the host (surrogate.h). NaN
-/// without one.
+/// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
+/// without a following car.
 double CompromisedSafety(const Sample& sample);
 
 /// Collects the measures of a run, sample by sample, in order of steps.
 class MeasureAccumulator {
  public:
-  /// Of a run of this scenario: its section `measures`, and how its LiDAR is mounted.
+  /// For a run of this scenario: uses its section `measures`, and bias and lateral offset of its
+  /// LiDAR.
   explicit MeasureAccumulator(const Scenario& scenario);
-  /// Of a run of a scenario with the defaults.
+  /// For a run of a scenario with the defaults.
   MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
 
   void Add(const Sample& sample);
@@ -133,8 +137,8 @@ class MeasureAccumulator {
 /// Measures of a whole run of a scenario.
 RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
 
-/// Safety improvement SI of a run with traded control over its pair without (same scenario, same
-/// seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
+/// Safety improvement SI of a run with traded control over its baseline, a run without traded
+/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
 ///
 ///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
 ///
@@ -142,7 +146,7 @@ RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = 
 /// far below 0, never above 1.
 class SafetyImprovement {
  public:
-  /// @param floor_m At least 0; keeps the ratio away from 0/0.
+  /// @param floor_m at least 0; avoids the ratio 0/0
   explicit SafetyImprovement(double floor_m) : floor_m_(floor_m) {}
 
   /// Adds a step of both runs.

@@ -1,4 +1,4 @@
-// Extremes and means that are known after every value, whatever is still to come.
+// Running extremes and means.
 #pragma once
 
 #include <cmath>
@@ -7,17 +7,18 @@
 
 namespace fogline {
 
-/// Makes `value` the least so far if it is. A value that is not there (NaN) changes nothing.
+/// Sets `least` to `value` if that is smaller or the first one. A missing value (NaN) changes
+/// nothing.
 inline void Lower(std::optional<double>& least, double value) {
   if (!std::isnan(value) && (!least || value < *least)) least = value;
 }
 
-/// The same of the most.
+/// The same for the largest value.
 inline void Raise(std::optional<double>& most, double value) {
   if (!std::isnan(value) && (!most || value > *most)) most = value;
 }
 
-/// Mean of the values added; those that are not there (NaN) do not count.
+/// Mean of the values added; missing values (NaN) do not count.
 class Mean {
  public:
   void Add(double value) {

@@ -1,5 +1,5 @@
-// One step of a run, flat: what measures, reports and exports look at. Made from the messages of
-// the step, whether they come from a log or from a run in this process.
+// One step of a run as a flat struct, for measures, reports and exports. It is made from the
+// messages of the step, which come from a log or from a run in this process.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace fogline {
 
-/// Values of one step; SI units. NaN where a sensor gave none.
+/// Values of one step in SI units. NaN if a sensor gave no value.
 struct Sample {
   std::int64_t step = 0;
   double time_s = 0;
@@ -42,8 +42,8 @@ struct Sample {
   bool last = false;
 };
 
-/// The sample of a step from its messages. The first following car stands for the followers;
-/// without one its values are NaN.
+/// The sample of a step from its messages. Of the following cars it has only the first one; without
+/// a following car these values are NaN.
 inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar_t& lidar,
                          const track_t& track, const accel_command_t& acc,
                          const driver_command_t& driver, const arbitration_t& host,

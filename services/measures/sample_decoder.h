@@ -1,5 +1,5 @@
-// From the encoded messages of a step to its Sample. In a log of a run in real time messages may be
-// missing: the values that they would have are not there (NaN).
+// Decodes the messages of a step into its Sample. In a log of a run in real time messages may be
+// missing: their values are then NaN.
 #pragma once
 
 #include "services/measures/sample.h"
@@ -9,7 +9,7 @@ namespace fogline {
 
 class SampleDecoder {
  public:
-  /// @param messages the bytes of a step by place in kChannels
+  /// @param messages the encoded messages of a step, by index in kChannels
   /// @return the sample, valid until the next call; nullptr if a message does not decode
   template <class Messages>
   const Sample* Decode(const Messages& messages) {
@@ -18,7 +18,7 @@ class SampleDecoder {
     });
   }
 
-  /// The same for a step in which messages may be missing; nullptr without TRUTH, too.
+  /// The same for a step in which messages may be missing; also nullptr if TRUTH is missing.
   template <class Messages>
   const Sample* DecodeWithHoles(const Messages& messages) {
     if (messages[IndexOf<truth_t>()].empty()) return nullptr;
@@ -35,7 +35,7 @@ class SampleDecoder {
   const follower_command_t& follower() const { return follower_; }
 
  private:
-  /// A message all of whose numbers are NaN, and that claims nothing.
+  /// A message in which all real numbers are NaN, and all other fields 0 or empty.
   template <class M>
   static M Missing() {
     M message{};

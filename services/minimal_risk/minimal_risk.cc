@@ -6,7 +6,7 @@
 namespace fogline {
 namespace {
 
-// The last step brakes so much harder, or rounding would leave the car a speed of 1e-17 m/s.
+// Factor on the braking of the last step: without it rounding would leave a speed of 1e-17 m/s.
 constexpr double kToRest = 1.0 + 1e-12;
 
 }  // namespace
@@ -23,7 +23,7 @@ void MinimalRisk::Begin(double acceleration_mps2) {
 double MinimalRisk::Step(double speed_mps, double deceleration_mps2) {
   const double change = limits_.jerk_mps3 * step_s_;
   if (speed_mps == 0.0 && acceleration_mps2_ <= change) {
-    acceleration_mps2_ = 0.0;  // stands, and is not about to drive off
+    acceleration_mps2_ = 0.0;  // the car stands and is not about to drive off
     return acceleration_mps2_;
   }
   const double strongest = -std::min(deceleration_mps2, Releasable(speed_mps));

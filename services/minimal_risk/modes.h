@@ -1,4 +1,4 @@
-// Who drives in which mode of a host command, and who does not.
+// The side that drives in each mode of a host command.
 #pragma once
 
 #include <cstdint>
@@ -7,27 +7,28 @@
 
 namespace fogline {
 
-/// The host stops, or stands after that, in whichever manoeuvre: of a run in real time whose inputs
-/// have failed, or of a driver who was asked and did not come.
+/// The host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs of a run
+/// in real time, or a request that the driver did not answer in time.
 constexpr bool InMinimalRisk(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode >= arbitration_t::MRM_COMFORT;
 }
 
-/// In these nothing but the end of the run changes that.
+/// The mode lasts until the end of the run.
 constexpr bool IsLocked(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
 }
 
-/// Authority from which on somebody is the one who drives: the human where both have half.
+/// Least authority with which the human counts as the driver: half, also if the automation has as
+/// much.
 inline constexpr double kMainAuthority = 0.5;
 
-/// The human drives with half of the authority or more; a transfer changes that. Engaged is who has
-/// any authority.
+/// The human drives if he has half of the authority or more; a transfer is a change of this. He is
+/// engaged if he has any authority.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
-/// He has been given the wheel. Under a policy that shares it, or on a ramp, with how much of the
-/// authority is not the mode's to say, where he must be asked; where he need not, with half or
-/// more.
+/// The human drives according to the mode. If he need not be asked, he has half of the authority or
+/// more. If he must be asked, he has a share of it; under a policy that shares, or on a ramp, the
+/// mode does not say how much.
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

@@ -9,9 +9,9 @@ namespace fogline {
 
 /// DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most) with
 /// the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
-/// host's acceleration a: later for a driver who is not ready, earlier where the fog is dense, the
-/// follower close, and the host braking already. Ours, on the paper's own suggestion (future work
-/// 3).
+/// host's acceleration a. The threshold is higher for a driver who is not ready, and lower if the
+/// fog is dense, the follower close, or the host already braking. The formula is ours, after a
+/// suggestion of the paper (future work 3).
 class Adaptive final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -1,4 +1,4 @@
-// Policy `availability`: no hand-over to a driver who would come too late.
+// Policy `availability`: no hand-over to a driver who would take over too late.
 #pragma once
 
 #include "services/policies/isolation.h"
@@ -10,18 +10,19 @@ namespace fogline {
 ///
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///
-/// with gap s and closing speed w. 0 if it has to already; infinite if it never has to.
+/// with gap s and closing speed w. 0 if the follower already has to; infinite if it never has to.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// As the paper's rule, for a driver who is available: whose take-over time (95th percentile of its
-/// distribution, and unready_s (1 - A) more) is less than the time until the follower has to brake
-/// harder than comfort_mps2, or who is driving already. Otherwise the automation stays, degraded.
-/// Marberger et al. 2018: availability is the time budget less the time required.
+/// The paper's rule, if the driver is available. He is available if he already drives, or if his
+/// take-over time is less than the time until the follower has to brake harder than comfort_mps2.
+/// His take-over time is the 95th percentile of its distribution plus unready_s (1 - A). If he is
+/// not available, the automation stays, with one sensor less. Marberger et al. 2018: availability
+/// is the time budget minus the required time.
 ///
-/// The fusion goes on without the sensor that is to blame at all times, as with Isolate: also while
-/// the driver is available. It cannot know that, and need not: while he drives nobody uses the
-/// track, and when he does not the automation has one that it can go by, from the first step on.
+/// The fusion always leaves out the sensor that is to blame, as with Isolate, also while the driver
+/// is available. It does not know whether he is, and need not know: while he drives, the track is
+/// not used; when the automation drives, it has a usable track from the first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -1,4 +1,4 @@
-// Policy `bayes`: traded control by the smaller expected cost.
+// Policy `bayes`: traded control that chooses the smaller expected cost.
 #pragma once
 
 #include <algorithm>
@@ -7,16 +7,17 @@
 
 namespace fogline {
 
-/// The human drives while P C_a >= (1 - P) C_h, P the probability that the automation is deceived,
-/// for which the DoC stands: while P >= C_h/(C_h + C_a), the threshold in force. It is a
-/// probability with measure lidar_modes and measure_scale probability
-/// (services/conflict/lidar_modes.h), and a sharp guess with the paper's z. With readiness A,
-/// visibility MOR and the follower's time to collision TTC the expected costs are
+/// The human drives while P C_a >= (1 - P) C_h, that is while P >= C_h/(C_h + C_a), the threshold
+/// in force. P is the probability that the automation is deceived; the policy uses the DoC as P.
+/// The DoC is a probability with measure lidar_modes and measure_scale probability
+/// (services/conflict/lidar_modes.h); with the paper's z it is only a steep function of the
+/// conflict. With readiness A, visibility MOR and the follower's time to collision TTC the expected
+/// costs are
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
 ///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation
 ///
-/// Bayes' decision between two actions (Berger 1985, 4.4); the costs are ours.
+/// This is Bayes' decision between two actions (Berger 1985, 4.4); the costs are our choice.
 class Bayes final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

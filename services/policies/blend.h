@@ -1,4 +1,4 @@
-// Policy `blend`: shared control, the alternative to trading it.
+// Policy `blend`: shared control, the alternative to traded control.
 #pragma once
 
 #include <algorithm>

@@ -6,14 +6,14 @@
 namespace fogline {
 namespace {
 
-// Places of the ranges in track_t's arrays.
+// Indices of the ranges in track_t's arrays.
 constexpr std::size_t kRadarRange = 0;
 constexpr std::size_t kLidarRange = 2;
 
 StatedRange Predicted(const track_t& track, std::size_t value, double measured_m, double noise_m2) {
   if (track.usage[value] == track_t::ABSENT) return {};
   const double variance_m2 = track.innovation_variance[value] - noise_m2;
-  if (variance_m2 <= 0) return {};  // a starting value
+  if (variance_m2 <= 0) return {};  // the value started the track
   return {.valid = true,
           .range_m = measured_m - track.innovation[value],
           .std_m = std::sqrt(variance_m2)};

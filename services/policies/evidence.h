@@ -1,4 +1,5 @@
-// The messages of a step as evidence of conflict, and the scenario's parameters of its measures.
+// Converts the messages of a step into evidence of conflict, and the scenario into parameters of
+// the conflict measures.
 #pragma once
 
 #include "scenario/scenario.h"
@@ -7,11 +8,11 @@
 
 namespace fogline {
 
-/// Sections `arbitrator` and its `transfer` as far as measures have parameters in the scenario; the
-/// others are the defaults of services/conflict/parameters.h.
+/// Parameters of the measures from section `arbitrator` and its `transfer`. Parameters that the
+/// scenario does not have are the defaults of services/conflict/parameters.h.
 ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
-/// The scenario's rows.
+/// The rows that the scenario has chosen.
 const ConflictMeasureRow& RowOf(MeasureChoice choice);
 const BlameMeasureRow& RowOf(BlameChoice choice);
 
@@ -23,10 +24,10 @@ inline StatedRange StatedBy(const lidar_t& lidar) {
   return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
 }
 
-/// What the filter predicted before it used the values of its step: measured value less innovation,
-/// with the innovation's variance less the noise that the filter assumes of the sensor. By the
-/// radar, or, in a step without its value, by the LiDAR. Not valid in the step that starts a track,
-/// and in one without any value.
+/// The filter's prediction before it used the values of the step. Its range is the measured value
+/// minus the innovation; its variance is the innovation's variance minus the sensor noise that the
+/// filter assumes. It is computed from the radar, or from the LiDAR in a step without radar value.
+/// It is not valid in the step that starts a track, nor in a step without any value.
 class Witness {
  public:
   explicit Witness(const FusionSection& section);

@@ -1,12 +1,13 @@
-// Policy `isolate`: reject the sensor, keep the automation. The rival that every hand-over has to
-// beat.
+// Policy `isolate`: reject the sensor, keep the automation. Every policy with hand-overs should be
+// better than this one.
 #pragma once
 
 #include "services/policies/isolation.h"
 
 namespace fogline {
 
-/// Fault isolation: the fusion goes on without the sensor that is to blame, and nobody takes over.
+/// Fault isolation: the fusion goes on without the sensor that is to blame, and the human never
+/// drives.
 class Isolate final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kNever;

@@ -1,4 +1,4 @@
-// Who is wrong, as a decision: which sensor to do without.
+// Decides which sensor is not used, because it is wrong.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace fogline {
 
-/// Drops the sensor that the scenario's measure of blame blames more than the other one, if it
-/// blames it by blame_threshold at least; never both. The witness is the filter's prediction.
+/// Drops the sensor with the larger blame, by the scenario's measure of blame, if this blame is at
+/// least blame_threshold. Never drops both. The witness is the filter's prediction.
 class Isolation {
  public:
   explicit Isolation(const ArbitratorSection& section)

@@ -1,4 +1,4 @@
-// Policy `none`: the run that the others are compared with.
+// Policy `none`: the baseline with which other policies are compared.
 #pragma once
 
 #include "services/policies/policy.h"

@@ -1,4 +1,4 @@
-// Policy `oracle`: what isolation could do at best. No car can have it.
+// Policy `oracle`: the best possible isolation. It uses the true gap, which no car knows.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace fogline {
 
-/// The best sensor by truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA 2022): of
-/// two values the fusion uses the one that is nearer to the true gap, the radar's if they are
-/// equally near. The automation drives throughout.
+/// Selects the best sensor by the truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA
+/// 2022). Of two values the fusion uses the one nearer to the true gap, or the radar's if they are
+/// equally near. The automation always drives.
 class Oracle final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsTrueGap = true;

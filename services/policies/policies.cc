@@ -16,7 +16,7 @@
 namespace fogline {
 namespace {
 
-// One row a policy. Scenario files, their schema and every list of policies have this order.
+// One row for each policy. Scenario files, their schema and every list of policies have this order.
 constexpr std::array kPolicies{
     RowFor<None>("none", "lambda_A = 1 throughout: no traded control"),
     RowFor<Traded>("traded", "the human drives while DoC >= threshold"),
@@ -29,7 +29,7 @@ constexpr std::array kPolicies{
                          "as isolate, and as traded if the driver can be there in time"),
 };
 
-// The rows that code knows by name.
+// The rows that have an enumerator.
 static_assert(kPolicies[static_cast<std::size_t>(Policy::kNone)].name == "none");
 static_assert(kPolicies[static_cast<std::size_t>(Policy::kTraded)].name == "traded");
 

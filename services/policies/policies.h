@@ -1,4 +1,4 @@
-// THE table of policies: scenario files, processes, studies and tests come from it.
+// The table of policies. Scenario files, processes, studies and tests use it.
 #pragma once
 
 #include <memory>
@@ -13,9 +13,9 @@ namespace fogline {
 
 struct PolicyRow {
   std::string_view name;  // in the scenario, lower_snake, unique
-  std::string_view doc;   // in a line
-  bool trusts;            // has a say in the fusion
-  Rule rule;              // what its say in the arbitrator comes to
+  std::string_view doc;   // in one line
+  bool trusts;            // selects sensors in the fusion
+  Rule rule;              // its decision in the arbitrator
   bool uses_threshold;    // the scenario's threshold changes what it decides
   bool needs_true_gap;
   bool needs_surroundings;
@@ -23,7 +23,7 @@ struct PolicyRow {
   std::unique_ptr<EngagementPolicy> (*make)(const Scenario& scenario);
 };
 
-/// The row of class P, which knows the rest of itself.
+/// The row of class P. The constants of P give the other columns.
 template <class P>
 constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
   constexpr bool kTrusts =
@@ -41,13 +41,13 @@ constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
           }};
 }
 
-/// All policies; `Policy` counts them.
+/// All policies; a `Policy` is the index of a row.
 std::span<const PolicyRow> Policies();
 
-/// The scenario's row.
+/// The row of this policy.
 const PolicyRow& RowOf(Policy policy);
 
-/// The policy of that name; nullopt if there is none.
+/// The policy with this name; nullopt if there is none.
 std::optional<Policy> FindPolicy(std::string_view name);
 
 }  // namespace fogline

@@ -1,7 +1,7 @@
-// What a policy of engagement sees, and what it says. It has a say in two processes: in the fusion,
-// which sensors are used; in the arbitrator, who is to drive. Each process has an instance of its
-// own, and nothing passes between the two but the messages. How authority then changes hands is not
-// the policy's affair (services/arbitrator/README.md).
+// Interface of the policies of engagement: their inputs and decisions. A policy decides in two
+// processes: in the fusion, which sensors are used; in the arbitrator, which side should drive.
+// Each process has its own instance, and the two exchange only the messages of the run. The
+// arbitrator decides how authority then changes (services/arbitrator/README.md).
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace fogline {
 
-/// Which sensors the fusion uses in this step. One that is not trusted is compared with the
-/// prediction, but corrects nothing.
+/// Which sensors the fusion uses in this step. The values of a sensor that is not trusted are
+/// compared with the prediction, but correct nothing.
 struct Trust {
   bool radar = true;
   bool lidar = true;
@@ -25,23 +25,23 @@ struct Trust {
   friend bool operator==(const Trust&, const Trust&) = default;
 };
 
-/// What there is to see in the fusion, before the filter uses the values of the step.
+/// Inputs of a policy in the fusion, before the filter uses the values of the step.
 struct FusionView {
   const Evidence& evidence;
   /// From the host's front bumper to the preceding car, for policies with kNeedsTrueGap.
   std::optional<double> true_gap_m;
 };
 
-/// What a perfect rear sensor and a visibility meter tell, for policies with kNeedsSurroundings.
+/// Values of a perfect rear sensor and a visibility meter, for policies with kNeedsSurroundings.
 struct Surroundings {
   bool followed = false;
   double follower_gap_m = 0;      // from the follower's front bumper to the host
-  double follower_speed_mps = 0;  // its own
+  double follower_speed_mps = 0;  // speed of the follower
   double visibility_m = std::numeric_limits<double>::infinity();  // meteorological optical range
 
-  /// 1/TTC of the follower in 1/s; 0 without one, or if it does not close in.
+  /// 1/TTC of the follower in 1/s; 0 without a follower, or if its gap does not close.
   double ClosingRate(double host_speed_mps) const {
-    // Bumpers that nearly touch: what is closer is not told apart.
+    // A smaller gap counts as this one, at which the bumpers nearly touch.
     constexpr double kTouching_m = 0.1;
     if (!followed) return 0;
     return std::max(0.0, follower_speed_mps - host_speed_mps) /
@@ -49,7 +49,7 @@ struct Surroundings {
   }
 };
 
-/// What there is to see in the arbitrator.
+/// Inputs of a policy in the arbitrator.
 struct ArbitratorView {
   double doc;           // Degree of Conflict in this step, in [0, 1]
   double threshold;     // DoC_th of the scenario
@@ -61,56 +61,58 @@ struct ArbitratorView {
   const Surroundings& surroundings;
 };
 
-/// Who is to drive.
+/// A policy's decision in the arbitrator.
 struct Wish {
   double lambda_human = 0;  // wanted, in [0, 1]
   double threshold = 1;     // in force: the DoC from which on the human is wanted
-  /// Firm: as it is. Otherwise it is the comparison of DoC and threshold, and a hysteresis may put
-  /// that off.
+  /// true: the wish passes without delay. false: the wish is the result of the comparison of DoC
+  /// and threshold, and a hysteresis may delay it.
   bool firm = true;
 };
 
-/// The paper's rule with whatever threshold: the human drives unless 0 <= DoC < threshold.
+/// The paper's rule with this threshold: the human drives unless 0 <= DoC < threshold.
 inline Wish Compare(double doc, double threshold) {
   return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
 }
 
-/// The automation drives, whatever the conflict.
+/// The automation drives at any conflict.
 inline Wish StayAutomated(double threshold) {
   return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
 
-/// What a policy's Decide() comes to. The arbitrator follows the simple rules, among them those of
-/// both runs of a pair, without a call: that is 6 ns of a step's 400 (AMD EPYC, GCC 12).
+/// The rule that a policy's Decide() follows. The arbitrator follows the simple rules without a
+/// call of Decide(), which saves 6 ns of a step's 400 (AMD EPYC, GCC 12). The rules of both runs of
+/// a pair are simple ones.
 enum class Rule : std::uint8_t {
-  kOwn,        // whatever Decide() says
+  kOwn,        // a rule of the policy itself: Decide() is called
   kNever,      // StayAutomated() with the scenario's threshold
-  kThreshold,  // Compare() with it
+  kThreshold,  // Compare() with the scenario's threshold
 };
 
-/// A policy: made from a scenario, and told of every step in order. It reads no clock, shares
-/// nothing, and allocates nothing once it is made.
+/// A policy. It is made from a scenario and called in every step, in the order of steps. It reads
+/// no clock, shares no state, and allocates memory only in its constructor.
 class EngagementPolicy {
  public:
-  /// What it needs beyond the regular inputs; hidden by a policy that does.
+  /// Inputs that the policy needs beyond the regular ones. A policy that needs them redefines these
+  /// constants.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether it shares: its wishes lie between all and nothing. A driver who must be asked is asked
-  /// for any share, and has that share once he has come.
+  /// Whether the policy shares authority: its wishes can lie between 0 and 1. A driver who must be
+  /// asked is asked for any share, and has this share after he has taken over.
   static constexpr bool kShares = false;
-  /// Whether its decisions depend on the scenario's threshold; hidden by a policy of which they do
-  /// not, though it has a rule of its own.
+  /// Whether its decisions depend on the scenario's threshold. A policy with a rule of its own that
+  /// does not depend on it redefines this constant.
   static constexpr bool kUsesThreshold = true;
-  /// Hidden by a policy that has no rule of its own.
+  /// The rule of Decide(). A policy with a simple rule redefines this constant.
   static constexpr Rule kRule = Rule::kOwn;
 
   virtual ~EngagementPolicy() = default;
 
-  /// In the fusion, once per step in which there is a prediction. Not called for a policy that
-  /// leaves it as it is.
+  /// Decision in the fusion, once per step, after the prediction if there is a track. Not called
+  /// for a policy that does not override it.
   virtual Trust TrustIn(const FusionView& /*view*/) { return {}; }
 
-  /// In the arbitrator, once per decision.
+  /// Decision in the arbitrator, once per decision. Called only with Rule::kOwn.
   virtual Wish Decide(const ArbitratorView& view) = 0;
 };
 

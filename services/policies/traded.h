@@ -1,4 +1,4 @@
-// Policy `traded`: the paper's.
+// Policy `traded`: the traded control of the paper.
 #pragma once
 
 #include "services/policies/policy.h"

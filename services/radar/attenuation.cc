@@ -13,7 +13,7 @@ namespace {
 constexpr double kMetresPerKilometre = 1e3;
 constexpr double kKelvinAtZeroCelsius = 273.15;
 
-// One bell of P.838-3's regression over x = log10 f: height exp(-((x - centre) / width)^2).
+// One term of P.838-3's regression over x = log10 f: height exp(-((x - centre) / width)^2).
 struct Bell {
   double height;
   double centre;
@@ -36,7 +36,7 @@ constexpr std::array kBellsAlphaVertical{
     Bell{-0.20238, 1.14520, 0.26809}, Bell{-48.2991, 0.791669, 0.116226},
     Bell{48.5833, 0.791459, 0.116479}};
 
-// Sum of the bells on the line slope x + offset.
+// Sum of the bells plus the line slope x + offset.
 double Regression(std::span<const Bell> bells, double slope, double offset, double x) {
   double sum = slope * x + offset;
   for (const Bell& bell : bells) {

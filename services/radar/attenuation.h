@@ -1,5 +1,5 @@
-// What fog and rain take from a radar's signal: specific attenuation by the ITU-R recommendations,
-// and the maximum range that is left. Pure functions.
+// Attenuation of a radar's signal by fog and rain: specific attenuation by the ITU-R
+// recommendations, and the resulting maximum range. Pure functions.
 #pragma once
 
 namespace fogline {
@@ -13,25 +13,25 @@ struct RainCoefficients {
 };
 
 /// Liquid water in fog, in g/m3: M = 0.5 (50 m / visibility)^1.285, the power law through both
-/// pairs of ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. It depends on the drops as well:
-/// published laws differ by a factor of two.
+/// pairs of ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. The true value also depends on
+/// the drops: published laws differ by a factor of two.
 double LiquidWater_gpm3(double visibility_m);
 
 /// K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations 2 to 11. Rayleigh absorption of droplets, with
-/// the permittivity of water by the double Debye model. Good to 200 GHz.
+/// the permittivity of water by the double Debye model. Valid up to 200 GHz.
 double FogCoefficient(double frequency_ghz, double temperature_c);
 
-/// ITU-R P.838-3, equations 2 and 3, 1 to 1000 GHz, for a horizontal path.
+/// ITU-R P.838-3, equations 2 and 3, valid from 1 to 1000 GHz, for a horizontal path.
 RainCoefficients RainCoefficientsOf(double frequency_ghz, Polarization polarization);
 
 /// Specific attenuation in dB/km by rain of this rate: ITU-R P.838-3, equation 1.
 double RainAttenuation_dbpkm(double rain_mmph, const RainCoefficients& rain);
 
-/// Range at which a target is just detected under this one-way attenuation, if it is at
-/// `clear_range_m` without. The radar equation with the loss of the way there and back,
-///     R^-4 10^(-2 gamma R / 10) = R_c^-4,   that is   R e^(q R) = R_c   with q = gamma ln(10) /
-///     20,
-/// has the solution R = W(q R_c) / q, W being Lambert's function. gamma >= 0.
+/// Maximum range under this one-way attenuation gamma >= 0, if it is R_c = `clear_range_m` without
+/// attenuation. The radar equation with the loss of the way there and back,
+///     R^-4 10^(-2 gamma R / 10) = R_c^-4,
+/// that is R e^(q R) = R_c with q = gamma ln(10) / 20, has the solution R = W(q R_c) / q, W being
+/// Lambert's function.
 double MaxRange_m(double clear_range_m, double attenuation_dbpkm);
 
 }  // namespace fogline

@@ -8,7 +8,7 @@
 namespace fogline {
 namespace {
 
-// At 77 GHz the two differ by less than 5 %; this one attenuates more.
+// At 77 GHz the two polarisations differ by less than 5 %; the horizontal one attenuates more.
 constexpr Polarization kPolarization = Polarization::kHorizontal;
 
 }  // namespace
@@ -25,7 +25,7 @@ Radar::Radar(const Scenario& scenario)
 const radar_t& Radar::Step(const truth_t& truth) {
   output_ = {};
   output_.header = truth.header;
-  // Of cars that have run into each other the bumpers touch.
+  // The gap is negative if the cars have collided; their bumpers then count as touching.
   const double x = std::max(truth.host_gap_m, 0.0);
   const double r = std::sqrt(x * x + radar_.lateral_offset_m * radar_.lateral_offset_m);
   if (r > MaxRange(truth) || DropsOut(truth.header.step)) return output_;

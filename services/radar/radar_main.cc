@@ -1,5 +1,6 @@
-// The process `radar`: measures the preceding car once a step. It never sees a LiDAR, and knows
-// the truth only to spoil it; the wiring is in services/runtime/service.h.
+// The process `radar`: measures the preceding car once per step. It does not receive the LiDAR's
+// values, and uses the truth only to add errors to it. services/runtime/service.h connects it to
+// its channels.
 #include "services/radar/radar.h"
 #include "services/runtime/service.h"
 

@@ -1,4 +1,4 @@
-// Which old steps others have asked for and have not been given yet.
+// The old steps that roles have asked for and have not got yet.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,28 @@
 
 namespace fogline {
 
-/// A set of channels of steps. A request that is repeated adds nothing, so many roles that repeat
-/// theirs get no more answers than one. The answers come in the order of the steps, as roles that
-/// catch up need them. After the last step the first one comes again, so every request is answered.
+/// A set of steps, with the requested channels of each. A repeated request adds nothing, so many
+/// roles that repeat their requests get only one answer. The answers come in the order of the
+/// steps, as roles that catch up need them. After the last step the first one is next, so every
+/// request is answered.
 class AskedSteps {
  public:
-  /// Channels by place in kChannels, a bit for each.
+  /// A bit for each channel, by place in kChannels.
   using Channels = std::uint32_t;
   struct Asked {
     std::int64_t step;
     Channels channels;
   };
 
-  /// The most that is remembered. Who is forgotten asks again; all roles of a run together, each at
-  /// a place of its own, ask for a seventh of it.
+  /// The most steps that are remembered. A role whose request is dropped asks again. If all roles
+  /// of a run ask at once, each at a different place of the log, they ask for a seventh of this
+  /// number.
   static constexpr std::size_t kMost = 4096;
 
   void Add(std::int64_t step, Channels channels) {
     if (steps_.size() < kMost || steps_.contains(step)) steps_[step] |= channels;
   }
-  /// The next step, and what is to be given of it.
+  /// Removes and returns the next step and its channels; nullopt if no step is asked for.
   std::optional<Asked> Take() {
     if (steps_.empty()) return std::nullopt;
     auto next = steps_.lower_bound(from_);
@@ -42,7 +44,7 @@ class AskedSteps {
 
  private:
   std::map<std::int64_t, Channels> steps_;
-  std::int64_t from_ = 0;  // the step that comes next, or the one after it that was asked for
+  std::int64_t from_ = 0;  // Take() returns the first step from here on
 };
 
 }  // namespace fogline

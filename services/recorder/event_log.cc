@@ -28,9 +28,11 @@ namespace {
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 constexpr std::size_t kEventHeader = 28;
 constexpr std::size_t kMaxChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-// Bytes that are worth a call of the operating system, which costs as much as copying thousands.
+// A call of the operating system is worth its cost from this many bytes on: a call costs as much as
+// copying thousands of bytes.
 constexpr std::size_t kWorthWriting = 1 << 16;
-// Of a mapped log so much stays in memory: little for a process, and many pages for each call.
+// The bytes of a mapped log that stay in memory: little for a process, but many pages for each
+// call.
 constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
@@ -129,7 +131,7 @@ bool EventLogWriter::WriteOut() {
 }
 
 void EventLogWriter::CountWritten(Bytes bytes) {
-  if (bytes.empty()) return;  // zlib takes a missing buffer for the beginning
+  if (bytes.empty()) return;  // for a null buffer zlib returns the initial value
   written_.bytes += std::ssize(bytes);
   written_.checksum =
       static_cast<std::uint32_t>(crc32_z(written_.checksum, bytes.data(), bytes.size()));

@@ -1,8 +1,8 @@
-// LCM event logs, read by mapping the file. A log of Fogline is a standard LCM event log whose
-// event times are simulated times. LCM's own library takes seven calls and a copy of everything for
-// each event, written or read, and is not needed for a format as simple as this (LCM, eventlog.c),
-// all big endian: sync word 0xEDA1DA01, int64 event number, int64 timestamp in us, int32 channel
-// length, int32 data length, channel, data.
+// Reads and writes LCM event logs; it reads them by mapping the file. A log of Fogline is a
+// standard LCM event log whose event times are simulated times. LCM's own library needs seven calls
+// and a copy of all data for each event that it reads or writes, and the format is simple enough to
+// do without it (LCM, eventlog.c). An event is, all big endian: sync word 0xEDA1DA01, int64 event
+// number, int64 timestamp in us, int32 channel length, int32 data length, channel, data.
 #pragma once
 
 #include <cstdint>
@@ -19,33 +19,35 @@
 
 namespace fogline {
 
-/// The most that an event takes besides its data: its header, and LCM's longest channel name.
+/// The most bytes that an event takes besides its data: its header, and LCM's longest channel name.
 inline constexpr std::size_t kMostEventOverhead = 28 + 63;
 
-/// The part of a log that is kept when writing goes on: its first bytes, that many whole events.
+/// The part of a log that is kept when a writer continues it: its first bytes, which hold so many
+/// whole events.
 struct LogHead {
   std::int64_t bytes = 0;
   std::int64_t events = 0;
 };
 
-/// What is in a log by the word of one of its writers: the bytes from `begin` on, up to `bytes`,
-/// and their CRC-32 (that of zlib).
+/// The contents of a log by the report of one of its writers: the bytes from `begin` up to `bytes`,
+/// and their CRC-32 (as zlib computes it).
 struct WrittenLog {
   std::int64_t begin = 0;
   std::int64_t bytes = 0;
   std::uint32_t checksum = 0;
 };
 
-/// A recorder that is killed leaves at most a ring of incomplete steps and a torn event behind the
-/// last complete step, and has told nothing of them: all that is in so many bytes at the end.
+/// A recorder that is killed leaves, behind the last complete step, at most a ring of incomplete
+/// steps and a torn event, which it has not reported. All of that fits into this many bytes at the
+/// end of the log.
 inline constexpr std::int64_t kTailBytes = 1 << 20;
 
 /// Appends events to a new file, or to the head of an old one.
 class EventLogWriter {
  public:
-  /// Opens the file for writing; an existing one is replaced. @throws InputError if it cannot
+  /// Opens the file for writing and replaces an existing one. @throws InputError if it cannot
   explicit EventLogWriter(const std::filesystem::path& file);
-  /// Cuts an existing file behind `head` and goes on there. @throws InputError if it cannot
+  /// Cuts an existing file behind `head` and continues it there. @throws InputError if it cannot
   EventLogWriter(const std::filesystem::path& file, const LogHead& head);
   ~EventLogWriter();
   EventLogWriter(const EventLogWriter&) = delete;
@@ -53,23 +55,25 @@ class EventLogWriter {
 
   /// @throws std::runtime_error, such as when the disk is full
   void Write(std::string_view channel, std::int64_t utime, Bytes data);
-  /// Hands everything written so far to the operating system: it survives a kill -9 of this
+  /// Hands everything written so far to the operating system, so that it survives a kill -9 of this
   /// process.
   /// @throws std::runtime_error
   void Flush();
-  /// Bytes of all events so far, whether written already or not.
+  /// Bytes of all events so far, including those that Flush() has not handed over.
   std::int64_t size() const { return size_; }
-  /// The same, and how many events.
+  /// The same, with the number of events.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
-  /// What the operating system has of it. The last kTailBytes of an old file's head count as they
-  /// were found; what is before them its writer has told.
+  /// The part of the log that the operating system has. In a continued log it begins with the last
+  /// kTailBytes of the old head, with their bytes as they were found: the earlier writer has
+  /// reported the bytes before them.
   const WrittenLog& written() const { return written_; }
 
  private:
   bool WriteOut();
-  /// Adds what the operating system has now.
+  /// Adds bytes, which the operating system has, to written_.
   void CountWritten(Bytes bytes);
-  /// Counts the end of the head that is there. @return false and errno if it cannot be read
+  /// Reads the last kTailBytes of the head and adds them to written_.
+  /// @return false and errno if they cannot be read
   bool CountHead(std::int64_t bytes);
   [[noreturn]] void FailToWrite() const;
 
@@ -81,11 +85,11 @@ class EventLogWriter {
   std::vector<std::uint8_t> pending_;  // events that are not written yet
 };
 
-/// Adds an event to bytes that are to be a log.
+/// Appends an event to the bytes of a log.
 void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
                  std::vector<std::uint8_t>& bytes);
 
-/// A file that may be replaced by a log: an event log by its first bytes, or empty.
+/// Whether a log may replace the file: it begins like an event log, or is empty.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
 
 /// One event; views into the mapped file.
@@ -96,19 +100,19 @@ struct Event {
   Bytes data;
 };
 
-/// The event that `bytes` begin with.
-/// @param why is set to what is wrong, if there is none
+/// The event at the beginning of `bytes`; nullopt if there is none.
+/// @param why is set to the reason if there is none
 std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
-/// Bytes that an event takes in a file.
+/// The bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
-/// The place of the first event in `bytes`, from `offset` on, that `accept` recognises. Other bytes
-/// may stand before it, such as the end of another event. std::nullopt if there is no such event.
+/// The place of the first event in `bytes`, from `offset` on, that `accept` recognises; nullopt if
+/// there is no such event. Other bytes may stand before it, such as the end of another event.
 std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept);
 
-/// Reads a log from front to back without copying. A torn tail (a last event that is incomplete, as
-/// a kill or a full disk leaves it) ends the log and is named by torn().
+/// Reads a log from front to back without copying. A torn tail (an incomplete last event, which a
+/// kill or a full disk leaves) ends the log. torn() describes it.
 class EventLogReader {
  public:
   /// @throws InputError if the file cannot be read or does not begin like an event log
@@ -117,13 +121,14 @@ class EventLogReader {
   EventLogReader(const EventLogReader&) = delete;
   EventLogReader& operator=(const EventLogReader&) = delete;
 
-  /// The next event, or nothing at the end or at a torn tail.
+  /// The next event; nullopt at the end or at a torn tail.
   std::optional<Event> Next();
-  /// Reads on behind these bytes, which hold that many events.
+  /// Continues to read behind these bytes, which hold so many events.
   void GoTo(const LogHead& head);
-  /// What is wrong with the end of the file, "" if nothing: known once Next() has come to it.
+  /// What is wrong with the end of the file; "" if nothing is. It is known once Next() has reached
+  /// the end.
   const std::string& torn() const { return torn_; }
-  /// Whether there is not one byte in the file.
+  /// Whether the file has no bytes.
   bool empty() const { return content_.empty(); }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
@@ -131,17 +136,17 @@ class EventLogReader {
   LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
   /// All bytes of the file.
   Bytes content() const { return content_; }
-  /// Hands out the bytes of the file from one place to another in pieces, and gives the memory of
-  /// each back.
+  /// Passes the bytes of the file from `from` to `to` to `use` in pieces, and releases the memory
+  /// of each piece.
   void ReadThrough(std::size_t from, std::size_t to, const std::function<void(Bytes)>& use) const;
 
  private:
-  /// Gives the memory of what is read back to the operating system: it maps the file, and would
-  /// keep all of it otherwise.
+  /// Releases the memory of the bytes that have been read. Otherwise the mapped file would stay in
+  /// memory.
   void Release();
 
   Bytes content_;
-  std::size_t released_ = 0;  // up to here
+  std::size_t released_ = 0;  // memory is released up to here
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;
   std::string torn_;

@@ -16,7 +16,7 @@
 namespace fogline {
 namespace {
 
-// More than any step takes, so that where something is read a step begins.
+// More than twice the size of any step, so that a step begins wherever this many bytes are read.
 constexpr std::int64_t kLook = 32 << 10;
 static_assert(kLook > 2 * kMostStepBytes);
 
@@ -63,7 +63,7 @@ void History::ForEachMessage(std::int64_t step,
     }
     rest = rest.subspan(SizeInFile(*event));
   }
-  if (realtime_) return;  // what is missing was missing
+  if (realtime_) return;  // the messages that are missing were never recorded
   if (messages < kStepChannels) {
     throw std::runtime_error(fmt::format("cannot read {} again: step {} at byte {} is damaged",
                                          file_.string(), step, begin));
@@ -76,9 +76,10 @@ void History::ForEachMessage(std::int64_t step,
 std::int64_t History::Find(std::int64_t step) {
   if (step == steps_ - 1) return last_;
   if (const Place& known = found_[RingSlot(step)]; known.step == step) return known.begin;
-  Place low{.step = 0, .begin = front_.bytes};  // the step is not before this one
-  std::int64_t high = end_;                     // and begins before this byte
-  // Steps are nearly of the same size; one before it, so that it is behind there.
+  Place low{.step = 0, .begin = front_.bytes};  // the step is this one or a later one
+  std::int64_t high = end_;                     // and it begins before this byte
+  // Steps have nearly the same size. The guess is for the step before, so that the search finds the
+  // step behind it.
   const double share = static_cast<double>(std::max<std::int64_t>(0, step - 1)) /
                        static_cast<double>(std::max<std::int64_t>(1, steps_ - 1));
   std::int64_t guess =

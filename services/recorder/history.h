@@ -1,5 +1,5 @@
-// The steps of a log that is still being written, so that roles that start again can have their
-// inputs from it.
+// Reads steps from a log that is still being written, for roles that start again and need their
+// inputs.
 #pragma once
 
 #include <array>
@@ -15,22 +15,22 @@
 
 namespace fogline {
 
-/// Where the steps lie in the recorder's own log: step by step, the messages of a step together.
-/// The bytes are read when they are asked for, as they were written; nothing is decoded. There is
-/// no index, which would grow with the run: a step is looked for in the file, by what it finds
-/// there. In real time, where messages may be missing, the last step alone is known.
+/// Finds the steps in the recorder's own log, in which the messages of a step stand together. It
+/// reads the bytes on request, as they were written, and decodes nothing. There is no index, which
+/// would grow with the run: a search reads the event numbers in the file. In real time, where
+/// messages may be missing, only the last step is known.
 class History {
  public:
   /// @param front of the log
-  /// @param remains of it, the steps that are known
+  /// @param remains the known steps of the log
   History(std::filesystem::path file, const LogFront& front, const Remains& remains);
   ~History();
   History(const History&) = delete;
   History& operator=(const History&) = delete;
 
-  /// The next step ends before this byte.
+  /// Adds the next step, which ends before this byte.
   void Add(std::int64_t end);
-  /// Steps that are known.
+  /// The number of known steps.
   std::int64_t steps() const { return steps_; }
 
   /// Calls `use` with each message of this step, in the order of the log.
@@ -47,9 +47,10 @@ class History {
   /// The byte at which a step begins. @throws std::runtime_error
   std::int64_t Find(std::int64_t step);
   /// Looks at the steps that begin between this byte and `limit`, up to `step`.
-  /// @return the last of them; the first one if it is a later step; nothing if none begins here
+  /// @return the last of them; the first one if it is later than `step`; nullopt if none begins
+  ///     here
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
-  /// Bytes of the file, as many as are there; valid until the next call.
+  /// Bytes of the file, fewer if it ends before; valid until the next call.
   /// @throws std::runtime_error
   Bytes Read(std::int64_t from, std::int64_t size);
 
@@ -61,7 +62,7 @@ class History {
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
   std::int64_t end_;   // byte at which it ends
-  // Steps that were found lately, and those behind them, which are asked for next.
+  // Steps that were found lately and the steps behind them, which are usually asked for next.
   std::array<Place, kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;
 };

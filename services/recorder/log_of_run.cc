@@ -18,7 +18,7 @@
 namespace fogline {
 namespace {
 
-/// Whether a file can be removed because there is nothing in it. What cannot be read stays.
+/// Whether a file can be removed because it has no step. A file that cannot be read is kept.
 bool IsInVain(const std::filesystem::path& log) {
   try {
     return !HasSteps(log);

@@ -1,4 +1,4 @@
-// The file of a log for as long as its run writes and reads it.
+// The file of a log while its run writes and reads it.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace fogline {
 
-/// A log that no other run can have until the end of this object. Removed then if there is no step
-/// in it, because the run never began; an older log that it replaces comes back.
+/// Keeps a log locked against other runs until the end of this object. A log without a step is then
+/// removed, because its run never began; an older log that it replaces comes back.
 class LogOfRun {
  public:
   /// A run without a log.
@@ -37,8 +37,7 @@ class LogOfRun {
   std::filesystem::path older_;  // the older log; "" if there was none
 };
 
-/// Whether a log has more in it than a scenario and a seal. @throws InputError if it is no event
-/// log
+/// Whether a log contains more than a scenario and a seal. @throws InputError if it is no event log
 bool HasSteps(const std::filesystem::path& log);
 
 }  // namespace fogline

@@ -22,7 +22,7 @@ std::string HashOfBytes(Bytes bytes) {
   return HashOf({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// What `check` is to be.
+/// The correct value of `check`.
 std::int64_t CheckOf(log_seal_t seal) {
   seal.check = 0;
   std::vector<std::uint8_t> bytes;

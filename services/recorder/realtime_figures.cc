@@ -7,7 +7,7 @@
 namespace fogline {
 
 void RealtimeAccumulator::Add(const status_t& status) {
-  if (!IsPossible(status)) return;  // a file may say anything
+  if (!IsPossible(status)) return;  // a file may contain any numbers
   status_t& last = last_[{status.role, status.instance}];
   if (status.sequence <= last.sequence) return;  // overtaken on its way
   last = status;
@@ -21,11 +21,11 @@ void RealtimeAccumulator::AddStep(const ChannelSet& there) {
 
 std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   const Role from = kChannels[channel].from;
-  // The world leaves no step out, whichever of its processes computes it.
+  // The world leaves no step out, even if several processes of it compute the steps.
   if (from == Role::kWorld) return steps_ - logged_[channel];
   std::int64_t published = 0;
   int processes = 0;
-  std::int64_t late = 0;  // at the recorder, which then has written the step without it
+  std::int64_t late = 0;  // at the recorder, which wrote the step without the message
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(from)) {
       published = status.ticks;
@@ -37,7 +37,7 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
       late += status.input_late[static_cast<std::size_t>(input - status.input.begin())];
     }
   }
-  // A process that was started again may compute a step once more.
+  // With several processes no number is known: a restarted process may compute a step once more.
   return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
 }
 
@@ -50,14 +50,14 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.unlogged_messages += Unlogged(i);
   }
   for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(Role::kRecorder)) continue;  // nobody depends on it
+    if (process.first == NameOf(Role::kRecorder)) continue;  // no role depends on it
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
     if (process.first != NameOf(Role::kWorld)) continue;
     figures.ticks += status.ticks;
     figures.ticks_late += status.ticks_late;
     figures.ticks_missed += status.ticks_missed;
-    // Quantiles of two processes do not add: the worse one counts.
+    // Quantiles of two processes cannot be added: the worse one counts.
     figures.jitter_p99_us = std::max(figures.jitter_p99_us, status.jitter_p99_us);
     figures.latency_p50_us = std::max(figures.latency_p50_us, status.latency_p50_us);
     figures.latency_p99_us = std::max(figures.latency_p99_us, status.latency_p99_us);

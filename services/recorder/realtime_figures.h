@@ -1,4 +1,4 @@
-// How a run in real time kept its time, from the STATUS messages in its log.
+// How well a run in real time kept its time, by the STATUS messages in its log.
 #pragma once
 
 #include <array>
@@ -15,24 +15,24 @@ namespace fogline {
 
 struct RealtimeFigures {
   double speed = 1;  // simulated seconds per second
-  // Of the world's clock: steps; of these, more than 5 ms late; ticks at which its process stood
-  // still; how far from its due time a step began.
+  // The world's clock: its steps; the steps that were more than 5 ms late; ticks at which its
+  // process stood still; the time between a step's beginning and its due time.
   std::int64_t ticks = 0;
   std::int64_t ticks_late = 0;
   std::int64_t ticks_missed = 0;
   std::int64_t jitter_p99_us = 0;
-  // From the world's TRUTH out to its HOST_COMMAND in.
+  // From the world's TRUTH out to the arbitrator's HOST_COMMAND in, at the world.
   std::int64_t latency_p50_us = 0;
   std::int64_t latency_p99_us = 0;
   std::int64_t latency_max_us = 0;
-  // Steps that a role left out, or had to do without an input that was due.
+  // Steps that a role left out, or computed without an input that was due.
   std::int64_t deadline_misses = 0;
-  // Messages that came too late to be used; messages that are not in the log, whether they were
-  // published or not; and of these at least so many that were, and did not come too late for it.
+  // Messages that came too late to be used; messages that are not in the log, published or not; and
+  // the least number of these that were published and did not come too late at the recorder.
   std::int64_t late_messages = 0;
   std::int64_t missed_messages = 0;
   std::int64_t unlogged_messages = 0;
-  // The first ones, and how many there were after these.
+  // The first fallbacks, and how many came after these.
   std::vector<Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
 };
@@ -59,9 +59,9 @@ class RealtimeAccumulator {
   RealtimeAccumulator(double speed, std::int64_t step_us, std::int64_t steps)
       : speed_(speed), fallbacks_(step_us, speed, steps) {}
 
-  /// The next STATUS of the log.
+  /// Adds the next STATUS of the log.
   void Add(const status_t& status);
-  /// The next step of the log has messages on these channels.
+  /// Adds the next step of the log, which has messages on these channels.
   void AddStep(const ChannelSet& there);
 
   RealtimeFigures Result() const;
@@ -72,9 +72,9 @@ class RealtimeAccumulator {
 
   double speed_;
   FallbackLog fallbacks_;
-  std::int64_t steps_ = 0;                           // in the log
+  std::int64_t steps_ = 0;                           // number of steps in the log
   std::array<std::int64_t, kNumChannels> logged_{};  // messages of each channel
-  // The last STATUS of each process: its counters are those of its life.
+  // The last STATUS of each process. Its counters are those since the start of the process.
   std::map<std::pair<std::string, std::int64_t>, status_t> last_;
 };
 

@@ -5,13 +5,14 @@
 namespace fogline {
 namespace {
 
-// A message is asked for when it is this late, in periods, so often, and so long apart.
+// A message is asked for when it is kPatience periods late: kAsks times, at intervals of kAskEvery.
 constexpr double kPatience = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
-// Producers keep kRingSteps; half of that is left to those who answer.
+// The most incomplete steps. Producers keep kRingSteps; the other half leaves time for their
+// answers.
 constexpr std::int64_t kMaxOpen = kRingSteps / 2;
-// STATUS messages that wait to be written: several of each role in each open step.
+// The most STATUS messages that wait to be written: several of each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
 
 }  // namespace
@@ -88,7 +89,7 @@ void RecordRule::AskForHoles(TimePoint now) {
   ask_at_ = now + kAskEvery;
   const auto patience =
       duration_cast<Duration>(kPatience * std::chrono::duration<double>(period()));
-  std::int64_t end = next();  // of the steps to be asked for
+  std::int64_t end = next();  // end of the steps to be asked for
   while (end <= newest() && now >= OpenAt(end, now).seen + patience) ++end;
   std::int64_t first = next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;

@@ -1,8 +1,8 @@
-// Recording in real time: the world does not wait for the recorder. Steps are written in order as
-// soon as they are complete; what is missing is asked for as long as its producer can still have
-// it, and a step that stays incomplete is written as it is. That a step is under way of which
-// nothing has come is known from the runner. Each STATUS goes into the log as well,
-// behind the step in which it came: how the roles were is part of what happened.
+// Recording in real time: the world does not wait for the recorder. The recorder writes steps in
+// order as soon as they are complete. It asks for a missing message as long as its producer can
+// still have it. A step that stays incomplete is written as it is. The runner tells that a step is
+// under way even if none of its messages has come. Each STATUS goes into the log as well, behind
+// the step in which it came, because the states of the roles are part of the record.
 #pragma once
 
 #include <array>
@@ -21,28 +21,29 @@ class RecordRule final : public RealtimeRule {
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   void OnProgress() override;
 
-  /// Hands out what came in this step or before, once.
+  /// Passes the STATUS messages that came in this step or before to `use`, each once.
   void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
 
  private:
-  /// What is known of a step that is not written yet.
+  /// A step that is under way and not written yet.
   struct Open {
     std::int64_t step = -1;
-    TimePoint seen{};  // its first message
+    TimePoint seen{};  // when its first message came, or when it was first known to be under way
     int asked = 0;
     TimePoint asked_at{};
   };
   struct Heard {
-    std::int64_t step;  // under way when it came
+    std::int64_t step;  // the newest step when it came
     std::vector<std::uint8_t> bytes;
   };
 
   TimePoint Fire(TimePoint now) override;
-  /// Steps up to this one are under way: those of which nothing has come are late from now on.
+  /// Steps up to this one are under way. From now on a message of them that has not come counts as
+  /// late.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;
-  /// Nothing more will come.
+  /// Whether the recorder expects no further message of the step.
   bool GivenUp(std::int64_t step, TimePoint now);
   void AskForHoles(TimePoint now);
   void ListenToStatus();

@@ -14,24 +14,25 @@ namespace {
 
 // Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
-// Messages that it hands out again per second, and at once: a fifth of a processor. Every role that
-// starts again asks for its inputs of 63 steps at a time, one that has six for 378 messages.
+// The limits for repeated messages, per second and at once: about a fifth of a processor. Every
+// role that starts again asks for its inputs of 63 steps at a time; a role with six inputs asks for
+// 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
-// Who asks within this time after an answer has it.
+// A role that asks within this time after an answer has that answer.
 constexpr Duration kAnswerHolds = milliseconds(2);
-// The runner cannot ask a recorder that has left. With a third of all messages lost one of so many
-// arrives, but for one time in 700.
+// The number of last STATUS messages: the runner cannot ask a recorder that has left. If a third of
+// all messages is lost, at least one of so many arrives, except one time in 700.
 constexpr int kLastWords = 6;
-// Old steps that are handed out between two looks at what has come, which may be asked for, too.
+// The most old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
-// In this time it may send another 30 answers.
+// In this time the rate limiter allows another 30 answers.
 constexpr Duration kBudgetPatience = milliseconds(1);
 
 }  // namespace
 
-/// Lockstep, and answers for old steps besides.
+/// Lockstep that also answers requests for old steps.
 class Recorder::AnsweringRule final : public LockstepRule {
  public:
   explicit AnsweringRule(Recorder& recorder) : LockstepRule(recorder), recorder_(recorder) {}
@@ -47,7 +48,7 @@ class Recorder::AnsweringRule final : public LockstepRule {
 Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
                    Existing existing)
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
-  // In memory no process from outside can ask too much.
+  // In memory no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
   budget_ = AnswerBudget(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
@@ -94,8 +95,8 @@ Remains Recorder::ReadOwnRemains(const LogFront& front) {
   };
   Remains remains;
   if (front.parts.Complete()) remains = ReadRemains(file_, front, say_so_far);
-  // The world has begun a step only after the one kMaxAhead before it was on disk.
-  // In real time it waits for nobody, and what is missing is a hole.
+  // The world begins a step only after the step kMaxAhead before it is on disk. In real time it
+  // does not wait, and a missing step is a hole.
   if (!realtime() && remains.steps <= progress() - kMaxAhead) {
     throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
                                  remains.steps, progress() - kMaxAhead + 1));
@@ -106,7 +107,7 @@ Remains Recorder::ReadOwnRemains(const LogFront& front) {
 void Recorder::RememberLastSteps() {
   const std::int64_t steps = history_->steps();
   for (std::int64_t step = std::max<std::int64_t>(0, steps - kRingSteps); step < steps; ++step) {
-    auto input = inputs().begin();  // they stand in the order of the log, too
+    auto input = inputs().begin();  // the inputs stand in the order of the log, too
     history_->ForEachMessage(step, [&](std::string_view /*channel*/, Bytes bytes) {
       (input++)->ring.Store(step, bytes);
     });
@@ -171,7 +172,8 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
-  // In real time there is time for it, and nobody sends again what a killed process had in hand.
+  // In real time there is time for a flush, and no role sends again the steps that a killed process
+  // had not flushed.
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -187,14 +189,14 @@ void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
 
 void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now) {
   if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
-  // Newer ones are in the ring of their producer. All that is kMaxAhead old is acknowledged, so it
-  // can be read.
+  // Newer steps are in the rings of their producers. Steps that are kMaxAhead old are acknowledged,
+  // so they can be read from the file.
   static_assert(kAcknowledgeEvery <= kMaxAhead);
   steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);
   if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
-    // An answer is everybody's.
+    // All roles receive an answer, so one is enough.
     const Answered& last = answered_[place][RingSlot(k)];
     if (last.step == k && now - last.at < kAnswerHolds) continue;
     asked_.Add(k, AskedSteps::Channels{1} << place);
@@ -203,15 +205,15 @@ void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now)
 
 TimePoint Recorder::AnswerSome(TimePoint now) {
   if (asked_.empty()) return TimePoint::max();
-  // What has come is read first. Requests that wait behind old answers are repeated, and each
-  // repetition would have an answer of its own.
+  // New messages are read first. A role repeats a request that waits behind old answers, and if
+  // repetitions were not read together, each would get its own answer.
   bus().Drain();
   for (int i = 0; i < kStepsAtOnce && budget_.Has(now); ++i) {
     const auto asked = asked_.Take();
     if (!asked) return TimePoint::max();
     AnswerStep(*asked, now);
   }
-  // Then the others are listened to, and it goes on when it may.
+  // Returns so that new messages are read. The next call is when the rate limiter allows it.
   return asked_.empty() ? TimePoint::max() : budget_.Has(now) ? now : now + kBudgetPatience;
 }
 
@@ -226,8 +228,8 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
   });
 }
 
-// In real time nobody computes old steps again. A world that has been started again wants to know
-// where the cars are: it is the only one that asks for TRUTH, and its producer is dead.
+// In real time no role computes old steps again. A restarted world needs the positions of the cars:
+// it is the only role that asks for TRUTH, and the process that produced it is dead.
 void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint now) {
   if (channel != ChannelOf<truth_t>().name || !budget_.Has(now)) return;
   const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
@@ -237,7 +239,8 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
     Answer(channel, truth->ring.Get(step), now);
     answered = true;
   }
-  // It may have been started again itself.
+  // The recorder may have been restarted itself: then its ring is empty, and the answer comes from
+  // the file.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
   AnswerStep(
@@ -254,7 +257,8 @@ std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channe
 }
 
 void Recorder::BeforeStatus() {
-  // STATUS acknowledges every step up to its own: they must be out of this process by then.
+  // STATUS acknowledges every step up to its own, so they must be handed to the operating system
+  // before.
   if (!log_ || state() == status_t::FAILED) return;
   try {
     log_->Flush();
@@ -265,14 +269,14 @@ void Recorder::BeforeStatus() {
 }
 
 void Recorder::TellWritten() {
-  if (!log_) return;  // it has failed, and has left
+  if (!log_) return;  // the recorder has failed and left
   status().log_begin = log_->written().begin;
   status().log_bytes = log_->written().bytes;
   status().log_checksum = log_->written().checksum;
 }
 
 void Recorder::OnLeave() {
-  // A run that ends before its last step leaves incomplete steps; what is there is kept.
+  // A run that ends early leaves incomplete steps. The messages that are there are kept.
   if (!log_) return;
   std::int64_t newest = -1;
   for (const Input& input : inputs()) newest = std::max(newest, input.ring.newest());
@@ -281,7 +285,8 @@ void Recorder::OnLeave() {
     if (recording_ != nullptr) WriteStatus(std::max(newest, next() - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
-    // The disk is full. If that matters to the run it has been said; these steps do not.
+    // The disk is full. If the run needs the space, an earlier write has reported it. These
+    // incomplete steps do not matter.
   }
   TellWritten();
   log_.reset();

@@ -1,9 +1,9 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
-// takes part in the lockstep: the world runs only a few steps ahead of what is on disk, so nothing
-// is lost however fast the run is. Events stand in the order of step and graph table, whatever the
-// order of arrival, so equal runs have equal logs but for the run id. What it has written it also
-// hands out again, to roles that have been started again. When it is killed itself, another one
-// goes on where the log ends.
+// takes part in the lockstep: the world runs only a few steps ahead of the log on disk, so a fast
+// run loses nothing. Events stand in the order of step and graph table, whatever the order of
+// arrival. So equal runs have equal logs except for the run id. The recorder also answers requests
+// for recorded steps, from roles that have been started again. If the recorder itself is killed,
+// another one continues its log.
 #pragma once
 
 #include <filesystem>
@@ -19,10 +19,11 @@ class RecordRule;
 
 class Recorder final : public Node {
  public:
-  /// What becomes of a file that exists.
+  /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
 
-  /// With a run id an existing file is replaced at once, without one when a run has been found.
+  /// With a run id an existing file is replaced at once, without one as soon as a run has been
+  /// found.
   /// @throws InputError if the file cannot be written
   Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
@@ -41,19 +42,21 @@ class Recorder final : public Node {
   void BeforeStatus() override;
   void OnLeave() override;
 
-  /// Goes on with what is in the file; false if that is nothing.
+  /// Continues the log in the file. @return false if the file has no complete scenario
   bool Resume();
-  /// What the file has of this run. @throws InputError if that is less than what was acknowledged
+  /// The steps of this run in the file.
+  /// @throws InputError if it has fewer steps than were acknowledged
   Remains ReadOwnRemains(const LogFront& front);
-  /// Has the last steps of the log come in again: who computes them again must come to the same.
+  /// Stores the last steps of the log as inputs, so that a role that computes them again must come
+  /// to the same bytes.
   void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
-  /// Puts into STATUS how much of the log the operating system has, and its checksum.
+  /// Writes into STATUS how much of the log the operating system has, and its checksum.
   void TellWritten();
   void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
-  /// Hands out some of what was asked for. @return when to go on with it
+  /// Answers some of the requests. @return when to call it again
   TimePoint AnswerSome(TimePoint now);
   void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
 
@@ -61,11 +64,11 @@ class Recorder final : public Node {
   const Existing existing_;
   std::optional<EventLogWriter> log_;
   std::optional<History> history_;
-  std::int64_t first_ = 0;   // step that it records first; those before it were in the log
-  std::int64_t final_ = -1;  // step after which the run ends, once known
+  std::int64_t first_ = 0;   // first step that it records; the log had those before it
+  std::int64_t final_ = -1;  // last step of the run; -1 until it is known
   std::int64_t step_us_ = 0;
   AskedSteps asked_;
-  RecordRule* recording_ = nullptr;  // the rule, in real time
+  RecordRule* recording_ = nullptr;  // the rule in real time, otherwise nullptr
   struct Answered {
     std::int64_t step = -1;
     TimePoint at{};

@@ -13,18 +13,18 @@ namespace fogline {
 namespace {
 
 static_assert(kTailBytes > (kRingSteps + 3) * kMostStepBytes);
-// While a log is read from front to back there is a sign of life after so many bytes, which a slow
-// disk reads in less than a heartbeat or two.
+// While a log is read from front to back, STATUS is sent after each so many bytes. A slow disk
+// reads them in less than one or two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
-// More steps than a run can lose in a row before it has ended for another reason.
+// More steps than a run can lose in a row before it ends for another reason.
 constexpr std::int64_t kLongestGap = 1'000'000;
 
-/// Follows the events of a log as the recorder writes them: whole steps in lockstep, and in real
-/// time what there was of them.
+/// Follows the events of a log in the order in which the recorder writes them: whole steps in
+/// lockstep; in real time the messages that came.
 class Follower {
  public:
-  /// @param steps that have ended
-  /// @param head their end
+  /// @param steps number of steps that have ended
+  /// @param head the log up to their end
   Follower(const LogFront& front, std::int64_t steps, const LogHead& head)
       : front_(front), remains_{.head = head, .steps = steps, .last = head.bytes} {}
 
@@ -52,8 +52,8 @@ class Follower {
     return true;
   }
 
-  /// In real time steps may lack messages, and STATUS stands between them: a step is known to end
-  /// where a later one begins, or when it has all its messages.
+  /// In real time steps may lack messages, and STATUS stands between them. A step ends when it has
+  /// all its messages, or where a later step begins.
   bool TakeRealtime(const Event& event, std::int64_t step, const LogHead& head) {
     if (event.channel == ChannelOf<status_t>().name) return true;
     if (!IsStepChannel(event.channel)) return false;
@@ -78,12 +78,13 @@ class Follower {
 
   const LogFront& front_;
   Remains remains_;
-  std::size_t next_ = 0;  // channel of kStepNames that comes next; in real time, how many have come
+  // The channel of kStepNames that comes next; in real time the number of messages of the step.
+  std::size_t next_ = 0;
   truth_t truth_{};
   bool last_ = false;
 };
 
-/// Reads on to the first event that does not continue the steps so far.
+/// Reads up to the first event that does not continue the steps so far.
 Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps, LogHead head,
                const std::function<void(std::int64_t steps)>& alive) {
   Follower follower(front, steps, head);
@@ -101,8 +102,8 @@ Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps
   return follower.remains();
 }
 
-/// A step of a log to begin to read at: its first event, or in real time, where events do not tell
-/// what has been before them, any one.
+/// A place in a log at which reading can begin: the first event of a step. In real time, where an
+/// event does not show which came before it, it is any event of a step.
 struct Start {
   std::int64_t step;
   LogHead head;
@@ -112,7 +113,7 @@ std::optional<Start> StartIn(Bytes content, std::int64_t from, const LogFront& f
   std::int64_t step = -1;
   std::int64_t number = 0;
   const auto accept = [&](const Event& event) {
-    // Events take some bytes each. Other numbers are none of them.
+    // Each event takes some bytes, so no event number exceeds the size of the file.
     if (event.number < 0 || event.number > std::ssize(content)) return false;
     const auto begun = StepBegunBy(event, front.head.events, front.run_id);
     const bool is_any = front.realtime && IsStepChannel(event.channel);
@@ -125,14 +126,15 @@ std::optional<Start> StartIn(Bytes content, std::int64_t from, const LogFront& f
   return Start{.step = step, .head = {.bytes = static_cast<std::int64_t>(*at), .events = number}};
 }
 
-/// What the end of the log tells, if it tells where the last complete step lies.
+/// The contents of the log by its last `tail` bytes; nullopt if they do not show where the last
+/// complete step lies.
 std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, std::int64_t tail) {
   const std::int64_t from = std::ssize(reader.content()) - tail;
   if (from <= front.head.bytes) return std::nullopt;
   const auto start = StartIn(reader.content(), from, front);
   if (!start) return std::nullopt;
   const Remains remains = Follow(reader, front, start->step, start->head, {});
-  // In real time the first one may have begun earlier.
+  // In real time the first step may have begun before these bytes.
   const std::int64_t least = start->step + (front.realtime ? 2 : 1);
   return remains.steps >= least ? std::optional(remains) : std::nullopt;
 }

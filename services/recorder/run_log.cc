@@ -24,7 +24,7 @@ constexpr std::size_t ChannelsPerStep() {
 
 }  // namespace
 
-/// Puts the events of a log together to steps.
+/// Combines the events of a log into steps.
 class RunLogReader::Assembler {
  public:
   Assembler(const std::filesystem::path& file, Compared compared)
@@ -53,7 +53,7 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
-  // In real time, steps by which a message may stand behind where it belongs.
+  // In real time, the most steps by which a message may stand behind its place.
   static constexpr std::int64_t kLongestOverdue = 64;
 
   struct Pending {
@@ -61,7 +61,7 @@ class RunLogReader::Assembler {
     std::size_t count = 0;
   };
 
-  /// The next step is complete, or in real time as complete as it will be.
+  /// Whether the next step is complete, or in real time as complete as it will be.
   bool Ready() const {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
@@ -69,7 +69,7 @@ class RunLogReader::Assembler {
     return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
   }
 
-  /// Messages of the next step. In real time there may be none at all.
+  /// The messages of the next step. In real time there may be none.
   StepMessages TakeStep() {
     const auto next = pending_.begin();
     StepMessages messages{};
@@ -151,7 +151,7 @@ class RunLogReader::Assembler {
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
   }
 
-  /// What of the log is not as its seal says, "" if nothing is or there is no seal.
+  /// How the log differs from its seal; "" if it does not or has no seal.
   std::string Alteration() const {
     if (!run_.seal) return "";
     const LogSeal& seal = *run_.seal;
@@ -172,7 +172,8 @@ class RunLogReader::Assembler {
   }
 
   std::size_t Find(std::string_view name) {
-    // The recorder writes channels in the order of the table: the next one is the best guess.
+    // The recorder writes channels in the order of the table, so the channel after the last one is
+    // the best guess.
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       const std::size_t guess = (guess_ + i) % kNumChannels;
       if (kChannels[guess].name != name) continue;
@@ -219,8 +220,9 @@ class RunLogReader::Assembler {
     realtime_->Add(status);
   }
 
-  /// lcm-logger writes signed messages as they come, with their signatures. Nobody can verify them
-  /// here, but what has none does not belong to a signed run: it is empty then.
+  /// The payload of a message. lcm-logger writes signed messages as they come, with their
+  /// signatures. This reader cannot verify them. In a signed run a message without a signature does
+  /// not belong to the run: the result is then empty.
   Bytes Payload(Bytes data) const {
     if (!sealed_) return data;
     return LooksSealed(data) && data.size() >= kHeaderEnd + kSealBytes ? WithoutSeal(data)
@@ -246,14 +248,14 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
-  bool sealed_ = false;   // the run's messages are signed
-  std::string conflict_;  // the first step that has two different messages of one channel
+  bool sealed_ = false;   // whether the run's messages are signed
+  std::string conflict_;  // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool finished_ = false;
-  bool ended_ = false;  // no further event
+  bool ended_ = false;  // the log has no further event
   std::optional<RealtimeAccumulator> realtime_;
-  std::int64_t steps_ = 0;  // at most, in real time
+  std::int64_t steps_ = 0;  // number of steps of the scenario, in real time
 };
 
 RunLogReader::RunLogReader(const std::filesystem::path& file, Compared compared)

@@ -1,4 +1,4 @@
-// A run as it stands in an event log: its scenario and its steps, one after another.
+// A run in an event log: its scenario and its steps, one after another.
 #pragma once
 
 #include <array>
@@ -18,44 +18,44 @@ namespace fogline {
 /// The messages of one step by place in kChannels; empty where there is none.
 using StepMessages = std::array<Bytes, kNumChannels>;
 
-/// What a log is, apart from its steps.
+/// The contents of a log, apart from its steps.
 struct RunLog {
   std::int64_t run_id = 0;
   Scenario scenario;
   std::string scenario_text;
   std::string scenario_hash;
-  std::int64_t steps = 0;  // complete ones
-  std::string digest;      // of these
-  // The last step says that it is the last; in lockstep nothing is missing; nothing was changed
-  // since the log was sealed.
+  std::int64_t steps = 0;  // number of complete steps
+  std::string digest;      // digest of these steps
+  // True if the last step is marked as the last of the run, nothing is missing in lockstep, and
+  // nothing was changed since the log was sealed.
   bool complete = false;
-  std::string note;             // why it is not complete, or what was ignored; "" if nothing
-  LogHead events{};             // all whole ones of the file
-  std::optional<LogSeal> seal;  // lcm-logger's logs have none, nor has a run that was cut off
-  bool altered = false;         // the log is not what its seal says
-  std::optional<RealtimeFigures> realtime;  // of a run in real time
+  std::string note;  // why it is not complete, or what was ignored; "" if there is nothing to say
+  LogHead events{};  // all whole events of the file
+  std::optional<LogSeal> seal;              // none in a log of lcm-logger or of an interrupted run
+  bool altered = false;                     // the log differs from its seal
+  std::optional<RealtimeFigures> realtime;  // set for a run in real time
 };
 
-/// Reads the run of a log that the recorder or lcm-logger wrote, step by step, in whatever order
-/// its events stand; within bounded memory when they are in order.
+/// Reads the run in a log that the recorder or lcm-logger wrote, step by step, with events in any
+/// order. Memory is bounded if the events are in order.
 class RunLogReader {
  public:
-  /// What is compared with the seal.
+  /// The part of a log that is compared with its seal.
   enum class Compared {
-    kRun,   // scenario and steps; in real time the file, because STATUS counts there
-    kFile,  // all bytes of the file, once more at its end
+    kRun,   // scenario and steps; in real time the file, because it includes STATUS
+    kFile,  // all bytes of the file, which are read once more at the end
   };
 
   /// @throws InputError when the file cannot be read or is no event log
   explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun);
   ~RunLogReader();
 
-  /// The next complete step, from 0 on; the bytes live as long as the reader. nullptr at the end.
-  /// In real time the next step, complete or not.
+  /// The next complete step, from 0 on; nullptr at the end. Its bytes are valid as long as the
+  /// reader. In real time it is the next step, complete or not.
   /// @throws InputError at the end, when the log has no scenario of a run
   const StepMessages* Next();
 
-  /// About the whole log, once Next() has come to its end.
+  /// The contents of the whole log. Known once Next() has reached its end.
   const RunLog& run() const;
 
  private:

@@ -1,6 +1,6 @@
-// How steps stand in a log of the recorder. In lockstep: the messages of a step together, in the
-// order of the graph table, none missing; so an event's number tells its step and channel. In real
-// time messages may be missing, and STATUS stands between them.
+// The order of the steps in a log of the recorder. In lockstep the messages of a step stand
+// together, in the order of the graph table, and none is missing. So the number of an event gives
+// its step and channel. In real time messages may be missing, and STATUS stands between them.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kStepChannels = [] {
   return count;
 }();
 
-/// Names of the per-step channels, in the order in which a step stands in a log.
+/// Names of the per-step channels, in the order of their messages in a log.
 inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
   std::array<std::string_view, kStepChannels> names;
   std::size_t i = 0;
@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
   return names;
 }();
 
-/// No step takes more in a log.
+/// The most bytes that a step takes in a log.
 inline constexpr std::int64_t kMostStepBytes =
     kStepChannels * (kMostEventOverhead + kMaxMessageBytes);
 
@@ -37,15 +37,15 @@ inline bool IsStepChannel(std::string_view channel) {
   return std::ranges::find(kStepNames, channel) != kStepNames.end();
 }
 
-/// The step that a run's message is of; -1 if it is not of this run.
+/// The step of a message of this run; -1 if the message is of another run.
 inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
   const bool is_ours =
       event.data.size() >= kHeaderEnd && ReadInt64(event.data, kRunIdOffset) == run_id;
   return is_ours ? ReadInt64(event.data, kStepOffset) : -1;
 }
 
-/// The step of a run in lockstep that begins with this event.
-/// @param front_events events before step 0
+/// The step of a run in lockstep that begins with this event; nullopt if none does.
+/// @param front_events number of events before step 0
 inline std::optional<std::int64_t> StepBegunBy(const Event& event, std::int64_t front_events,
                                                std::int64_t run_id) {
   const std::int64_t step = StepOf(event, run_id);

@@ -1,14 +1,15 @@
-// What an algorithm's Step function says about its role: the types of its inputs and outputs, and
-// from these, by the graph table, its channels and the role itself.
+// What the types in an algorithm's Step function say about its role: its inputs and outputs, and,
+// by the graph table, its channels and the role itself.
 //
-// An algorithm may have one input more, which only some scenarios demand:
+// An algorithm may have one more input, which only some scenarios demand:
 //
-//     static bool Demands(const Scenario& scenario);  // whether this one does
-//     void Hear(const M& message);                    // before each Step, if so
+//     static bool Demands(const Scenario& scenario);  // whether this scenario does
+//     void Hear(const M& message);                    // called before each Step, if so
 //
-// M is of the same step if its producer comes before this role in the order of evaluation, and of
-// the step before (at step 0 all zero) if it comes after. In real time nobody waits for it: it is
-// the newest that has come, and before the first there is no call.
+// M is of the same step if its producer comes before this role in the order of evaluation. If its
+// producer comes after this role, M is of the step before; at step 0 it is all zero. In real time
+// the role does not wait for M: Hear gets the newest M that has come, and there is no call before
+// the first M has come.
 #pragma once
 
 #include <concepts>
@@ -58,7 +59,7 @@ struct OnDemandInputs<A> {
   using Type = typename HearSignature<decltype(&A::Hear)>::Inputs;
 };
 
-/// The types of kGraph's kStep channels that go to a role are exactly those of the tuple.
+/// Whether the tuple has exactly the types of the kStep channels that kGraph sends to the role.
 template <class... In>
 constexpr bool Reads(Role role, std::type_identity<std::tuple<In...>>) {
   bool exact = true;
@@ -77,7 +78,7 @@ constexpr bool Writes(Role role, std::type_identity<std::tuple<Out...>>) {
   return exact;
 }
 
-/// kGraph lets a role read these types on demand.
+/// Whether kGraph lets a role read these types on demand.
 template <class... In>
 constexpr bool MayHear([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
   return (ChannelOf<In>().on_demand.Has(role) && ...);
@@ -94,17 +95,18 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
-  /// What it may hear on demand: a tuple of one message, or of none.
+  /// The message that it may hear on demand: a tuple of one type, or of none.
   using OnDemand = typename internal::OnDemandInputs<A>::Type;
   static constexpr bool kHears = std::tuple_size_v<OnDemand> != 0;
-  /// Everything that it can read, what it may hear last.
+  /// Everything that it can read; the input on demand comes last.
   using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
 
   static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
-  /// An algorithm with Start() makes step 0 from nothing and each further step from the one before.
+  /// An algorithm with Start() makes step 0 without inputs, and each further step from the one
+  /// before.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
 
-  /// Whether it hears in this scenario.
+  /// Whether it hears its input on demand in this scenario.
   static bool Demands([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kHears) {
       return A::Demands(scenario);
@@ -118,7 +120,7 @@ struct AlgorithmTraits {
                 "the inputs of Step are not the channels that kGraph sends to this role");
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role");
-  // Another algorithm for the role need not demand what the first one does.
+  // kGraph may allow an input on demand that this algorithm for the role does not demand.
   static_assert(internal::MayHear(kRole, std::type_identity<OnDemand>{}),
                 "kGraph does not let this role read on demand what Hear takes");
   static_assert(

@@ -13,10 +13,10 @@
 namespace fogline {
 namespace {
 
-// Runner and listener share a clock; it may be set between two looks at it.
+// Runner and listener share a clock, but it may be set between two readings.
 constexpr std::int64_t kClockSlack_us = 1'000'000;
 
-/// The roles with these names. Nothing if a name is unknown or occurs twice.
+/// The roles with these names; nullopt if a name is unknown or occurs twice.
 std::optional<std::vector<Role>> RolesOf(const std::vector<std::string>& names) {
   std::vector<Role> roles;
   for (const RoleInfo& info : kRoles) {
@@ -60,7 +60,7 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
     return entry.announcement.run_id == beacon.header.run_id;
   });
   if (known != entries_.end()) {
-    // A run stays where it is, and keeps its runner.
+    // A run does not change its URL or its runner.
     const Announcement& run = known->announcement;
     if (run.url != beacon.url || run.pid != beacon.pid || run.began_us != beacon.began_us) {
       return false;
@@ -88,7 +88,8 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
 
 void Announcements::Keep(Announcement announcement, TimePoint now) {
   if (entries_.size() == kMax) {
-    entries_.erase(std::ranges::min_element(entries_, {}, &Entry::times));  // the oldest of them
+    // The oldest of those that were heard least.
+    entries_.erase(std::ranges::min_element(entries_, {}, &Entry::times));
   }
   entries_.push_back({.announcement = std::move(announcement), .heard = now, .times = 1});
 }

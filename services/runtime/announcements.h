@@ -1,5 +1,5 @@
-// The runs that announce themselves where programs listen that were given no URL. Not a subscriber
-// and not a clock: it is fed with messages and times.
+// The runs that announce themselves at the meeting address, where programs listen that were given
+// no URL. This class has no subscription and no clock: its caller passes messages and times to it.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace fogline {
 
 /// The channel of beacon_t. It is no part of kGraph: no run has it.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// A run announces itself so often, a few times while a person looks for it.
+/// The interval at which a run announces itself: a few times while a person looks for it.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
-/// A run as its beacon tells it, and as it may be printed.
+/// A run as its beacon describes it. Its texts are safe to print.
 struct Announcement {
   std::int64_t run_id = 0;
   std::int64_t began_us = 0;  // wall clock, since 1970
@@ -34,28 +34,30 @@ struct Announcement {
   std::string Text() const;
 };
 
-/// Everything that is announced. LCM has no access control, so a beacon is refused that cannot be
-/// one of a runner on this machine, and what is remembered is bounded, whatever comes.
+/// All runs that are announced. LCM has no access control. A beacon that a runner on this machine
+/// cannot have sent is therefore refused, and the number of remembered runs is limited.
 class Announcements {
  public:
-  /// @param host name of this machine; a beacon does not leave it, so none is of another
+  /// @param host name of this machine; a beacon does not leave its machine, so a beacon with
+  ///     another host name is refused
   explicit Announcements(std::string host) : host_(std::move(host)) {}
 
   /// @param wall_us wall clock, microseconds since 1970
   void Hear(Bytes bytes, TimePoint now, std::int64_t wall_us);
 
-  /// The runs that go on, the newest first.
+  /// The runs that have not ended, the newest first.
   std::vector<Announcement> Current(TimePoint now) const;
 
-  /// Beacons that were not taken.
+  /// How many beacons were refused.
   std::int64_t refused() const { return refused_; }
 
-  /// A run that has not been heard of for so long (six beacons) has ended without saying so.
+  /// A run without a beacon for this long (six beacons) counts as ended.
   static constexpr Duration kGone = 6 * kBeaconEvery;
-  /// So many are remembered. Where there is no room, the one that was heard least is forgotten:
-  /// invented runs that are heard once do not hide one that goes on speaking.
+  /// The most runs that are remembered. If there is no room, the run that was heard least is
+  /// forgotten. So invented runs that are heard once do not displace a run that continues to
+  /// announce itself.
   static constexpr std::size_t kMax = 256;
-  /// Of a title, in bytes.
+  /// The longest title, in bytes.
   static constexpr std::size_t kMaxTitle = 200;
 
  private:

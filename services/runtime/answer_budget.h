@@ -1,5 +1,5 @@
-// How many requests a process answers: a burst, and then so many a second (a token bucket). Whoever
-// floods it with RESEND gets no more than that, and the run goes on.
+// A rate limiter (token bucket) for the requests that a process answers: it allows a burst and then
+// a fixed number per second. A flood of RESEND gets no more answers than that, and the run goes on.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class AnswerBudget {
     return left_ >= 1;
   }
 
-  /// The same, and it is sent.
+  /// The same; if it returns true, the message counts as sent.
   bool Take(TimePoint now) {
     if (!Has(now)) return false;
     left_ -= 1;

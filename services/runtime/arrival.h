@@ -1,4 +1,4 @@
-// A message that has come, as all its readers on one bus share it.
+// A message that has come. All its readers on one bus share it.
 #pragma once
 
 #include <any>
@@ -8,11 +8,12 @@
 
 namespace fogline {
 
-/// Bytes, and what they say: decoded and checked when the first reader asks, and once however many
-/// do. One object serves all messages of a channel, so nothing is allocated after the first.
+/// The bytes of a message and the decoded message. The bytes are decoded and checked when the first
+/// reader asks, and only once for all readers. One object serves all messages of a channel, so only
+/// the first message allocates memory.
 class Arrival {
  public:
-  /// Another message has come; the bytes live as long as its readers are being called.
+  /// Another message has come. Its bytes stay valid while its readers are being called.
   void Renew(Bytes bytes, TimePoint time) {
     bytes_ = bytes;
     time_ = time;
@@ -20,9 +21,10 @@ class Arrival {
   }
 
   Bytes bytes() const { return bytes_; }
-  /// When it was handled, give or take what the bus handles between two looks at the clock.
+  /// When the message was handled. The bus does not read its clock for every message, so the time
+  /// may be that of a message shortly before.
   TimePoint time() const { return time_; }
-  /// For readers that want no more than the bytes.
+  /// For readers that need only the bytes.
   operator Bytes() const { return bytes_; }
 
   /// The message; nullptr if the bytes are not exactly one M, or a value is not finite.
@@ -31,7 +33,7 @@ class Arrival {
     const Reading<M>& reading = Read<M>();
     return reading.wrong == nullptr ? &reading.message : nullptr;
   }
-  /// Why it is none; nullptr if it is one.
+  /// Why the bytes are not a valid M; nullptr if they are.
   template <class M>
   RefusalCounter Wrong() {
     return Read<M>().wrong;
@@ -61,7 +63,7 @@ class Arrival {
   Bytes bytes_;
   TimePoint time_{};
   std::any reading_;       // a Reading<M>
-  bool examined_ = false;  // it is of these bytes
+  bool examined_ = false;  // whether reading_ belongs to bytes_
 };
 
 }  // namespace fogline

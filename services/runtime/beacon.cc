@@ -22,7 +22,7 @@ std::int64_t WallMicroseconds() {
   return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// The title as a beacon carries it: a longer one is cut between two characters.
+/// The title as a beacon carries it. A title that is too long is cut between two characters.
 std::string TitleOf(const std::string& scenario) {
   const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
   std::string title = EscapeControls(scenario);
@@ -32,7 +32,7 @@ std::string TitleOf(const std::string& scenario) {
   return title.substr(0, end);
 }
 
-/// Where to send; nothing if there is nowhere.
+/// The URL to send beacons to; nullopt if beacons cannot or need not be sent.
 std::optional<std::string> BeaconUrl(const std::string& run_url) {
   const std::string meeting = MeetingUrl();
   const auto address = ParseMulticastUrl(meeting);

@@ -16,14 +16,14 @@
 namespace fogline {
 namespace {
 
-// Linkers put the notes behind the program headers, and these behind the file's header: all that is
-// looked at is in the first kilobytes.
+// Linkers put the program headers behind the file's header, and the notes behind the program
+// headers. So the first kilobytes contain everything that is read here.
 constexpr std::size_t kBeginning = 1 << 16;
 // A note's name and content each begin at a multiple of this.
 constexpr std::size_t kNoteAlignment = 4;
 constexpr std::string_view kNoteOwner("GNU\0", 4);
 
-/// The structure at an offset, if the bytes reach so far.
+/// The structure at an offset; nullopt if the bytes end before it does.
 template <class T>
 std::optional<T> At(Bytes bytes, std::size_t offset) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<T> At(Bytes bytes, std::size_t offset) {
   return value;
 }
 
-/// As much of a part as there is.
+/// `size` bytes from `offset` on, or as many of them as there are.
 Bytes Part(Bytes bytes, std::size_t offset, std::size_t size) {
   const Bytes rest = bytes.subspan(std::min(offset, bytes.size()));
   return rest.first(std::min(size, rest.size()));

@@ -1,6 +1,7 @@
-// Which build of a program a process is. The linker writes a hash of all that it links into the
-// program (its GNU build id), so two programs of one name share it only if their code is the same.
-// It tells builds apart, and proves nothing: a process may say what it likes.
+// Which build of a program a process is. The linker writes a hash of everything that it links into
+// the program (its GNU build id). So two programs of one name have the same build id only if their
+// code is the same. The build id distinguishes builds but proves nothing: a process may report any
+// number.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +14,15 @@ namespace fogline {
 
 /// The first 8 bytes of a program's GNU build id.
 using BuildId = std::int64_t;
-/// Of a program without one, or that does not say it.
+/// The build id of a program that has none or does not report one.
 inline constexpr BuildId kUnknownBuild = 0;
 
-/// The build id in the beginning of a program's file (ELF, of this machine's byte order), with its
-/// notes.
+/// The build id in the first bytes of a program's file (ELF, of this machine's byte order); the
+/// bytes must include its notes.
 BuildId BuildIdIn(Bytes file);
-/// That of a program's file.
+/// The build id of a program's file.
 BuildId BuildIdOf(const std::filesystem::path& program);
-/// That of this process, also when its file has been replaced since it was started.
+/// The build id of this process, even if its file has been replaced since its start.
 BuildId OwnBuildId();
 
 /// 16 hexadecimal digits, or "unknown".

@@ -28,8 +28,8 @@
 namespace fogline {
 namespace {
 
-/// Adds options to a udpm URL where they are not given. Larger buffers survive bursts (a default
-/// one loses 88 % of 5000 messages sent at once); ttl=0 keeps traffic on this machine.
+/// Adds options to a udpm URL that does not give them. Larger buffers survive bursts (a default one
+/// loses 88 % of 5000 messages sent at once); ttl=0 keeps traffic on this machine.
 std::string WithDefaults(std::string url) {
   if (!url.starts_with("udpm://")) return url;
   const auto add = [&url](std::string_view option, std::string_view value) {
@@ -51,17 +51,18 @@ std::string Escaped(std::string_view channel) {
   return escaped;
 }
 
-/// LCM asks for the buffer that any user may have, which holds a hundred datagrams (rmem_max of a
-/// plain system): 5 ms of a flood of 20,000 a second. Who may have more (CAP_NET_ADMIN) gets room
-/// for what comes while a busy machine does something else.
+/// LCM asks for the receive buffer that any user may have. That buffer holds a hundred datagrams
+/// (rmem_max of a plain system): 5 ms of a flood of 20,000 a second. A process with CAP_NET_ADMIN
+/// may have more: it gets room for the messages that come while a busy machine does something else.
 void WidenBuffer(int socket) {
   constexpr int kBytes = 8 * 1024 * 1024;
   setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
 }
 
-/// errno if a process cannot have as many descriptors as LCM needs for a network, else 0.
+/// errno if this process cannot open as many descriptors as LCM needs for a network, otherwise 0.
 int LackOfDescriptors() {
-  std::array<int, 16> descriptors{};  // LCM has ten at most: sockets, pipes and those of a test
+  // LCM uses at most ten: sockets, pipes and those of its self-test.
+  std::array<int, 16> descriptors{};
   int error = 0;
   for (int& descriptor : descriptors) {
     descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
@@ -73,7 +74,7 @@ int LackOfDescriptors() {
   return error;
 }
 
-// A bus that hears nothing for so long, five signs of life of a run, joins its group again.
+// A bus that hears nothing for this long (five signs of life of a run) joins its group again.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace
@@ -85,14 +86,14 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     fd_ = tcpq_->fd();
     return;
   }
-  // LCM would take a default of its own, which nothing here has looked at.
+  // LCM would use its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
   if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
     throw InputError(fmt::format("error: {}", why));
   }
   {
-    // From its first datagram on a socket takes nothing but LCM's test of itself. Not those of
-    // mpudpm, which tells its ports on a channel of its own.
+    // From its first datagram on, a socket takes only LCM's self-test. This does not hold for
+    // mpudpm, which announces its ports on a channel of its own.
     std::optional<LcmSockets> sockets;
     if (url_.starts_with("udpm://")) {
       const LcmSockets::Reach reach = ReachOf(url_);
@@ -112,7 +113,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
-  // LCM has tested itself by now. What has not been subscribed to need not reach its parser.
+  // LCM's self-test is over. The filter keeps channels without a subscription from LCM's parser.
   Filter(ChannelFilter({}));
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
@@ -150,7 +151,7 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
   Topic& topic = TopicOf(channel);
   topic.handlers.push_back(std::move(handler));
   if (topic.handlers.size() > 1) {
-    topic.wanted = {};  // several readers: all of it
+    topic.wanted = {};  // several readers: take the whole channel
     return FilterSockets();
   }
   topic.wanted = contents;
@@ -171,7 +172,7 @@ void Bus::Thin(std::string_view channel, double share) {
 }
 
 void Bus::FilterSockets() {
-  if (watcher_) return;  // wants everything
+  if (watcher_) return;  // the watcher takes every channel
   std::vector<Wanted> wanted;
   for (const Topic& topic : topics_) {
     if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted, topic.share});
@@ -333,7 +334,8 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
     ++(not_taken_.*kind);
   };
   if (!seal_) {
-    // No decoder takes anything with a trailer, and a payload might end like one by chance.
+    // The bytes go to the decoder as they are. It refuses a message with a signature behind its
+    // payload. An unsigned payload may by chance end like a signature, and must still be read.
     count(&Unverified::no_key);
     return bytes;
   }
@@ -360,7 +362,7 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
 }
 
 std::string FreshMulticastUrl() {
-  // The registered and dynamic ports above LCM's own 7667; the group is LCM's.
+  // The registered and dynamic ports above LCM's own 7667. The group is LCM's.
   constexpr std::uint32_t kFirstPort = 20000;
   constexpr std::uint32_t kPorts = 40000;
   return fmt::format("udpm://239.255.76.67:{}?ttl=0", kFirstPort + randombytes_uniform(kPorts));

@@ -21,7 +21,7 @@ namespace {
 // A filter of a UDP socket sees the datagram from the UDP header on.
 constexpr std::uint32_t kMagicOffset = 8;
 constexpr std::uint32_t kChannelOffset = kMagicOffset + 8;
-constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian as all of it
+constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian like every number here
 constexpr std::size_t kMaxChannel = 63;              // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr auto kMaxDatagram =
     static_cast<std::uint32_t>(kChannelOffset + kMaxChannel + 1 + kMaxMessageBytes + kSealBytes);
@@ -35,7 +35,7 @@ sock_filter Load(std::size_t size, std::size_t offset) {
                   static_cast<std::uint32_t>(offset));
 }
 
-/// A jump is one byte wide.
+/// The distance of a jump, which is one byte wide.
 std::uint8_t Jump(std::size_t instructions) {
   if (instructions > std::numeric_limits<std::uint8_t>::max()) {
     throw std::logic_error(fmt::format("a filter would jump over {} instructions", instructions));
@@ -61,7 +61,8 @@ std::uint32_t BigEndian(std::string_view bytes) {
   return value;
 }
 
-/// Appends what skips `then` more instructions unless the datagram has this text there.
+/// Appends instructions that compare the datagram with `text` at offset `at`. If it differs, they
+/// skip the `then` instructions after them.
 void AppendText(std::string_view text, std::size_t at, std::size_t then,
                 std::vector<sock_filter>& program) {
   struct Piece {
@@ -83,7 +84,8 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
   }
 }
 
-/// Takes the datagram if it is wanted; if its channel is another one, the program goes on behind.
+/// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For
+/// another channel the program goes on behind them.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with its 0
   std::vector<sock_filter> contents;
@@ -103,7 +105,8 @@ void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   program.insert(program.end(), contents.begin(), contents.end());
 }
 
-/// What every filter begins with: drops what is no message in one datagram, or is too large.
+/// The beginning of every filter: drops a datagram that is not a whole LCM message, or that is too
+/// large.
 std::vector<sock_filter> WholeMessages() {
   return {
       BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
@@ -118,8 +121,8 @@ std::vector<sock_filter> WholeMessages() {
 
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program = WholeMessages();
-  // A program that looks beyond the end of a datagram drops it. From short names to long ones, none
-  // looks further than the name that matches, and then what is wanted of it.
+  // A filter that reads beyond the end of a datagram drops it. Short names are compared first. So
+  // no comparison reads further than the name that matches and its wanted contents.
   std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
   for (const Wanted& one : wanted) AppendWanted(one, program);
   program.push_back(Take(kNothing));
@@ -128,7 +131,7 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
 
 std::vector<sock_filter> AnyChannelFilter() {
   std::vector<sock_filter> program = WholeMessages();
-  // The 0 behind the name; beyond the end of the datagram there is none.
+  // Looks for the 0 behind the name. A filter that reads beyond the end of a datagram drops it.
   constexpr std::size_t kPlaces = kMaxChannel + 1;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     program.push_back(Load(1, kChannelOffset + i));

@@ -1,4 +1,4 @@
-// Wall-clock time for waiting and repair. Nothing that a run computes may depend on it.
+// Wall-clock time for waiting and repair. No result of a run may depend on it.
 #pragma once
 
 #include <chrono>

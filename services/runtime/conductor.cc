@@ -15,14 +15,17 @@ namespace fogline {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
-// While the run goes on: a sign of life, which roles that were started elsewhere wait for.
+// While the run goes on: the interval of the runner's signs of life, which roles that were started
+// elsewhere wait for.
 constexpr Duration kRepeatEvery = milliseconds(200);
-// Requests for the whole scenario that come together are answered together.
+// Requests for parts of the scenario that come within this time get one answer.
 constexpr Duration kPartsEvery = milliseconds(10);
-// A recorder is asked so often what it has written of the last step, when its word was lost.
+// If the recorder's report of the last step was lost, the recorder is asked for it at this
+// interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time a tick may be early by what another one was late, which is less than a period; and
-// the world begins with the first one.
+// In real time the steps by which a role may be ahead of the runner's clock: one because a tick may
+// be early by the delay of an earlier tick, which is less than a period, and one for the step with
+// which the world begins.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
@@ -67,7 +70,7 @@ TimePoint Conductor::Poll(TimePoint now) {
     progressed_ = now;
     going_since_ = now;
   }
-  // A recorder that reads a long log says how far it is.
+  // progressed_ counts as well: a recorder that reads a long log reports how far it is.
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
@@ -111,8 +114,8 @@ void Conductor::FinishWhenRecorded(TimePoint now) {
 
 void Conductor::AnnounceWhenDue(TimePoint now) {
   if (now < announce_at_) return;
-  // PREPARE until every role is ready, the first time and whenever one has been started again; GO
-  // until the world goes.
+  // The message is PREPARE until every role is ready, at the beginning and after each restart. Then
+  // it is GO, at the shorter interval until the world has started.
   const auto& world = member(Role::kWorld).status;
   const bool going = ready_ && world && world->state != status_t::READY;
   Announce(0);
@@ -210,13 +213,13 @@ void Conductor::OnStatus(const status_t& heard) {
   const TimePoint now = Clock::now();
   if (!IsPossible(heard) || heard.header.step > NewestPossible(now))
     return Refuse(&status_t::out_of_window);
-  status_t status = heard;  // with texts as they may be printed
+  status_t status = heard;  // with texts that are safe to print
   status.host = EscapeControls(heard.host);
   status.error = EscapeControls(heard.error);
   status.send_error = EscapeControls(heard.send_error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
-  // After the end only the recorder has something to say: what it has written in the end.
+  // After the end only the recorder's STATUS counts: it reports what was written last.
   const bool over = phase_ != Phase::kJoining && phase_ != Phase::kRunning;
   if (over && role != Role::kRecorder) return;
   Attend(now);
@@ -232,7 +235,8 @@ void Conductor::OnStatus(const status_t& heard) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
-  // A role that catches up makes progress, too. It starts below what its predecessor had done.
+  // A role that catches up makes progress, too: a new instance starts at a lower step than its
+  // predecessor had reached.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
   signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
@@ -274,7 +278,8 @@ void Conductor::OnDone() {
 }
 
 void Conductor::OnFailure(Role role, const status_t& status) {
-  // In real time the cars are under way: what fails is lost, and the others know what to do then.
+  // In real time the cars keep moving: the failed role counts as lost, and the other roles have
+  // fallbacks for that.
   if (GoesOnWithout(role)) return;
   Fail(fmt::format("{}: {}", status.role, status.error));
 }
@@ -284,7 +289,8 @@ void Conductor::OnResend(Bytes bytes) {
   if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
   if (resend.header.run_id != options_.run_id) return Refuse(&status_t::foreign);
   if (resend.channel != ChannelOf<run_t>().name) return;
-  // Who misses one part usually misses most of them: everything from there on is sent.
+  // A role that misses one part usually misses most of them, so all parts from this one on are
+  // sent.
   const TimePoint now = Clock::now();
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
@@ -294,7 +300,8 @@ void Conductor::OnResend(Bytes bytes) {
 }
 
 void Conductor::Announce(std::size_t part, std::int64_t answer_to) {
-  // A run in real time that goes waits for nobody: who joins late joins a run that goes.
+  // A run in real time that has started does not wait for a role: a role that joins late joins at
+  // once.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
   Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
 }
@@ -329,8 +336,9 @@ std::string Conductor::HindranceOf(Role role) const {
 }
 
 std::string Conductor::Culprit(TimePoint now) const {
-  // From the world up along what each role waits for, to the first that does not say why. The step
-  // is the one that the role in question works on: the world is a step ahead of the others.
+  // Follow the chain of waiting roles from the world to the first role that does not say what it
+  // waits for. `stuck` is the step that the current role of the chain works on: the world is one
+  // step ahead of the others.
   std::int64_t stuck = step() + 1;
   Role waiting = Role::kWorld;
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
@@ -345,7 +353,8 @@ std::string Conductor::Culprit(TimePoint now) const {
     const ChannelInfo* channel = place < kNumChannels ? &kChannels[place] : nullptr;
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
-    // Who has computed what is waited for may wait himself, but for something else.
+    // A producer that has already computed the awaited step may be waiting, too, but for something
+    // else. The chain ends before it.
     const bool done = channel != nullptr && source.status &&
                       source.status->header.step >= stuck - LagOf(producer, waiting);
     const bool passes_on = source.status && HeldAgainst(source.heard, now) <= kSilent && !done &&
@@ -354,7 +363,8 @@ std::string Conductor::Culprit(TimePoint now) const {
       waiting = producer;
       continue;
     }
-    // The consumer knows about the channel; about the log we know ourselves.
+    // The consumer's STATUS says when it last heard the channel. For the log the recorder's own
+    // STATUS says it.
     using Known = std::tuple<std::string_view, std::int64_t, Duration>;
     const auto [what, last, age] =
         channel != nullptr

@@ -1,6 +1,6 @@
-// The runner's side of a run: announces the scenario, waits until every role is ready, lets the
-// world start, follows everybody's STATUS, tells who joins late how far the run is, and names the
-// culprit when a step does not complete.
+// The runner's side of a run, its coordinator. It announces the scenario, waits until every role is
+// ready, lets the world start and follows the STATUS of every role. It tells a role that joins late
+// how far the run is. When a step does not complete, it names the culprit.
 #pragma once
 
 #include <array>
@@ -29,19 +29,20 @@ namespace fogline {
 struct ConductorOptions {
   std::int64_t run_id = 0;
   std::string scenario_text;      // the effective scenario
-  std::int64_t steps = kMaxStep;  // of it
+  std::int64_t steps = kMaxStep;  // number of steps of the scenario
   std::int64_t progress = -1;     // last step that is known to have begun
-  // What it says is newer than this: what another runner of the same run has said.
+  // The sequences of this runner's RUN messages begin above this number, which exceeds those of an
+  // earlier runner of the same run.
   std::int64_t sequence = 0;
   double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
-  bool realtime = false;                      // at that pace, whoever keeps up
-  Duration period{};                          // of a step then, on the wall clock
-  Duration join_limit{};                      // for the roles to be ready; 0: no limit
-  Duration stall_limit = milliseconds(4000);  // without a completed step of any role
-  std::vector<Role> external;                 // roles that somebody else starts, and starts again
-  int restarts = 0;                           // how often, at most, each of these
-  RoleBuilds builds{};                        // that the roles should be of
-  bool same_build = false;                    // whether another one ends the run
+  bool realtime = false;                      // runs at that pace, even if a role does not keep up
+  Duration period{};                          // of a step in real time, on the wall clock
+  Duration join_limit{};                      // until all roles are ready; 0: no limit
+  Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
+  std::vector<Role> external;                 // roles that the runner neither starts nor restarts
+  int restarts = 0;                           // how often each of these may be started again
+  RoleBuilds builds{};                        // expected builds of the roles
+  bool same_build = false;                    // whether a role of another build ends the run
 };
 
 class Conductor {
@@ -50,23 +51,23 @@ class Conductor {
 
   Conductor(Bus& bus, ConductorOptions options);
 
-  /// Does what is due. Call it after every Bus::Wait(). @return when to be called again at the
-  /// latest
+  /// Does what is due. Call it after every Bus::Wait(). @return the latest time for the next call
   TimePoint Poll(TimePoint now);
 
-  /// Notes that the runner looks at the clock. Between two looks far apart it was held up itself
-  /// (a suspended machine, a disk, Ctrl-Z), which is held against nobody.
+  /// Notes that the runner looks at the clock. If two looks are far apart, the runner itself was
+  /// held up (a suspended machine, a disk, Ctrl-Z). That time does not count against any role.
   void Attend(TimePoint now) { pauses_.Attend(now); }
-  /// Time since then in which something could have been heard.
+  /// The time since `since` in which this process could have heard a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// How likely it is that a role that has been silent for so long speaks, and the network loses
-  /// what it says.
+  /// The probability that a role that has been silent for so long is alive and the network has lost
+  /// all that it has sent.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
-  /// In real time: what a role does not hear although others publish it, if that has lasted.
+  /// In real time: the channel that a role has not heard for long although its producer publishes
+  /// it.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
   /// The longest time that the runner was held up since the last call, 0 if it was not.
   Duration TakeAway() { return pauses_.TakeLongest(); }
@@ -76,27 +77,27 @@ class Conductor {
   const std::string& error() const { return error_; }
   /// Last step that the world has begun, -1 before the first.
   std::int64_t step() const { return progress_; }
-  /// The same for a message: "at step 217", or "before step 0".
+  /// step() as text for a message: "at step 217", or "before step 0".
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
-  /// Roles that others start and that are not there: never heard of, or silent while the run goes
-  /// on.
+  /// External roles that are not there: never heard of, or silent while the run goes on.
   std::vector<Role> Awaited(TimePoint now) const;
   /// Sum over the roles of a counter of status_t.
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
-  /// What could not be sent, by the roles and the runner; those that could send all are left out.
+  /// The messages that the roles and the runner could not send; processes without failed sends are
+  /// left out.
   std::vector<SendTrouble> SendTroubles() const;
-  /// What is wrong with keys and signatures, "" if nothing is known to be.
+  /// What is wrong with keys and signatures; "" if no trouble is known.
   std::string KeyTrouble() const;
-  /// Who is of another run and speaks on this network.
+  /// The processes of other runs that speak on this network.
   const Strangers& strangers() const { return strangers_; }
-  /// The builds that the roles should be of.
+  /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on when this role is gone for good. In real time it does, unless the road
-  /// or the log is gone.
+  /// Whether the run goes on after the final loss of this role. In real time it does, except
+  /// without the world (the road) or the recorder (the log).
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
            role != Role::kRecorder;
@@ -105,32 +106,32 @@ class Conductor {
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
-  /// The role's process on this machine is dead and will be started again: what is still on its way
-  /// from it is ignored, another instance may take its place.
+  /// The role's process on this machine is dead and will be started again. From now on late
+  /// messages of that process are ignored, and another instance may take its place.
   void Bury(Role role, std::int32_t pid, TimePoint now);
-  /// Why the role cannot be started again for now, for the message if that does not change.
+  /// Stores why the role cannot be started again at present, for the error message of a stall.
   void Hinder(Role role, std::string why);
   /// The role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
-  /// Calls `handler` for every STATUS that counts, in the order of its sender.
+  /// Calls `handler` for every STATUS that is accepted, in the order of its sender.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {
     on_status_ = std::move(handler);
   }
   /// Whether any instance of the role has been heard of.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
-  /// A role's process as its STATUS tells it.
+  /// A role's process as its STATUS describes it.
   struct Member {
-    std::optional<status_t> status;  // the last one of the instance that counts
+    std::optional<status_t> status;  // last STATUS of the accepted instance
     TimePoint heard{};
-    std::vector<status_t> dead;      // the last ones of instances that are dead
-    std::vector<std::int32_t> pids;  // of processes on this machine that are dead
-    std::optional<status_t> rival;   // another instance that says that it is this role, and when
+    std::vector<status_t> dead;      // last STATUS of each dead instance
+    std::vector<std::int32_t> pids;  // of dead processes on this machine
+    std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    std::optional<TimePoint> undead;  // one that is dead speaks, since then
+    std::optional<TimePoint> undead;  // since then an instance that counts as dead speaks
     std::string hindrance;            // why it cannot be started again for now
-    int replaced = 0;  // times that an external role was started again, and when last
+    int replaced = 0;                 // how often an external role was replaced, and when last
     TimePoint replaced_at{};
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
@@ -141,36 +142,36 @@ class Conductor {
 
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
-  /// The newest step that a role can have computed.
+  /// The newest step that a role can have computed by now.
   std::int64_t NewestPossible(TimePoint now) const;
-  /// Ends the run when the world is done and, in lockstep, the recorder has told what it has
-  /// written of the last step. The log is compared with that.
+  /// Ends the run when the world is done and, in lockstep, the recorder has reported what it has
+  /// written of the last step. The caller compares the log with that report.
   void FinishWhenRecorded(TimePoint now);
-  /// The last step is over and recorded.
+  /// The last step is over and recorded: the run is done, or fails if a role is deaf at its end.
   void OnDone();
-  /// The role has failed and said so.
+  /// The role has reported that it failed.
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
-  /// Whether the run cannot begin or go on because this role is not there.
+  /// Whether this role is missing, so that the run cannot begin or go on.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
-  /// Whether the STATUS may speak for its role; false if it comes from a dead or second instance.
+  /// Whether to accept the STATUS for its role; false if it comes from a dead or second instance.
   bool Admit(Role role, const status_t& status, TimePoint now);
-  /// The same for one that the role's present process has not sent.
+  /// Admit() for a STATUS that does not come from the role's present process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
-  /// A process that is believed to be dead speaks.
+  /// A process that counts as dead speaks.
   void OnUndead(Role role, const status_t& status, TimePoint now);
   void FailForTwo(const status_t& one, const status_t& other);
   bool HasRival(Role role, TimePoint now) const;
-  /// Instance of the process that is an external role; 0 while none is.
+  /// Instance of the process that has an external role; 0 if no process has it.
   std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);
   void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
   /// Why the role is not there, to be added to a message; "" if nothing is known.
   std::string HindranceOf(Role role) const;
-  /// The one line that says who holds up the run.
+  /// The line that says which role holds up the run.
   std::string Culprit(TimePoint now) const;
 
   Bus& bus_;
@@ -181,11 +182,11 @@ class Conductor {
   SignsOfLife signs_of_life_;
   DeafRoles deaf_;
   Strangers strangers_;
-  status_t own_{};  // what the runner itself has refused
+  status_t own_{};  // counts what the runner itself has refused and could not send
   std::string host_;
   Phase phase_ = Phase::kJoining;
   TimePoint going_since_{};       // the first GO
-  bool ready_ = false;            // every role, when last looked at
+  bool ready_ = false;            // all roles were ready at the last Poll()
   std::int8_t minimal_risk_ = 0;  // cars, as in status_t
   std::function<void(const status_t&)> on_status_;
   std::string error_;
@@ -193,8 +194,8 @@ class Conductor {
   OwnPauses pauses_;
   TimePoint announce_at_{};
   TimePoint parts_at_{};
-  std::optional<TimePoint> ask_recorder_at_;  // since the world is done
-  std::int64_t sequence_;                     // of what it has said
+  std::optional<TimePoint> ask_recorder_at_;  // set once the world is done
+  std::int64_t sequence_;                     // of the last RUN that was sent
   std::int64_t progress_;
   TimePoint progressed_{};
   std::vector<std::uint8_t> buffer_;

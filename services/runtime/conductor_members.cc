@@ -1,4 +1,5 @@
-// Which process is which role of a run: the living and the dead, and two that claim the same.
+// Which process has which role of a run: living instances, dead ones, and two that claim the same
+// role.
 #include <algorithm>
 #include <utility>
 
@@ -9,10 +10,10 @@
 namespace fogline {
 namespace {
 
-// A STATUS may be so long on its way; later than that its sender is alive.
+// A STATUS may take this long on its way. If one arrives later than that, its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
-// A process that hears that another one has its place leaves within this time (Node), five of the
-// runner's signs of life.
+// A process that hears that another process has its place leaves within this time (Node): five of
+// the runner's signs of life.
 constexpr Duration kLeaves = milliseconds(1000);
 
 }  // namespace
@@ -23,7 +24,7 @@ bool Conductor::IsExternal(Role role) const {
 
 bool Conductor::HasRival(Role role, TimePoint now) const {
   const Member& of = member(role);
-  // Of a process from elsewhere it is not seen that it has died.
+  // The runner does not see the death of a process that was started elsewhere.
   return of.rival && !(IsExternal(role) && HeldAgainst(of.rival_heard, now) > kLeaves);
 }
 
@@ -60,12 +61,12 @@ bool Conductor::Admit(Role role, const status_t& status, TimePoint now) {
 
 void Conductor::OnUndead(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  // What it said before its death may come late. If it speaks on, it was not dead.
+  // Messages from before its death may come late. If the process sends more, it is not dead.
   if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;
   }
-  announce_at_ = now;  // that another one has its place
+  announce_at_ = now;  // tells the process that another one has its place
   if (!member.undead) member.undead = now;
   if (HeldAgainst(*member.undead, now) > kLeaves) FailForTwo(*member.status, status);
 }
@@ -79,7 +80,7 @@ bool Conductor::AdmitOther(Role role, const status_t& status, TimePoint now) {
   if (!member.rival || member.rival->instance != status.instance) {
     member.rival = status;
     member.rival_since = now;
-    announce_at_ = now;  // that another one has its place
+    announce_at_ = now;  // tells the process that another one has its place
   }
   member.rival_heard = now;
   if (!IsExternal(role)) return false;
@@ -118,7 +119,7 @@ void Conductor::Bury(Role role, std::int32_t pid, TimePoint now) {
     deaf_.Forget(role);
   }
   member.rival.reset();
-  progressed_ = now;  // somebody is at work to get the run going again
+  progressed_ = now;  // the restart is under way, so the stall limit counts from here
 }
 
 void Conductor::Hinder(Role role, std::string why) {

@@ -12,7 +12,7 @@ DeadlineRule::DeadlineRule(Node& node, const Scenario& scenario, double speed)
 TimePoint DeadlineRule::Fire(TimePoint now) {
   const Input& tick = inputs()[tick_input()];
   const std::int64_t step = tick.ring.newest();
-  // Whoever was held up decides late what the log would lack otherwise.
+  // A process that was held up decides its old steps late, so that the log does not lack them.
   for (std::int64_t over = Oldest(step); over < step && Running(); ++over) {
     if (tick.ring.Has(over)) Decide(over, now);
   }
@@ -21,8 +21,9 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   TimePoint due = tick.heard;
   for (std::size_t i = 0; i < awaited().size(); ++i) {
     const bool there = inputs()[i].ring.Has(step);
-    // Nobody waits for what is lost, but for what comes again: decided without it at once, it would
-    // be late in every step, and lost for good.
+    // The role does not wait for a lost input, but it waits for a lost input that comes again.
+    // Without this wait it would decide before that input comes: the input would be late in every
+    // step and stay lost.
     if (!there && (StateOf(i) != InputState::kLost || Speaks(i, now))) complete = false;
     if (there) due = std::max(due, inputs()[i].heard);
   }

@@ -1,7 +1,7 @@
-// Real time for the role that must decide in every step (the arbitrator): it does so as soon as all
-// inputs are there that are not lost (or that come again), and at the latest so long after the
-// world's tick that the decision can still be on time; then with what there is. A step whose
-// successor has begun is decided at once.
+// The real-time rule for the role that must decide in every step (the arbitrator). It decides as
+// soon as it has all inputs that are not lost. It also waits for a lost input that comes again. At
+// a fixed time after the world's tick, which still leaves time for the decision to be in time, it
+// decides with the inputs that it has. If the next step has already begun, it decides at once.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ class DeadlineRule final : public RealtimeRule {
 
  private:
   TimePoint Fire(TimePoint now) override;
-  /// Decides with what there is.
+  /// Decides with the inputs that are there.
   void Decide(std::int64_t step, TimePoint now);
 
   Duration patience_;  // from the tick to the deadline

@@ -9,11 +9,12 @@
 namespace fogline {
 namespace {
 
-// A role that lost its inputs to the network is back within a second; twice that is long enough,
-// unless a step takes so long itself.
+// A role that lost its inputs to the network recovers within a second. Twice that is long enough,
+// unless the period is so long that kDeafPeriods last longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
-// Three signs of life: a pause between two that is longer says nothing of what happened in it.
+// Three signs of life. A longer pause between two STATUS messages says nothing about the time in
+// between.
 constexpr Duration kSteady = milliseconds(600);
 
 }  // namespace
@@ -37,7 +38,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     Ear& ear = speaker.ears[channel];
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
-    // It grows with time unless something comes; what never came has no age.
+    // The age of an input grows with time unless a message comes. An input that never came has no
+    // age.
     const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
                       age >= ear.age + std::min(since, kSteady) / 2;
     if (!aged || status.input_late[i] > ear.late) {

@@ -1,6 +1,7 @@
-// Which roles of a run in real time are deaf, from their STATUS: processes that live and say how
-// they are, and have heard nothing for long of what others publish all the while. Who is deaf for
-// long does not recover by itself; a network that loses much for a while makes nobody deaf.
+// Which roles of a run in real time are deaf, by their STATUS. A deaf process is alive and reports
+// its state, but for long it has not heard a channel that another role publishes all the time. A
+// role that is deaf for long does not recover by itself. A network that loses many messages for a
+// while makes no role deaf.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ class status_t;
 
 struct Deafness {
   std::size_t channel;  // what the role does not hear, a place in kChannels
-  Duration missed;      // for how long, as far as its producer is known to have published it
+  Duration missed;      // for how long; time counts only while its producer is known to publish it
 };
 
 /// "has heard no TRUTH for 2.1 s, which the world has published all the while".
@@ -25,17 +26,19 @@ std::string Text(const Deafness& deaf);
 
 class DeafRoles {
  public:
-  /// @param period of the steps on the wall clock; 0: not in real time, and nobody is deaf
+  /// @param period of the steps on the wall clock; 0: the run is not in real time, and no role
+  ///     counts as deaf
   explicit DeafRoles(Duration period);
 
-  /// A role has said how it is, and its STATUS counts.
+  /// A STATUS of the role has been accepted.
   void Heard(Role role, const status_t& status, TimePoint now);
-  /// Its process is dead.
+  /// The role's process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
-  /// What the role is deaf to: what it has missed for longest, if that is long enough to be sure.
+  /// The input that the role has missed for longest, if that is long enough to be sure.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
-  /// The same of a run that is over, where nothing further will be heard.
+  /// The same for a run that is over; half the time is enough, because no further message will
+  /// come.
   std::optional<Deafness> AtTheEnd(Role role) const { return Missing(role, limit_ / 2); }
 
  private:
@@ -53,7 +56,7 @@ class DeafRoles {
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
-  /// The role computes step after step, and that is heard.
+  /// Whether the role computes step after step, by its STATUS.
   bool Computes(Role role, TimePoint now) const;
 
   Duration period_;

@@ -23,12 +23,12 @@
 namespace fogline {
 namespace {
 
-// A reader that has taken nothing for so long, such as a pager that waits for a key, is not waited
-// for any longer: a process that has failed holds its log until it ends.
+// A process waits no longer than this for a reader that takes nothing, such as a pager that waits
+// for a key: a process that has failed keeps its log locked until it ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
-/// Keeps a write to a pipe without a reader from ending the process, for the length of a scope and
-/// in this thread. The rest of the process goes on as it was: `fogline digest *.lcm | head` ends.
+/// While an object lives, a write to a pipe without a reader does not end the process. This holds
+/// for its thread only. Other writes behave as usual: `fogline digest *.lcm | head` ends.
 class WithoutSigpipe {
  public:
   WithoutSigpipe() {
@@ -55,11 +55,11 @@ class WithoutSigpipe {
 
 /// Stderr, written without waiting.
 ///
-/// A pipe or terminal is opened a second time, by its name in /proc, to be written without waiting:
-/// O_NONBLOCK on descriptor 2 itself would be set for every process that has it from the same
-/// shell. Where it cannot be opened (a terminal of another user), poll() is asked for room before
-/// each piece. A thread with a queue would do without either, but what is said last would have to
-/// be waited for at every end of a process.
+/// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
+/// wait. O_NONBLOCK on descriptor 2 itself would affect every process that shares it with the same
+/// shell. If the second open fails (a terminal of another user), poll() asks for room before each
+/// piece. A thread with a queue would need neither, but each process would have to wait at its end
+/// for its last lines.
 class Stderr {
  public:
   /// The only one; never destroyed, since destructors of other objects may write.
@@ -98,14 +98,15 @@ class Stderr {
     asks_first_ = !is_socket_ && own < 0;
   }
 
-  /// @return whether the text was written, or so much that the rest of it follows
+  /// @return whether the text was written, or the first part of it; the rest follows with the next
+  ///     write
   bool Write(std::string_view text, Duration limit) {
     const WithoutSigpipe scope;
     const TimePoint end = Clock::now() + limit;
     rest_.erase(0, Put(rest_, end));
     if (!rest_.empty()) return false;
     const std::size_t written = Put(text, end);
-    if (written > 0) rest_ = text.substr(written);  // no line is cut in the middle
+    if (written > 0) rest_ = text.substr(written);  // so that no line is cut in the middle
     return written > 0;
   }
 
@@ -126,7 +127,7 @@ class Stderr {
 
   ssize_t PutOnce(std::string_view text) const {
     if (is_socket_) return send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    // A pipe that has room takes so much at once.
+    // A pipe that has room takes at least this many bytes at once.
     const std::size_t piece = asks_first_ ? std::size_t{_POSIX_PIPE_BUF} : text.size();
     return write(fd_, text.data(), std::min(text.size(), piece));
   }
@@ -144,15 +145,15 @@ class Stderr {
   std::mutex mutex_;
   int fd_ = STDERR_FILENO;
   bool is_socket_ = false;
-  bool asks_first_ = false;   // poll(), since a write might wait
-  std::string rest_;          // of what was written in part
+  bool asks_first_ = false;   // asks poll() before a write, because the write might wait
+  std::string rest_;          // of a text that was written in part
   std::int64_t dropped_ = 0;  // lines since the last one that was written
 };
 
 void WriteLine(std::string_view line, Duration limit) noexcept {
   try {
     Stderr::Get().WriteLine(EscapeLines(line) + '\n', limit);
-  } catch (...) {  // without memory there is nothing to be said
+  } catch (...) {  // without memory nothing can be printed
   }
 }
 
@@ -172,7 +173,8 @@ void Draw(std::string_view text) noexcept {
 void TakeStandardDescriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
-    // The lowest that is free, which is this one. Its use fails, as that of a closed one does.
+    // open() takes the lowest free descriptor, which is this one. Its use fails, as the use of a
+    // closed one does.
     open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

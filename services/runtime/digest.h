@@ -1,4 +1,4 @@
-// The digest of a run: equal digests mean equal runs, bit by bit.
+// The digest of a run. Equal digests mean that two runs are equal bit by bit.
 #pragma once
 
 #include <memory>

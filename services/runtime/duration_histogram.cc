@@ -5,7 +5,8 @@
 
 namespace fogline {
 
-// A duration is m 2^e with m in [64, 128), or less than 64 with e = 0. Its cell is 64 e + m.
+// A duration is m 2^e us, rounded down, with m in [64, 128); below 64 us e is 0 and m the duration.
+// Its cell is 64 e + m.
 std::size_t DurationHistogram::CellOf(std::int64_t us) {
   const auto value = static_cast<std::uint64_t>(us);
   const auto width = static_cast<int>(std::bit_width(value));

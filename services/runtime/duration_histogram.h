@@ -1,4 +1,4 @@
-// Quantiles of durations in fixed memory, however many there are.
+// Quantiles of durations. The memory does not grow with their number.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@ namespace fogline {
 
 /// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
 /// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
-/// therefore too large by at most 1/64 (1.6 %) and never too small; minimum, maximum and count are
-/// exact. 14 kB, no allocation, constant time to add.
+/// therefore too large by at most 1/64 (1.6 %) and never too small. Maximum and count are exact. It
+/// takes 14 kB, allocates nothing, and adds a duration in constant time.
 ///
 /// (Boost.Accumulators has the P2 estimator, without a bound on its error in the tail; HdrHistogram
 /// in C is no Debian package.)
 class DurationHistogram {
  public:
-  /// Counts a duration, in whole microseconds, rounded up; a negative one counts as 0, one above
-  /// kMax as kMax.
+  /// Counts a duration, in whole microseconds, rounded up. A negative one counts as 0, one above
+  /// kMaxUs as kMaxUs.
   void Add(Duration duration);
 
-  /// The smallest duration, in microseconds, that at least a share `q` of all does not exceed; 0 if
-  /// there are none. q in [0, 1].
+  /// The smallest duration, in microseconds, that at least a share `q` of all durations does not
+  /// exceed; 0 if there are none. q is in [0, 1].
   std::int64_t QuantileUs(double q) const;
   std::int64_t MaxUs() const { return max_us_; }
   std::int64_t count() const { return count_; }

@@ -14,7 +14,7 @@ std::size_t PlaceOf(std::string_view role) {
                                   kRoles.begin());
 }
 
-// Wall clock: a process that lives says how it is five times a second.
+// On the wall clock. A living process publishes a STATUS five times a second.
 constexpr double kSilent_us = 600e3;
 
 void Append(std::string& list, std::string_view separator, std::string_view text) {
@@ -40,15 +40,15 @@ FallbackLog::FallbackLog(std::int64_t step_us, double speed, std::int64_t steps)
 
 const Fallback* FallbackLog::Add(const status_t& status) {
   const std::size_t role = PlaceOf(status.role);
-  // Of the recorder's inputs each has somebody else who works on it.
+  // The recorder's STATUS adds nothing: each of its inputs is also an input of another role.
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
   if (status.header.utime / step_us_ >= steps_ - 1) return nullptr;
   Known& known = roles_[role];
-  known.lost.reset();  // whatever it said before, or its predecessor
+  known.lost.reset();  // forgets what this process or its predecessor said before
   known.utime = status.header.utime;
   std::string lost;
   std::string back;
-  std::string stale;  // news only if something is done about it
+  std::string stale;  // reported only if the role reacts to it
   for (std::size_t i = 0; i < status.input.size(); ++i) {
     const std::size_t channel = ChannelNamed(status.input[i]);
     if (channel == kNumChannels) continue;
@@ -59,7 +59,8 @@ const Fallback* FallbackLog::Add(const status_t& status) {
     if (state == InputState::kStale) Append(stale, ", ", name);
     if (state == InputState::kLost && known_state != InputState::kLost) Append(lost, ", ", name);
     if (state == InputState::kOk && known_state == InputState::kLost) Append(back, ", ", name);
-    // A process that has been started again has still to hear of what was lost before.
+    // A restarted process does not know yet that an input was lost before: its "awaited" changes
+    // nothing.
     if (state == InputState::kLost || state == InputState::kOk) known_state = state;
   }
   std::string does;
@@ -93,8 +94,9 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
   return static_cast<double>(utime) - static_cast<double>(known.utime) > silent_us_;
 }
 
-// The role knows which of its own inputs comes first; the others say what silences them. The world
-// is silenced by nothing, the arbitrator by nothing but the world.
+// The STATUS of the role names the first of its own lost inputs. The STATUS of the other roles says
+// which lost inputs silence those roles. No lost input silences the world. The arbitrator is
+// silenced only by lost channels of the world.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

@@ -1,5 +1,5 @@
-// What went wrong in a run in real time and what was done about it, from the STATUS of its roles:
-// for a person at the run, and afterwards from the log.
+// What went wrong in a run in real time and how its roles reacted, by their STATUS. A person reads
+// it during the run, and afterwards from the log.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace fogline {
 
-/// A change of what a role does about its inputs, or of an input that is lost or there again. (One
-/// that is only stale is news if something is done about it.)
+/// A change in how a role reacts to its inputs, or an input that is lost or there again. (An input
+/// that is only stale is reported if the role reacts to it.)
 struct Fallback {
-  std::int64_t step = 0;  // that was under way
+  std::int64_t step = 0;  // step that was under way then
   std::string role;
   std::string what;     // "TRACK, ACC_COMMAND lost: the human drives"
   std::string culprit;  // role that fell silent, "" if none is
-  double age_s = 0;     // since the role heard of it last
+  double age_s = 0;     // since the role last heard the culprit
 
   /// "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): the human drives"
   std::string Text() const;
@@ -32,16 +32,17 @@ struct Fallback {
 
 class FallbackLog {
  public:
-  /// Changes that are kept: what follows adds little for a reader, and must not fill the memory.
+  /// The most changes that are kept. Further ones add little for a reader, and must not fill the
+  /// memory.
   static constexpr std::size_t kMaxKept = 1000;
 
   /// @param step_us simulated time of a step
   /// @param speed simulated seconds per second
-  /// @param steps of the run: that all is silent after its last one is no news
+  /// @param steps of the run; silence after its last step is not reported
   FallbackLog(std::int64_t step_us, double speed, std::int64_t steps);
 
-  /// Takes the next STATUS of a role. @return the change since its last one, nullptr if there is
-  /// none; valid until the next call
+  /// Takes the next STATUS of a role.
+  /// @return the change since its last one, nullptr if there is none; valid until the next call
   const Fallback* Add(const status_t& status);
 
   /// The first changes, kMaxKept at most.
@@ -53,13 +54,13 @@ class FallbackLog {
   struct Known {
     std::array<InputState, kNumChannels> inputs{};  // LOST until it is OK again
     std::string does;
-    // What its last STATUS says is lost, and how far the run was then.
+    // The lost inputs in its last STATUS, and how far the run was then.
     ChannelSet lost;
     std::int64_t utime = 0;
   };
 
   std::string Culprit(const status_t& status) const;
-  /// The role has said nothing for so long that it does not count any more what it said.
+  /// Whether the role has been silent for so long that its last STATUS does not count.
   bool IsSilent(const Known& known, std::int64_t utime) const;
 
   std::int64_t step_us_;

@@ -13,9 +13,9 @@
 namespace fogline {
 namespace {
 
-/// A message that is overtaken is late by this much: a few steps of a run over udpm.
+/// The delay of a message that is overtaken: a few steps of a run over udpm.
 constexpr Duration kOvertaken = milliseconds(2);
-/// More than this leads to stalls, which is another test.
+/// A longer delay leads to stalls, which is another test.
 constexpr double kMaxDelayMs = 1000;
 
 struct ChanceField {

@@ -1,6 +1,6 @@
-// A bad network on request: what a process receives is lost, doubled, late, overtaken or damaged
-// before it is looked at. Any bus has it, in memory too. Seeded: what befalls the n-th message that
-// a role receives depends on the seed, the role and n, and on nothing else.
+// A bad network on request. Messages that a process receives are lost, doubled, delayed, overtaken
+// or damaged before the process reads them. It works on any bus, in memory too. It is seeded: the
+// fate of the n-th message that a role receives depends only on the seed, the role and n.
 #pragma once
 
 #include <array>
@@ -17,17 +17,17 @@
 
 namespace fogline {
 
-/// How bad the network is: for each message the chance of each mishap, independently.
+/// How bad the network is: the probability of each fault for each message, independently.
 struct FaultRates {
   double loss = 0;
   double duplicate = 0;
   double reorder = 0;   // held back for 2 ms, so that later messages overtake it
-  double truncate = 0;  // cut off somewhere
+  double truncate = 0;  // cut off at a random place
   double flip = 0;      // one bit of it is wrong
   double delay_ms = 0;  // of every message
   std::int64_t seed = 1;
 
-  /// Whether messages may arrive with other contents: only a signature finds that out.
+  /// Whether messages may arrive with changed contents. Only a signature detects that.
   bool Damage() const { return truncate > 0 || flip > 0; }
 };
 
@@ -45,9 +45,9 @@ class Faults {
     std::string channel;
     std::vector<std::uint8_t> bytes;
   };
-  /// The next message that the receiver is to get by now.
+  /// The next message whose delivery is due by now; nullopt if there is none.
   std::optional<Message> Due(TimePoint now);
-  /// When that is; the end of time if none is on its way.
+  /// When the next delivery is due; TimePoint::max() if no message waits.
   TimePoint NextDue() const;
 
  private:

@@ -24,9 +24,10 @@
 namespace fogline {
 namespace {
 
-// A file that is removed or replaced between opening and locking it is opened again.
+// If a file is removed or replaced between opening and locking it, it is opened again, up to this
+// many times.
 constexpr int kTries = 10;
-// A lock that others have is tried again this often.
+// A lock that another process has is tried again at this interval.
 constexpr Duration kTryEvery = milliseconds(10);
 
 /// @throws InputError
@@ -51,13 +52,14 @@ bool IsFileOf(const std::filesystem::path& path, int fd) {
 /// @return whether no other lock is in the way
 bool Lock(int fd, FileLock::Kind kind) {
   const auto take = [fd](int how) { return flock(fd, how | LOCK_NB) == 0 || errno != EWOULDBLOCK; };
-  // An owner makes sure that it is alone, and leaves room for those that work for it.
+  // An owner makes sure that it is alone. Then it keeps a shared lock, so that processes that work
+  // for it can lock the file, too.
   return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
 }
 
-/// The process that has locked an open file. Of an owner and those that work for it, which it has
-/// started, the one with the lowest id. /proc/locks has lines "1: FLOCK ADVISORY READ 4711
-/// 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
+/// The process that has locked an open file. An owner has started the processes that work for it,
+/// so of several holders the one with the lowest id is named. /proc/locks has lines "1: FLOCK
+/// ADVISORY READ 4711 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0) return std::nullopt;

@@ -8,22 +8,22 @@
 
 namespace fogline {
 
-/// A lock on a file or folder (flock(2)). The kernel takes it away when the process ends, however
-/// it ends, and nothing is left on the disk. It binds only those that ask for it. On a file system
+/// A lock on a file or folder (flock(2)). The kernel removes it when the process ends in any way,
+/// and nothing is left on the disk. It binds only processes that ask for it. On a file system
 /// without locks every process gets it.
 class FileLock {
  public:
   enum class Kind {
-    kOwn,     // refused while any other lock is there
-    kShared,  // beside the owner's, for a process that works for the owner and may outlive it
+    kOwn,     // for the owner: refused while any other lock is there
+    kShared,  // for a process that works for the owner and may outlive it
   };
 
-  /// Opens the file, which is made if it is missing, or the folder, and locks it.
-  /// @param option that names it, such as "--log"
-  /// @param owner what else may have it: "run"
-  /// @param patience wait so long for others to end that have it
+  /// Opens a file or folder and locks it. A file that is missing is created.
+  /// @param option the command line option that names it, such as "--log"
+  /// @param owner the kind of process that has such locks, for the message: "run"
+  /// @param patience how long to wait until other processes give up their locks
   /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without
-  ///     the pid where /proc/locks does not say it; or why the file cannot be written
+  ///     the pid if /proc/locks does not give it; or the reason why the file cannot be written
   FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
            std::string_view owner, Duration patience = Duration::zero());
   ~FileLock();

@@ -1,5 +1,5 @@
-// When a node computes a step, and what it does about inputs that it lacks: all that differs
-// between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
+// When a node computes a step, and what it does about missing inputs (a step gate). This is all
+// that differs between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,31 @@
 
 namespace fogline {
 
-/// The rule of one node, from when it has joined a run. It sees of the node what it needs, below.
+/// The rule of one node, from when the node has joined a run. It has access only to the parts of
+/// the node that the protected functions below give it.
 class FireRule {
  public:
   virtual ~FireRule() = default;
   FireRule(const FireRule&) = delete;
   FireRule& operator=(const FireRule&) = delete;
 
-  /// The runner says GO; may be repeated.
+  /// The runner says GO. May be called repeatedly.
   virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
-  /// What to do with an input's message of a step.
+  /// Decides what to do with an input's message of a step.
   virtual StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) = 0;
-  /// An input's message of a step is new and in its ring.
+  /// An input's message of a step is new and has been stored in its ring.
   virtual void OnInput(std::size_t input, std::int64_t step, TimePoint time) = 0;
-  /// Does what time demands. @return when to be called again at the latest
+  /// Does what is due. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint now) = 0;
-  /// RUN has told how far the run is.
+  /// A RUN has told how far the run is.
   virtual void OnProgress() {}
   /// The next step is known to be under way.
   virtual void Expect(std::int64_t /*step*/) {}
-  /// Somebody asks for the output of a step that is not computed yet.
+  /// Another process asks for the output of a step that this node has not computed yet.
   virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}
-  /// Before every STATUS: adds what the rule knows.
+  /// Called before every STATUS: adds what the rule knows.
   virtual void WriteStatus(TimePoint /*now*/) {}
-  /// The step that was computed is the last one of the run.
+  /// This step is the last one of the run.
   virtual void SetFinal(std::int64_t /*step*/) {}
 
  protected:
@@ -44,13 +45,14 @@ class FireRule {
 
   std::vector<Input>& inputs() { return node_.inputs_; }
   const std::vector<Input>& inputs() const { return node_.inputs_; }
-  /// The step to compute next. It is made of each input's step next() - lag.
+  /// The step to compute next. It uses each input's message of step next() - lag.
   std::int64_t next() const { return node_.next_; }
   std::int64_t progress() const { return node_.progress_; }
   bool Running() const { return node_.Running(); }
   status_t& status() { return node_.status_; }
   Bus& bus() { return node_.bus_; }
-  /// Computes a step now and goes on to the one after it; false if that failed.
+  /// Computes a step now. The next step is then the one after it.
+  /// @return false if the computation failed
   bool Compute(std::int64_t step) { return node_.ComputeNow(step); }
   void Ask(std::string_view channel, StepRange steps) { node_.Ask(channel, steps); }
   void PublishStatus() { node_.PublishStatus(); }

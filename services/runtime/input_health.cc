@@ -15,7 +15,8 @@ InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoin
     : stale_(Periods(section.stale_periods, period)),
       lost_(std::max(stale_, Periods(section.lost_periods, period))),
       recover_steps_(section.recover_steps),
-      // n steps are n - 1 periods apart; as much less as one step may come early after a late one.
+      // n steps take n - 1 periods. If the first of them came late (by up to stale_periods - 1
+      // periods), they take that much less.
       recover_time_(std::max(
           Duration::zero(),
           Periods(static_cast<double>(section.recover_steps) - section.stale_periods, period))),
@@ -63,7 +64,7 @@ InputState InputHealth::Update(TimePoint now) {
 }
 
 TimePoint InputHealth::NextChange() const {
-  // The first moment beyond the limit, which is closed.
+  // The limit itself is still allowed, so the state changes one tick of the clock after it.
   switch (state_) {
     case InputState::kOk:
       return heard_ + stale_ + Duration(1);
@@ -81,7 +82,8 @@ double InputHealth::RateHz(TimePoint now) const {
   const std::size_t first = num_arrivals_ < kRateSteps ? 0 : next_arrival_;
   const TimePoint oldest = arrivals_[first];
   const auto intervals = static_cast<double>(num_arrivals_ - 1);
-  // The interval that is open counts as soon as it is longer than the others are on average.
+  // The open interval since the last arrival counts as soon as it is longer than the average of the
+  // others.
   const double closed_s = Seconds(heard_ - oldest) / intervals;
   const double open_s = Seconds(now - oldest) / (intervals + 1);
   const double interval_s = std::max(closed_s, open_s);

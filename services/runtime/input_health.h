@@ -1,5 +1,5 @@
-// The health of one input in real time, from when its steps arrive on the receiver's own clock.
-// Time is passed in: nothing here reads a clock, and senders' clocks do not matter.
+// The health of one input in real time, by the times when its steps arrive on the receiver's own
+// clock. Callers pass the time in: nothing here reads a clock, and senders' clocks do not matter.
 #pragma once
 
 #include <array>
@@ -12,43 +12,44 @@
 
 namespace fogline {
 
-/// Age, rate and state of an input that brings a step in every period.
+/// Age, rate and state of an input that brings one step in every period.
 ///
 ///     AWAITED --a step--> OK --age > stale--> STALE --age > lost--> LOST
 ///        |                 ^                    |                    |
 ///        +--age > lost--> LOST                  +-- recover_steps ---+--> OK
 ///
 /// The age is the time since the last new step arrived, or since the beginning. The limits are
-/// closed: an age of exactly `stale` is OK. Back to OK it takes `recover_steps` new steps, each but
-/// the first within `stale` of the one before, which also last as long as so many steps should: a
-/// sender that was stopped and pours out its backlog has recovered once it is back in its rhythm,
-/// not before.
+/// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
+/// steps. Each of them but the first must come within `stale` of the one before, and together they
+/// must last as long as so many steps should. So a sender that was stopped and sends its backlog at
+/// once recovers only when it is back in its rhythm.
 ///
-/// Detection of a silent input takes `lost` periods after its last step, so at most that after its
-/// sender's death, plus what the receiver needs to look: see NextChange().
+/// The loss of an input is detected `lost` periods after its last step. That is at most `lost`
+/// periods after its sender's death, plus the time until the receiver looks: see NextChange().
 class InputHealth {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param began when the input may be expected from
+  /// @param began from when on the input is expected
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
-  /// A message of step `step` has arrived. The step that is there already changes nothing; an older
-  /// one is late and counted.
+  /// A message of step `step` has arrived. A repetition of the newest step changes nothing. An
+  /// older step is late and counted.
   void Arrived(std::int64_t step, TimePoint now);
 
   /// Takes the time into account. @return the state now
   InputState Update(TimePoint now);
   InputState state() const { return state_; }
-  /// When Update() changes the state unless a step arrives; TimePoint::max() if it does not.
+  /// When Update() will change the state if no step arrives; TimePoint::max() if it will not.
   TimePoint NextChange() const;
 
   /// Newest step that has arrived, -1 if none.
   std::int64_t newest() const { return newest_; }
   /// Time since the newest step arrived, or since the beginning.
   Duration Age(TimePoint now) const { return now - heard_; }
-  /// Steps per second over the last kRateSteps arrivals; falls while none comes, 0 before two have.
+  /// Steps per second over the last kRateSteps arrivals. The rate falls while no step comes. It is
+  /// 0 before two steps have come.
   double RateHz(TimePoint now) const;
-  /// Messages that came after a newer one of the same input had been used.
+  /// Messages that came after a newer one of the same input.
   std::int64_t late() const { return late_; }
 
   static constexpr std::size_t kRateSteps = 16;
@@ -59,7 +60,7 @@ class InputHealth {
   Duration stale_;
   Duration lost_;
   std::int64_t recover_steps_;
-  Duration recover_time_;  // that so many steps last at least
+  Duration recover_time_;  // the least time that recover_steps_ steps take
 
   InputState state_ = InputState::kAwaited;
   std::int64_t newest_ = -1;

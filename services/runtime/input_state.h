@@ -1,4 +1,4 @@
-// How an input of a role is, in real time.
+// The state of a role's input, in real time.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 namespace fogline {
 
 enum class InputState : std::uint8_t {
-  kAwaited,  // has never come, and is not overdue yet
+  kAwaited,  // has not come yet, and is not overdue
   kOk,
   kStale,  // overdue: the last value holds
-  kLost,   // overdue for so long that somebody else must drive
+  kLost,   // overdue for so long that another agent must drive
 };
 
-/// As in STATUS and in messages to people.
+/// The name of a state in STATUS and in messages to people.
 constexpr std::string_view NameOf(InputState state) {
   switch (state) {
     case InputState::kAwaited:
@@ -28,17 +28,18 @@ constexpr std::string_view NameOf(InputState state) {
   return "";
 }
 
-/// There is a value that may be used.
+/// Whether there is a value that may be used.
 constexpr bool Usable(InputState state) {
   return state == InputState::kOk || state == InputState::kStale;
 }
 
-/// An input as an algorithm gets it that has to do without: the newest message that came in time,
-/// and how the input is.
+/// An input for an algorithm that can work without it: the newest message that came in time, and
+/// the input's state.
 template <class M>
 struct Heard {
   InputState state = InputState::kAwaited;
-  const M* newest = nullptr;  // nullptr while none has come; there is one if the state is usable
+  // nullptr until the first has come; never nullptr if the state is Usable().
+  const M* newest = nullptr;
 };
 
 }  // namespace fogline

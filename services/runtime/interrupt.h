@@ -1,5 +1,5 @@
-// The signals that ask a process to end, seen at the next convenient moment: SIGINT (Ctrl-C),
-// SIGTERM, SIGHUP (the terminal is gone).
+// The signals that ask a process to end: SIGINT (Ctrl-C), SIGTERM, SIGHUP (the terminal is gone).
+// The process notes them and ends at the next convenient moment.
 #pragma once
 
 #include <csignal>
@@ -8,7 +8,7 @@
 
 namespace fogline {
 
-/// Thrown out of long work when the user wants to stop: exit code 130.
+/// Thrown out of long work when the user wants to stop. The exit code is then 130.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -18,8 +18,8 @@ namespace internal {
 inline volatile std::sig_atomic_t interrupts = 0;
 }
 
-/// Those of the signals that this process is to obey: not those that were ignored when it was
-/// started, as by nohup.
+/// The signals that this process obeys: those that were not ignored at its start (nohup ignores
+/// SIGHUP).
 inline std::vector<int> EndingSignals() {
   std::vector<int> obeyed;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -30,7 +30,7 @@ inline std::vector<int> EndingSignals() {
   return obeyed;
 }
 
-/// From now on these signals are only noted.
+/// From now on the process only notes these signals.
 inline void WatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = [](int) { internal::interrupts = 1; };

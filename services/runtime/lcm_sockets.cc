@@ -55,21 +55,21 @@ int LcmSockets::OnBind(int socket, const sockaddr* address, socklen_t size) {
 
 int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) const {
   const int result = Connect(socket, address, size);
-  // LCM only asks whether there is a route.
+  // LCM connects a socket only to find out whether there is a route.
   return reach_ == Reach::kLoopback ? 0 : result;
 }
 
 int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
   const int result = SetOption(socket, level, name, value, size);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
-  if (name == IP_MULTICAST_TTL) {  // it is to send
+  if (name == IP_MULTICAST_TTL) {  // LCM sets this on the socket that sends
     const in_addr loopback = Loopback();
     return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
   }
   if (name == IP_ADD_MEMBERSHIP && size >= sizeof(ip_mreq)) {
     ip_mreq membership = *static_cast<const ip_mreq*>(value);
     membership.imr_interface = Loopback();
-    // Where the route leads over loopback the group is joined there already.
+    // If the route leads over loopback, LCM has already joined the group there.
     const bool joined =
         SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
         errno == EADDRINUSE;
@@ -92,14 +92,15 @@ void JoinAgain(int socket, const std::string& url) {
   if (!group || inet_pton(AF_INET, group->c_str(), &membership.imr_multiaddr) != 1) return;
   const std::string interface = RouteInterface(Content("/proc/net/route"), *group);
   if (interface.empty() || HasGroup(Content("/proc/net/igmp"), interface, *group)) return;
-  // Without an interface both mean that of the route, wherever it was joined before.
+  // `membership` names no interface: both calls use the interface of the present route.
   SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &membership, sizeof(membership));
   SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
 }
 
 }  // namespace fogline
 
-// In place of the C library's, also for LCM: nothing arrives before a socket is bound.
+// These functions replace the C library's, in LCM's code too. So a filter is attached before
+// bind(), and no datagram arrives before it.
 extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
   return fogline::in_charge != nullptr ? fogline::in_charge->OnBind(socket, address, size)
                                        : fogline::Bind(socket, address, size);

@@ -1,9 +1,9 @@
-// What LCM does with its UDP sockets, which it keeps to itself: they are filtered before anything
-// arrives, and a network of this machine alone goes over the loopback interface.
+// Controls LCM's UDP sockets, which LCM does not give access to: a filter is attached before the
+// first datagram arrives, and a network of this machine alone uses the loopback interface.
 //
-// LCM leaves the choice of an interface to the route for the group, even where nothing is to leave
-// the machine (ttl=0). Such traffic ends when that interface, its address or its route goes away: a
-// cable, a Wi-Fi, a lease. Loopback needs none of that.
+// LCM uses the interface of the route to the group, even if no message is to leave the machine
+// (ttl=0). Such traffic ends when that interface, its address or its route goes away: a cable, a
+// Wi-Fi, a lease. Loopback needs none of them.
 #pragma once
 
 #include <linux/filter.h>
@@ -14,28 +14,28 @@
 
 namespace fogline {
 
-/// While it lives, it sees to every UDP socket that LCM opens in this thread. One at a time in a
-/// thread.
+/// While an object lives, it controls every UDP socket that LCM opens in its thread. A thread may
+/// have one object at a time.
 class LcmSockets {
  public:
   enum class Reach {
-    kLoopback,  ///< sends over loopback; hears what is sent there, and over the route if there is
-                ///< one
-    kRoute,     ///< both as the route to the group leads
+    /// Sends over loopback; hears messages from loopback, and from the route if there is one.
+    kLoopback,
+    kRoute,  ///< sends and hears over the route to the group
   };
 
-  /// @param filter of each socket that receives, from the start; none if it is empty
+  /// @param filter for each socket that receives, from its start; empty: no filter
   LcmSockets(std::vector<sock_filter> filter, Reach reach);
   ~LcmSockets();
   LcmSockets(const LcmSockets&) = delete;
   LcmSockets& operator=(const LcmSockets&) = delete;
 
-  /// Those that receive.
+  /// The sockets that receive.
   const std::vector<int>& receiving() const { return receiving_; }
-  /// Whether there are such, and the kernel has taken the filter for every one.
+  /// Whether there are sockets that receive, and the kernel has taken the filter for each of them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
 
-  // Called in place of the C library's functions; they return what those would.
+  // These replace the C library's functions and return what those would return.
   int OnBind(int socket, const sockaddr* address, socklen_t size);
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
   int OnOption(int socket, int level, int name, const void* value, socklen_t size) const;
@@ -50,11 +50,12 @@ class LcmSockets {
 /// Whether loopback is up. Some containers have none.
 bool LoopbackIsUp();
 
-/// How far a udpm:// URL reaches: with ttl=0 no further than loopback, where that is up.
+/// How far a udpm:// URL reaches: only loopback with ttl=0 and loopback up, otherwise the route.
 LcmSockets::Reach ReachOf(const std::string& url);
 
-/// Joins the group of a udpm:// URL again where its route leads now, unless the interface there has
-/// it: with an interface or its last address go its groups.
+/// Joins the group of a udpm:// URL again on the interface of its present route, unless that
+/// interface has the group already. An interface that goes down, or loses its last address, loses
+/// its groups.
 void JoinAgain(int socket, const std::string& url);
 
 }  // namespace fogline

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kUdpm = "udpm://";
 constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
-// A URL of LCM's with all its options takes 60 characters.
+// The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
 
 template <class Integer>
@@ -37,7 +37,8 @@ std::optional<in_addr> ParseAddress(std::string_view text) {
   return address;
 }
 
-/// Takes what stands before `separator`, and the separator, off the front of `text`.
+/// Removes the text before `separator`, and the separator, from the front of `text`.
+/// @return that text
 std::string_view TakeUntil(char separator, std::string_view& text) {
   const std::string_view part = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(text.size(), part.size() + 1));
@@ -59,8 +60,8 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
   return true;
 }
 
-/// Whether an address is one of this machine's interfaces, or of loopback, where all of 127.0.0.0/8
-/// is this machine.
+/// Whether an address belongs to one of this machine's interfaces or to loopback: all of
+/// 127.0.0.0/8 is this machine.
 bool IsOfThisMachine(in_addr numeric) {
   if (ntohl(numeric.s_addr) >> 24 == IN_LOOPBACKNET) return true;
   ifaddrs* interfaces = nullptr;
@@ -74,10 +75,10 @@ bool IsOfThisMachine(in_addr numeric) {
   return found;
 }
 
-/// Where a tcpq:// URL says that a relay is, with LCM's defaults where it says nothing.
+/// The place of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
 struct RelayPlace {
   std::string_view host;
-  std::optional<std::uint16_t> port;  // none if it is no number
+  std::optional<std::uint16_t> port;  // nullopt if it is no number
 
   bool operator==(const RelayPlace&) const = default;
 };

@@ -7,7 +7,7 @@ namespace {
 
 constexpr Duration kFirstPatience = milliseconds(20);
 constexpr Duration kMaxPatience = milliseconds(500);
-// Three years: no step is later, however slow the pace.
+// Three years: an upper limit for the time when a step is due, at any pace.
 constexpr double kLongest_s = 1e8;
 
 }  // namespace
@@ -20,9 +20,9 @@ LeadGate::LeadGate(Bus& bus, status_t& own) {
       ++(own.*(status == nullptr ? arrival.Wrong<status_t>() : &status_t::foreign));
       return;
     }
-    // One that has failed may not have on disk what it had computed.
+    // A recorder that has failed may not have on disk the step that it reports.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
-    // Nor has anybody what the world has not begun, unless an earlier one had.
+    // The recorder cannot have a step that neither this world nor an earlier one has begun.
     if (status->header.step > std::max(own.header.step, begun_before_)) {
       ++own.out_of_window;
       return;
@@ -41,7 +41,7 @@ void LeadGate::OnGo(const run_t& run, TimePoint now) {
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);
-  // Who joins late catches up at once and goes on from there in the pace.
+  // A world that joins late computes the old steps at once and then continues at the pace.
   start_ = now;
   start_ -= Due(std::max<std::int64_t>(0, run.progress)) - now;
 }

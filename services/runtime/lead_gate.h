@@ -1,6 +1,6 @@
-// When the role that begins the steps (the world) may begin one: not before the runner's GO, not
-// faster than the pace, not more than kMaxAhead steps ahead of what the recorder has on disk, not
-// after the end.
+// When the role that begins the steps (the world) may begin one (a step gate). It may not begin a
+// step before the runner's GO, faster than the pace, more than kMaxAhead steps ahead of the
+// recorder's log on disk, or after the end.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace fogline {
 
 class LeadGate {
  public:
-  /// Listens to the recorder's STATUS on `bus`; what it refuses counts in `own`.
+  /// Listens to the recorder's STATUS on `bus`. Messages that it refuses are counted in `own`.
   LeadGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
-  /// This step has begun, by a world that was there before this one.
+  /// An earlier process of the world has begun this step.
   void BegunBefore(std::int64_t step) { begun_before_ = std::max(begun_before_, step); }
   void OnGo(const run_t& run, TimePoint now);
   bool started() const { return started_; }
@@ -29,13 +29,14 @@ class LeadGate {
   bool Open(std::int64_t step, TimePoint now) const;
   /// No step follows `step`.
   void SetFinal(std::int64_t step) { final_ = step; }
-  /// The final step has begun and is on disk.
+  /// Whether the final step has begun and is on disk.
   bool Finished(std::int64_t next) const {
     return final_ && next > *final_ && recorded_ >= *final_;
   }
-  /// Step that the recorder should be asked for, if it is the recorder that holds up step `next`.
+  /// The step that the recorder should be asked for; nullopt unless it is time to ask because the
+  /// recorder holds up step `next`.
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
-  /// When Open() or WantsRecorded() may answer differently without a message.
+  /// When the answer of Open() or WantsRecorded() may change without a message.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;
 
  private:

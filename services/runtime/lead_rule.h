@@ -1,5 +1,5 @@
-// Lockstep for the role that begins the steps (the world): as LockstepRule, but not before GO, not
-// faster than the pace, and not too far ahead of what is on disk (lead_gate.h).
+// Lockstep for the role that begins the steps (the world). It is a LockstepRule that also waits for
+// GO, keeps to the pace, and stays near the log on disk (lead_gate.h).
 #pragma once
 
 #include "services/runtime/lead_gate.h"

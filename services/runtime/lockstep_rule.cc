@@ -5,7 +5,7 @@
 namespace fogline {
 namespace {
 
-// Being asked makes a node ask at once, but no more often than this.
+// The shortest time between two requests of a node that asks because another process asked it.
 constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
@@ -15,7 +15,7 @@ LockstepRule::LockstepRule(Node& node) : FireRule(node), expected_(progress()), 
 StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
   const Input& from = inputs()[input];
   const auto verdict = from.ring.Classify(step, bytes, FirstNeeded(from));
-  // Who catches up hears of steps that are under way elsewhere.
+  // A node that catches up also hears the current steps of the others, which are too new for it.
   const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
   return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
                                                                  : verdict;
@@ -38,9 +38,9 @@ void LockstepRule::OnProgress() {
 }
 
 void LockstepRule::OnAskedAhead(std::int64_t step, TimePoint now) {
-  // What somebody who asks may be wrong about is bounded.
+  // A request may name a wrong step, so its effect is limited.
   Expect(std::min(step, next() + kRingSteps - 1));
-  // Who catches up has asked already.
+  // A node that catches up has already asked for its inputs.
   if (!CatchingUp() && now - patience_.asked() >= kMinBetweenAsks) AskForMissing(now);
 }
 
@@ -73,7 +73,8 @@ void LockstepRule::Advance(TimePoint now) {
 TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + kHeartbeat;
   const TimePoint ask_at = patience_.Wait(now);
-  if (CatchingUp() && next() > asked_) {  // nothing of it can be on its way
+  // The step has not been asked for yet, so none of its inputs can be on their way.
+  if (CatchingUp() && next() > asked_) {
     AskForMissing(now);
     patience_.AskedForMany(now);
   } else if (now >= ask_at) {
@@ -85,7 +86,7 @@ TimePoint LockstepRule::Repair(TimePoint now) {
 
 void LockstepRule::AskForMissing(TimePoint now) {
   patience_.Asked(now);
-  // As far as is known to be under way, and as the rings can hold.
+  // Up to the newest step that is known to be under way, but no more steps than the rings can hold.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : inputs()) {
     const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);
@@ -96,12 +97,12 @@ void LockstepRule::AskForMissing(TimePoint now) {
 }
 
 StepRange LockstepRule::Lacking(const Input& input, std::int64_t first, std::int64_t last) const {
-  if (CatchingUp()) {  // old steps come only to those who ask
+  if (CatchingUp()) {  // old steps come only on request
     while (first <= last && input.ring.Has(first)) ++first;
     while (first <= last && input.ring.Has(last)) --last;
     return {.first = first, .count = last - first + 1};
   }
-  // What comes after a gap may be on its way.
+  // Asks only for the first gap: the steps after it may be on their way.
   std::int64_t count = 0;
   while (first + count <= last && !input.ring.Has(first + count)) ++count;
   return {.first = first, .count = count};

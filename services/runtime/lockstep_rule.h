@@ -1,12 +1,12 @@
-// Lockstep: a node keeps a ring of messages per input and computes step k exactly once, when all
-// its inputs for step k are there, in whatever order they came. It encodes its outputs once and
-// keeps the bytes. Nothing is ever sent twice on suspicion: who misses an input asks for it
-// (RESEND), and who is asked for what he cannot compute yet asks further up. So any loss below 100
-// % only costs time.
+// Lockstep: a node keeps a ring of messages per input. It computes step k exactly once, when all
+// its inputs for step k are there, in any order of arrival. It encodes its outputs once and keeps
+// the bytes. No message is sent again without a request: a node that misses an input asks for it
+// (RESEND). A node that is asked for an output that it cannot compute yet asks for its own inputs.
+// So any loss below 100 % only costs time.
 //
 // Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
-// computes everything from step 0 on again, from inputs for which it asks many steps at a time. Old
-// ones come from the recorder, the last ones from their producers. It publishes only what the
+// computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
+// sends old inputs, their producers send the last ones. The node publishes only outputs that the
 // recorder does not answer for.
 #pragma once
 
@@ -35,19 +35,19 @@ class LockstepRule : public FireRule {
   virtual bool MayCompute(std::int64_t /*step*/, TimePoint /*now*/) { return true; }
   /// Computes every step that can be computed.
   void Advance(TimePoint now);
-  /// All that the next step is made of is there.
+  /// Whether all inputs of the next step are there.
   bool InputsReady() const { return FirstMissing() == nullptr; }
 
  private:
-  /// First input that the next step waits for, or nullptr.
+  /// The first input that the next step waits for; nullptr if there is none.
   const Input* FirstMissing() const;
-  /// First step of an input that is of use.
+  /// The first step of an input that the node still needs.
   std::int64_t FirstNeeded(const Input& input) const;
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
-  /// Steps from `first` to `last` that an input lacks and that should be asked for together.
+  /// The steps from `first` to `last` that an input lacks and that one request should ask for.
   StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
-  /// The next step is older than what was under way when this node joined.
+  /// Whether the next step is older than the steps that were under way when this node joined.
   bool CatchingUp() const { return next() <= late_; }
 
   std::int64_t expected_;    // highest step that is known to be under way

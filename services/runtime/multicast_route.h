@@ -1,5 +1,6 @@
-// Whether multicast has a way out of this machine, asked before LCM is: where it has none, LCM
-// names an address that nobody has given and a command that few systems have.
+// Whether this machine has a route for multicast. Fogline checks this before it calls LCM. Without
+// a route LCM's error message names an address that the user has not given, and a command that few
+// systems have.
 #pragma once
 
 #include <optional>
@@ -11,27 +12,29 @@ namespace fogline {
 /// Lets LCM work on a machine without a network. Needs root.
 inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev lo";
 
-/// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; none for
+/// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; nullopt for
 /// other URLs.
 std::optional<std::string> GroupOf(std::string_view url);
 
 /// Whether an IPv4 address is that of a multicast group.
 bool IsMulticast(const std::string& address);
 
-/// What to write in place of a udpm:// or mpudpm:// URL with the address of one machine.
+/// Advice for a udpm:// or mpudpm:// URL that has the address of one machine: the URL to write
+/// instead.
 std::string InPlaceOfUnicast(std::string_view url);
 
-/// What the kernel says when asked for a route to an IPv4 address, "" if it has one.
+/// The kernel's error for a route to an IPv4 address; "" if it has a route.
 std::string RouteError(const std::string& address);
 
-/// The interface of the route to an IPv4 address in a table as /proc/net/route has it (longest
-/// prefix, then lowest metric), "" if there is no such route or `address` is none.
+/// The interface of the route to an IPv4 address, by a table in the form of /proc/net/route
+/// (longest prefix, then lowest metric); "" if there is no such route or `address` is no IPv4
+/// address.
 std::string RouteInterface(std::string_view table, const std::string& address);
 
-/// Whether an interface receives a multicast group, by a table as /proc/net/igmp has it.
+/// Whether an interface receives a multicast group, by a table in the form of /proc/net/igmp.
 bool HasGroup(std::string_view table, std::string_view interface, const std::string& group);
 
-/// Why a udpm:// URL cannot be opened, and what to do about it; "" if nothing is known against it.
+/// Why a udpm:// URL cannot be opened, and what to do about it; "" if no reason is known.
 std::string WhyNoMulticast(std::string_view url);
 
 }  // namespace fogline

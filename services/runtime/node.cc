@@ -17,22 +17,26 @@
 namespace fogline {
 namespace {
 
-// An answer is everybody's: whoever asks within this time has it, or will ask again.
+// Every node receives an answer. A node that asks for the same step within this time has the
+// answer, or will ask again.
 constexpr Duration kAnswerHolds = milliseconds(1);
-// The newest steps are those that a run waits for. Whatever else is asked for, they are answered.
+// A run waits for its newest steps. Requests for this many of them are always answered.
 constexpr std::int64_t kNewest = 2;
-// A part of the scenario is asked for this often.
+// A missing part of the scenario is asked for at this interval.
 constexpr Duration kPartPatience = milliseconds(20);
-// What went wrong must fit into a STATUS with everything else.
+// The longest error text: it must fit into a STATUS with everything else.
 constexpr std::size_t kMaxErrorBytes = 700;
-// Announcements that repeat are answered this often at most.
+// Repeated announcements are answered at most at this interval.
 constexpr Duration kAnnouncedPatience = milliseconds(20);
-// What could not be sent is told no later than that: a run may be over before the next heartbeat.
+// A failed send is reported within this time after the last STATUS, because a run may be over
+// before the next heartbeat.
 constexpr Duration kTellSends = milliseconds(20);
-// One that has not heard all of the scenario yet loses nothing and looks for another run.
+// A node that has not received the whole scenario yet leaves a run after this long a silence of its
+// runner, and looks for another run.
 constexpr Duration kAnnouncerSilence = milliseconds(5'000);
 
-/// The requests that a role can answer: for its own channels. The recorder has them all.
+/// The requests that a role can answer: those for its own channels. The recorder can answer
+/// requests for all channels.
 Contents RequestsTo(Role role) {
   Contents requests{.offset = kHeaderEnd, .texts = {}};
   if (role == Role::kRecorder) return requests;
@@ -159,7 +163,7 @@ void Node::PublishStatus() {
   const TimePoint now = Clock::now();
   said_at_ = now;
   status_at_ = now + kHeartbeat;
-  if (!bound_) return;  // nobody has announced a run yet
+  if (!bound_) return;  // no run has been announced yet
   BeforeStatus();
   status_.header.run_id = *run_id_;
   status_.scenario_hash = parts_.hash();
@@ -169,7 +173,7 @@ void Node::PublishStatus() {
   const Bus::Unverified unverified = bus_.TakeUnverified();
   status_.not_signed += unverified.not_signed;
   status_.badly_signed += unverified.badly_signed;
-  if (now >= use_at_) {  // asking the kernel costs more than some steps
+  if (now >= use_at_) {  // a question to the kernel costs more than some steps
     use_at_ = now + kHeartbeat;
     const ProcessUse use = MeasureThisProcess();
     status_.cpu_ms = use.cpu_ms;
@@ -202,8 +206,8 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // If it is so old that it is on disk, the recorder answers for it. Real time does not look
-    // back.
+    // A step that is so old that it is on disk is not published: the recorder answers for it. In
+    // real time every output is published.
     if (realtime_ || step > progress_ - 2 * kMaxAhead) bus_.Publish(output.topic, bytes);
   }
 }
@@ -215,7 +219,7 @@ void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
 }
 
 void Node::OnRun(Bytes bytes) {
-  if (left_ || released()) return;  // and everything is closed
+  if (left_ || released()) return;  // the node has left, and its files are closed
   run_t run{};
   if (const RefusalCounter wrong = Examine(bytes, run)) return Refuse(wrong);
   const TimePoint now = Clock::now();
@@ -241,7 +245,7 @@ void Node::OnOtherRun(const run_t& run, TimePoint now) {
   now = runner_.Attend(now);
   const bool may_go = bound_ && !chosen_ && runner_.Silent(now) && run.phase != run_t::STOP;
   if (!may_go || SeatIn(run, status_.role, status_.instance) != Seat::kFree) return;
-  // What is signed may be a repetition: it is to answer this process.
+  // A signed RUN may be the repetition of an old one, so it must answer a request of this process.
   if (bus_.secured() && run.answer_to != status_.instance) return AskWhetherThere(run, now);
   Release(fmt::format("the runner of run {} has been silent for {:.1f} s; run {} waits for the {}",
                       *run_id_, Seconds(runner_.Silence(now)), run.header.run_id, status_.role));
@@ -276,7 +280,7 @@ bool Node::TakeNews(const run_t& run, TimePoint now) {
   } else if (status_.state != status_t::WAITING && run.phase == run_t::PREPARE &&
              run.header.step == 0 && now >= announced_at_ + kAnnouncedPatience) {
     announced_at_ = now;
-    PublishStatus();  // the announcement repeats: somebody has not heard us yet
+    PublishStatus();  // the announcement is repeated: the runner may not have heard this node
   }
   return true;
 }

@@ -1,5 +1,5 @@
-// Whether the roles of a run are of the runner's build. Parts that were built from other sources
-// compute other results, and message types that agree do not show it.
+// Whether the roles of a run are of the runner's build. Programs built from other sources may
+// compute other results, even if their message types agree.
 #pragma once
 
 #include <array>
@@ -13,22 +13,24 @@
 
 namespace fogline {
 
-/// The build of each role's program beside the runner, by place in kRoles.
+/// The build of each role's program in the runner's folder, by place in kRoles.
 using RoleBuilds = std::array<BuildId, kRoles.size()>;
 
-/// A process that is not of the runner's build, as far as is known.
+/// A process whose build is not the runner's or is not known.
 struct OtherBuild {
   Role role;
   std::int32_t pid;
   std::string host;
-  BuildId build;  // what it says
-  BuildId ours;   // that of the role's program beside the runner
+  BuildId build;  // the build that it reports
+  BuildId ours;   // build of the role's program in the runner's folder
 
-  /// "driver (pid 4711 on lab2) is of build 1f..., the runner's is 2e...", or what is not known.
+  /// "driver (pid 4711 on lab2) is of build 1f..., that of the runner is 2e...", or what is not
+  /// known.
   std::string Text() const;
 };
 
-/// What a role's process says of its build; nothing if it is the runner's.
+/// The build of a role's process if it differs from the expected one or is unknown; nullopt if they
+/// are equal.
 std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const RoleBuilds& ours);
 
 }  // namespace fogline

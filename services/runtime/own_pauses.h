@@ -1,7 +1,7 @@
-// When this process was held up itself: stopped (Ctrl-Z), frozen with its container, kept by a
-// disk. What it has not heard in that time means nothing.
+// The times at which this process was held up itself: stopped (Ctrl-Z), frozen with its container,
+// or waiting for a disk. A silence of others in such a time means nothing.
 //
-// Of a machine that was suspended nothing need be known: Clock stands still meanwhile.
+// A suspended machine needs no such record: its Clock stands still meanwhile.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@ namespace fogline {
 
 class OwnPauses {
  public:
-  /// Two looks at the clock that are further apart are a pause. Every process looks several times a
-  /// second (Node::kHeartbeat is the longest).
+  /// Two looks at the clock that are further apart than this are a pause. Every process looks
+  /// several times a second (Node::kHeartbeat is the longest interval).
   static constexpr Duration kPause = milliseconds(500);
 
   explicit OwnPauses(TimePoint now) : looked_(now) {}
 
-  /// Notes that the process looks at the clock. @return when it has looked last
+  /// Notes that the process looks at the clock. @return the time of its latest look
   TimePoint Attend(TimePoint now) {
     if (now <= looked_) return looked_;
     const Duration away = now - looked_;
@@ -31,7 +31,7 @@ class OwnPauses {
     return looked_ = now;
   }
 
-  /// Time since then in which something could have been heard.
+  /// The time since `since` in which this process could have heard a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     Duration held = now - since;
     for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
@@ -48,7 +48,7 @@ class OwnPauses {
     TimePoint from;
     TimePoint to;
   };
-  TimePoint looked_;           // last
+  TimePoint looked_;           // time of the latest look
   std::vector<Pause> pauses_;  // in order
   Duration longest_{};
 };

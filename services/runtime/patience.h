@@ -1,5 +1,5 @@
-// When a node that lacks an input asks for it: not while it may still be on its way, and again and
-// again, at longer and longer intervals up to a limit, while it does not come.
+// The retry timer of a node that lacks an input. It waits while the input may still be on its way.
+// Then it asks again and again while the input does not come, at growing intervals up to a limit.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,14 @@ class Patience {
     return ask_at_;
   }
 
-  /// Asked now; who waits on asks again, each time after a quarter more.
+  /// The node asks now. After AskedInVain() it asks again, each time after an interval that is a
+  /// quarter longer.
   void Asked(TimePoint now) { asked_ = now; }
   void AskedInVain(TimePoint now) {
     wait_ = std::min(wait_ + wait_ / 4, kLongest);
     ask_at_ = now + wait_;
   }
-  /// Asked for many steps at once: as long as they come in there is no reason to ask again.
+  /// The node has asked for many steps at once. As long as they come in, it need not ask again.
   void AskedForMany(TimePoint now) {
     wait_ = kShortest;
     ask_at_ = now + wait_;
@@ -36,7 +37,7 @@ class Patience {
 
   /// The step is computed.
   void Computed(TimePoint now) {
-    // Steps that had to be repaired say nothing of how long a step takes (Karn & Partridge 1987).
+    // Steps with a repair do not show how long a step takes (Karn & Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
       const Duration took = now - computed_;
       step_time_ += (took - step_time_) / (took < step_time_ ? kDown : kUp);
@@ -50,13 +51,13 @@ class Patience {
   TimePoint asked() const { return asked_; }
 
  private:
-  // A few times what a step usually takes, within bounds; a little longer each time that it asks in
-  // vain.
+  // The first interval is kSteps times the usual duration of a step, between kShortest and
+  // kLongest.
   static constexpr int kSteps = 4;
   static constexpr Duration kShortest = milliseconds(2);
   static constexpr Duration kLongest = milliseconds(10);
-  // Inverse weights of the newest step in the smoothed duration of a step. Others' repairs make
-  // steps longer, too: the short ones tell what a step takes.
+  // Inverse weights of the newest step in the smoothed duration of a step. Repairs of other roles
+  // make steps longer, too, so a shorter step has the larger weight.
   static constexpr int kDown = 2;
   static constexpr int kUp = 64;
 

@@ -1,13 +1,14 @@
-// Whether the numbers of a STATUS can be true: it comes from the network or from a file, and what
-// is summed up or subtracted must not overflow.
+// Whether the numbers of a STATUS can be true. A STATUS comes from the network or from a file, and
+// sums or differences of its numbers must not overflow.
 #pragma once
 
 #include "fogline/status_t.hpp"
 
 namespace fogline {
 
-/// False if a process cannot have counted so far, or a step or time cannot be of a run. Sums of the
-/// counters of many STATUS messages, and differences of their times, do not overflow otherwise.
+/// False if a counter is higher than any process can count, or a step or time is outside any run.
+/// If true for many STATUS messages, sums of their counters and differences of their times do not
+/// overflow.
 bool IsPossible(const status_t& status);
 
 }  // namespace fogline

@@ -1,5 +1,5 @@
-// Counter-based random numbers: any number of any step can be drawn alone, in any order, by any
-// process, and comes out the same (Philox4x32-10, Salmon et al. 2011, by Random123).
+// Counter-based random numbers. Any process can draw any number of any step alone and in any order,
+// and gets the same result (Philox4x32-10, Salmon et al. 2011, by Random123).
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace fogline {
 
-/// Who draws. A stream's number is part of its random numbers: never reuse or renumber one.
+/// The user of the random numbers. A stream's number is part of its random numbers: never reuse or
+/// renumber one.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,
@@ -23,7 +24,8 @@ enum class Stream : std::uint32_t {
   kFollowerErrors = 256,  // and the numbers after it: see FollowerErrors()
 };
 
-/// The stream of the errors of one following car, nearest to the host first: each errs for itself.
+/// The stream of the errors of one following car; car 0 is nearest to the host. The cars' errors
+/// are independent.
 constexpr Stream FollowerErrors(std::uint32_t car) {
   return static_cast<Stream>(static_cast<std::uint32_t>(Stream::kFollowerErrors) + car);
 }

@@ -8,11 +8,12 @@
 namespace fogline {
 namespace {
 
-// A tick may be early by what another one was late, which is less than a period; and one that was
-// heard was on its way for a moment.
+// The steps by which the world may be ahead of the estimate: one because a tick may be early by the
+// delay of an earlier one, which is less than a period, and one because a message was on its way
+// for a moment.
 constexpr std::int64_t kSlack = 2;
-// What the runner says of the progress is so old at most: five signs of life of the roles, of which
-// some are lost.
+// The greatest age of the progress that the runner reports: five signs of life of the roles, some
+// of which may be lost.
 constexpr Duration kHearsay = milliseconds(1000);
 
 }  // namespace
@@ -61,7 +62,7 @@ StepRing::Verdict RealtimeRule::Classify(std::size_t input, std::int64_t step, B
   if (ring.Has(step) && std::ranges::equal(ring.Get(step), bytes)) {
     return StepRing::Verdict::kDuplicate;
   }
-  // Of what is read on demand the newest counts, whatever its step.
+  // For an input on demand the newest message counts, whatever its step.
   const bool late = from.on_demand ? step <= ring.newest()
                                    : step < next() - from.lag ||
                                          step <= ring.newest() - kRingSteps || ring.Has(step);
@@ -79,9 +80,10 @@ void RealtimeRule::CountLate(std::size_t input) {
 }
 
 void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
-  NoticeOwnPause(time);  // before anything is judged by a clock that has to stand still for it
+  NoticeOwnPause(time);  // first, because the pause stops the clock that judges inputs
   if (inputs()[input].on_demand) return KnowOf(step);
-  if (tick_input_ < inputs().size()) {  // everybody's steps but the world's begin with the world's
+  // each role but the world has an input that begins its steps
+  if (tick_input_ < inputs().size()) {
     if (!clock_.started()) health_[tick_input_] = InputHealth(limits_, period_, time - paused_);
     Begun(step, time);
   }
@@ -90,9 +92,9 @@ void RealtimeRule::OnInput(std::size_t input, std::int64_t step, TimePoint time)
 
 TimePoint RealtimeRule::Poll(TimePoint now) {
   NoticeOwnPause(std::max(now, Clock::now()));
-  bus().Drain();  // a backlog counts as a whole
+  bus().Drain();  // handles a backlog as a whole
   if (!Running()) return now;
-  now = std::max(now, Clock::now());  // a backlog takes its time
+  now = std::max(now, Clock::now());  // handling a backlog takes time
   const TimePoint health_at = UpdateHealth(now);
   const TimePoint fire_at = Fire(now);
   return wake_ = std::min({now + kHeartbeat, health_at, fire_at});
@@ -102,7 +104,7 @@ void RealtimeRule::NoticeOwnPause(TimePoint now) {
   if (wake_ == TimePoint::max() || now <= wake_) return;
   const Duration late = now - wake_;
   if (late > kGrace * std::chrono::duration<double>(period_)) paused_ += late;
-  wake_ = TimePoint::max();  // once
+  wake_ = TimePoint::max();  // counts each pause once
 }
 
 TimePoint RealtimeRule::Fire(TimePoint now) {
@@ -154,7 +156,7 @@ void RealtimeRule::WriteStatus(TimePoint now) {
     status().input_late.back() += late_[i];
   }
   statistics_.Write(status());
-  // How far the run is, which may be further than the role itself.
+  // How far the run is; the role itself may be behind.
   status().header.utime = std::max<std::int64_t>(0, std::max(newest_, next() - 1)) * step_us_;
   NameCulprit(now);
 }

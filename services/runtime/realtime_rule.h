@@ -1,17 +1,18 @@
-// Real time: the world ticks on the wall clock and waits for nobody, so a role that lacks an input
-// does not ask for it (by the time it came it would be old) but leaves the step out, and counts it,
-// as soon as a newer one is complete. When it was held up itself it computes every step that is
-// complete, in order: a filter needs them all, and so does the log. What comes after its step is
-// over is late: it is counted and never used. An input that is read on demand is neither waited for
-// nor judged.
+// Real time: the world ticks on the wall clock and does not wait for any role. A role that lacks an
+// input does not ask for it, because the input would be too old when it came. As soon as a newer
+// step is complete, the role leaves the incomplete step out and counts it. After a pause of its own
+// a role computes every complete step, in order, because a filter and the log need them all. A
+// message that comes after the end of its step is late: it is counted and never used. A role does
+// not wait for an input on demand and does not judge it.
 //
-// What is of a step that cannot be under way is refused: unless nothing new has been heard for some
-// periods, by what was heard of the steps themselves; else by what the runner says of the progress.
-// So a role that is wrong about how far the run is (it was started in the middle of it, and heard
-// an old message first) is right again soon, and no message alone can make it wrong.
+// A message of a step that cannot be under way is refused. The newest possible step is estimated
+// from the steps that were heard. If nothing new has been heard for some periods, the runner's
+// progress counts, too. So a role that has a wrong idea of the run's progress (it was started in
+// the middle of the run and heard an old message first) soon corrects it, and no single message can
+// make it wrong.
 //
-// It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
-// and how well it keeps its time, and says it at once when that changes.
+// The rule also judges every input by age (input_health.h). STATUS reports the state of each input,
+// the culprit, and how well the role keeps its time. A change of a state is reported at once.
 #pragma once
 
 #include <algorithm>
@@ -46,25 +47,26 @@ class RealtimeRule : public FireRule {
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
   /// The state of an input for an algorithm that computes a step without some of its inputs. The
-  /// world's tick of this very step cannot be lost, however long it was before.
+  /// world's tick of this step counts as OK if it is there, however long it was silent before.
   InputState StateFor(std::size_t input, std::int64_t step) const {
     return input == tick_input_ && inputs()[input].ring.Has(step) ? InputState::kOk
                                                                   : StateOf(input);
   }
 
  protected:
-  /// Computes the steps whose time has come, if any. @return when to be called again at the latest
+  /// Computes the steps that are due, if any. @return the latest time for the next call
   virtual TimePoint Fire(TimePoint now);
 
-  /// The first step up to `newest` that may be computed still.
+  /// The first step up to `newest` that may still be computed.
   std::int64_t Oldest(std::int64_t newest) const {
     return std::max(next(), newest - kRingSteps + 1);
   }
-  /// Computes a step that was due then; steps between the last one and it are missed.
+  /// Computes a step that was due at `due`. Steps between the last one and this one are counted as
+  /// missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
-  /// The inputs that a step is made of; what is read on demand stands behind them.
+  /// The inputs that a step needs. The inputs on demand stand behind them in inputs().
   std::span<const Input> awaited() const { return std::span(inputs()).first(health_.size()); }
-  /// Something of the input has come lately, in time or too late to be used.
+  /// Whether a message of the input has come lately, in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const {
     return now - std::max(late_at_[input], inputs()[input].heard) <= kSpeaks * period_;
   }
@@ -74,7 +76,7 @@ class RealtimeRule : public FireRule {
   std::int64_t newest() const { return newest_; }
   /// Newest step that can be under way.
   std::int64_t NewestPossible(TimePoint now) const;
-  /// This step is under way: as the runner says, or as a message of it tells just now.
+  /// This step is under way, by the runner's word or by a message of the step.
   void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
   void Begun(std::int64_t step, TimePoint now);
   RealtimeStatistics& statistics() { return statistics_; }
@@ -82,43 +84,44 @@ class RealtimeRule : public FireRule {
   std::size_t tick_input() const { return tick_input_; }
 
  private:
-  /// Periods between two steps of an input that comes again; an input that is lost by default has
-  /// been silent for longer.
+  /// The longest interval, in periods, between two steps of an input that comes again. An input
+  /// that is lost has by default been silent for longer.
   static constexpr int kSpeaks = 2;
-  /// Periods without a newer step after which the runner knows better how far the run is.
+  /// After this many periods without a newer step, the runner's progress counts, too.
   static constexpr int kUnheard = 3;
 
-  /// A message that is too late to be used.
+  /// Counts a message that is too late to be used.
   void CountLate(std::size_t input);
-  /// Takes the time into account. @return when that may change a state
+  /// Takes the time into account. @return when the passage of time may next change a state
   TimePoint UpdateHealth(TimePoint now);
-  /// The world's ticks are judged on the wall clock without this process's own pauses, in which it
-  /// could not hear them; everything else on the clock of the run.
+  /// The clock that judges an input. The world's ticks are judged on the wall clock without this
+  /// process's own pauses, in which it could not hear them. All other inputs are judged on the
+  /// clock of the run.
   TimePoint ClockOf(std::size_t input, TimePoint now) const {
     return input == tick_input_ && clock_.started() ? now - paused_ : clock_.At(now);
   }
-  /// Notices that it was called much later than it had asked for.
+  /// Notices a pause of this process: a call that comes much later than it was asked for.
   void NoticeOwnPause(TimePoint now);
   void NameCulprit(TimePoint now);
 
-  /// Part of a period by which a call may be late: as the world's ticks (RunClock).
+  /// The part of a period by which a call may be late, as for the world's ticks (RunClock).
   static constexpr double kGrace = 0.25;
 
   Duration period_;
-  TimePoint wake_ = TimePoint::max();  // when the next call was asked for, at the latest
-  Duration paused_{};                  // of this process, in all
+  TimePoint wake_ = TimePoint::max();  // the latest time for which the next call was asked
+  Duration paused_{};                  // sum of this process's pauses
   std::int64_t step_us_;
   HealthSection limits_;
   RunClock clock_;
-  StepHorizon heard_;  // by what was heard of the steps
-  StepHorizon told_;   // by what the runner says
+  StepHorizon heard_;  // by the steps that were heard
+  StepHorizon told_;   // by the runner's progress
   std::size_t tick_input_;
-  std::vector<InputHealth> health_;  // of the awaited inputs
+  std::vector<InputHealth> health_;  // one for each awaited input
   std::vector<std::int64_t> late_;
-  std::vector<TimePoint> late_at_;  // the last one
+  std::vector<TimePoint> late_at_;  // when the last late message came
   RealtimeStatistics statistics_;
   std::int64_t newest_ = -1;
-  std::string fallback_;  // as last published
+  std::string fallback_;  // in the last STATUS
 };
 
 }  // namespace fogline

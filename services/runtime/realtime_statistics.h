@@ -1,4 +1,4 @@
-// How well a role keeps its time in a run in real time, and how that stands in STATUS.
+// How well a role keeps its time in a run in real time, and how STATUS reports it.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@ namespace fogline {
 
 class status_t;
 
-/// A tick is the moment at which a step is to be computed: the period's beginning at the world, an
-/// input's arrival elsewhere. Latency goes from sensor to command: from when the world has sent a
-/// step's TRUTH to when that step's HOST_COMMAND is back there, on one clock, so that no two hosts'
-/// clocks are compared.
+/// A tick is the moment at which a step is due: the beginning of a period at the world, the arrival
+/// of an input at another role. Latency goes from sensor to command: from when the world has sent a
+/// step's TRUTH to when that step's HOST_COMMAND is back at the world. Both times are on the
+/// world's clock, so no clocks of two hosts are compared.
 class RealtimeStatistics {
  public:
-  /// Later than this is counted as late.
+  /// A tick that is later than this counts as late.
   static constexpr Duration kLate = milliseconds(5);
 
-  /// A tick that was due then and happened now.
+  /// A tick that was due at `due` happened at `now`.
   void Tick(TimePoint due, TimePoint now);
-  /// A step's command came back after so long.
+  /// The command of a step came back after this time.
   void Latency(Duration duration) { latency_.Add(duration); }
-  /// A step had to go without an input that should have been there.
+  /// A step lacked an input that was due.
   void Miss() { ++deadline_misses_; }
 
   std::int64_t ticks() const { return jitter_.count(); }
   std::int64_t ticks_late() const { return ticks_late_; }
   std::int64_t deadline_misses() const { return deadline_misses_; }
-  /// How far from its due time a tick was, either way.
+  /// The time between a tick and its due time, early or late.
   const DurationHistogram& jitter() const { return jitter_; }
   const DurationHistogram& latency() const { return latency_; }
 
@@ -45,9 +45,9 @@ class RealtimeStatistics {
   std::int64_t deadline_misses_ = 0;
 };
 
-/// Takes the inputs out of a STATUS, before they are written anew.
+/// Removes the inputs from a STATUS, before they are written again.
 void ClearInputs(status_t& status);
-/// Adds an input.
+/// Adds an input to a STATUS.
 void WriteInput(std::string_view channel, const InputHealth& health, TimePoint now,
                 status_t& status);
 

@@ -1,5 +1,5 @@
-// The kinds of messages that are refused, and how to tell. Each is counted in STATUS by whoever
-// refused it.
+// The kinds of messages that are refused, and their names. The process that refuses a message
+// counts it in its STATUS.
 #pragma once
 
 #include <array>
@@ -26,10 +26,11 @@ inline constexpr std::array kRefusals{
     RefusalKind{"badly_signed", &status_t::badly_signed, "with a wrong signature"},
 };
 
-/// Where a refusal is counted; nullptr stands for none.
+/// The counter of a kind of refusal; nullptr means that nothing is refused.
 using RefusalCounter = std::int64_t status_t::*;
 
-/// Decodes a message; says why it is to be refused, whatever run and step it is of.
+/// Decodes a message.
+/// @return why it is to be refused, whatever its run and step; nullptr if it is sound
 template <class M>
 [[nodiscard]] RefusalCounter Examine(Bytes bytes, M& message) {
   if (bytes.size() < kHeaderEnd) return &status_t::malformed;

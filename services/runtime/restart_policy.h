@@ -1,5 +1,5 @@
-// When a role that has died is started again: soon, ever later while that does not help, and at
-// most so many times in a run.
+// When a role that has died is started again: soon, later and later while restarts do not help, and
+// at most a limited number of times in a run.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace fogline {
 
 class RestartPolicy {
  public:
-  /// How long to wait before a restart: this long, twice as long each time, at most so long (the
-  /// figures of procman, LCM's process manager).
+  /// The shortest and the longest wait before a restart. The wait doubles with each restart that
+  /// does not help (the figures of procman, LCM's process manager).
   static constexpr Duration kShortest = milliseconds(10);
   static constexpr Duration kLongest = milliseconds(1000);
 
@@ -20,7 +20,7 @@ class RestartPolicy {
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
   /// The role has died when the run was at this step.
-  /// @return how long to wait before it is started again; nothing if it is not
+  /// @return how long to wait before it is started again; nullopt if it is not started again
   std::optional<Duration> OnDeath(std::int64_t step) {
     if (restarts_ >= limit_) return std::nullopt;
     const bool helped = restarts_ == 0 || step > step_;
@@ -30,8 +30,9 @@ class RestartPolicy {
     return wait_;
   }
 
-  /// It could not be started. @return how long to wait before the next try, which is no restart
-  /// more: that ends with the run's stall timeout
+  /// It could not be started. A try does not count as a restart; the run's stall timeout ends the
+  /// tries.
+  /// @return how long to wait before the next try
   Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
 
   int restarts() const { return restarts_; }

@@ -1,5 +1,6 @@
-// Where a role looks for a run when it was told neither a network nor a run: at the meeting address
-// (lcm_url.h), and at the network of each run that is announced there and waits for the role.
+// Where a role looks for a run if it was given neither a network nor a run. It looks at the meeting
+// address (lcm_url.h), and at the network of each run that is announced there and waits for the
+// role.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +18,28 @@ class RunSeeker {
   /// @throws InputError as Bus()
   RunSeeker(Role role, const std::string& meeting_url) : role_(role), listener_(meeting_url) {}
 
-  /// To be called while the role has no run. @return the run to go to now, if there is one: the
-  ///     newest that waits for this role and was not tried in vain
+  /// Call it while the role has no run.
+  /// @return the run to join now: the newest that waits for this role and was not tried in vain;
+  ///     nullopt if there is none
   std::optional<Announcement> Look(TimePoint now);
 
   /// Whether the role is at the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// True once the run is over, or nothing was heard of it for kPatience. The role then goes back
-  /// to the meeting address.
+  /// Whether the run is over, or nothing was heard of it for kPatience. The role then goes back to
+  /// the meeting address.
   bool InVain(TimePoint now);
-  /// The run that was gone to last is not tried again.
+  /// The role leaves the run that it tries, and does not try it again.
   void GiveUp();
-  /// This run is not to be tried (again).
+  /// The role will not try this run (again).
   void Ignore(std::int64_t run_id);
-  /// The role is at the network of this run, and has no part in it any more.
+  /// The role is at the network of this run but has no part in the run.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
-  // A runner that waits speaks 20 times a second; what a busy machine or a bad network holds back
-  // takes less.
+  // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
+  // by less than this.
   static constexpr Duration kPatience = milliseconds(5000);
-  // Invented runs fill no memory.
+  // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;
 
   struct Try {

@@ -1,5 +1,5 @@
-// What a role knows of its runner: whether it is there, how long to wait for it, and whether it has
-// a place for the role.
+// What a role knows of its runner: whether the runner is there, how long to wait for it, and
+// whether its run has a place for the role.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@ namespace fogline {
 
 /// Whether a run has a place for a role that is started elsewhere.
 enum class Seat {
-  kNone,   ///< it starts that role itself
-  kFree,   ///< it waits for it
-  kOurs,   ///< this process has it
-  kTaken,  ///< another process has it
+  kNone,   ///< the runner starts that role itself
+  kFree,   ///< the run waits for the role
+  kOurs,   ///< this process has the place
+  kTaken,  ///< another process has the place
 };
 
 inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instance) {
@@ -28,20 +28,20 @@ inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instanc
 
 class RunnerWatch {
  public:
-  /// A runner says something five times a second. After ten times that it did not, a role that
-  /// another run waits for goes there: a runner that is held up is not held up for so long on a
-  /// machine that is fit for it, and one that a person has stopped may come too late.
+  /// A runner speaks five times a second. After this silence (ten missing messages) a role joins
+  /// another run that waits for it. A runner on a fit machine is never held up for so long. A
+  /// runner that a person has stopped may come back too late.
   static constexpr Duration kSilent = milliseconds(2000);
-  /// Without another run a role waits for longer than the runner waits for a step. By then the run
-  /// is lost but for its runner's own pause (Ctrl-Z), which may take so much longer.
+  /// If no other run waits, a role waits this much longer than the runner waits for a step. By then
+  /// the run is lost, unless its runner itself is paused (Ctrl-Z), for which this time is left.
   static constexpr Duration kGone = milliseconds(15'000);
-  /// Of a run whose runner does not say it: the default of `fogline run`.
+  /// The stall limit if the runner does not give one: the default of `fogline run`.
   static constexpr Duration kStallLimit = milliseconds(4000);
 
   explicit RunnerWatch(TimePoint now) : pauses_(now) {}
 
-  /// Notes that the process looks at the clock: before it is asked for how long something lasts.
-  /// @return when it has looked last
+  /// Notes that the process looks at the clock. Call it before a question about a duration.
+  /// @return the time of its latest look
   TimePoint Attend(TimePoint now) { return pauses_.Attend(now); }
   /// The runner has said something new.
   void Heard(const run_t& run, TimePoint now) {
@@ -49,11 +49,11 @@ class RunnerWatch {
     if (run.stall_ms > 0) stall_limit_ = milliseconds(std::min(run.stall_ms, kMax_ms));
     heard_ = now;
   }
-  /// There is no runner any more.
+  /// The role has no runner.
   void Forget() { heard_ = {}; }
 
-  /// For how long it has said nothing, the time in which this process was held up left out. Zero if
-  /// there is none.
+  /// How long the runner has been silent, without the time in which this process was held up. Zero
+  /// if there is no runner.
   Duration Silence(TimePoint now) const {
     return heard_ == TimePoint{} ? Duration::zero() : pauses_.HeldAgainst(heard_, now);
   }

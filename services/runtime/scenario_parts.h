@@ -1,5 +1,5 @@
-// A scenario on its way over LCM: in parts that fit one datagram each, whole again at the other
-// end.
+// A scenario as it travels over LCM: in parts that fit one datagram each. The receiver puts them
+// together.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace fogline {
 /// fields.
 inline constexpr std::size_t kPartBytes = 1000;
 
-/// Simulated seconds per second that a run may have: a step of 0.1 s takes 100 s, or 0.1 ms. What
-/// is computed from it is finite then.
+/// The range of simulated seconds per second that a run may have: a step of 0.1 s takes between 0.1
+/// ms and 100 s. It keeps all times that are computed from the speed finite.
 inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
 inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }
@@ -54,7 +54,8 @@ class ScenarioParts {
   /// The most parts that a sender may announce: 240 MB of text.
   static constexpr std::int32_t kMaxParts = 200'000;
 
-  /// Takes a part of a run_t. @return false if it cannot be, or contradicts an earlier one
+  /// Takes the part in a run_t.
+  /// @return false if the part is impossible or contradicts an earlier one
   [[nodiscard]] bool Add(const run_t& run) {
     if (run.num_parts < 1 || run.num_parts > kMaxParts) return false;
     if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return false;
@@ -76,7 +77,7 @@ class ScenarioParts {
   bool empty() const { return parts_.empty(); }
   bool Complete() const { return !parts_.empty() && missing_ == 0; }
 
-  /// Number of the first part that is missing; 0 when nothing has come yet.
+  /// Number of the first part that is missing; 0 if no part has come yet.
   std::int64_t FirstMissing() const {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (parts_[i].empty()) return static_cast<std::int64_t>(i);
@@ -94,7 +95,7 @@ class ScenarioParts {
     return text;
   }
 
-  /// Whether the text is the one that the sender meant. @pre Complete()
+  /// Whether the text has the hash that the sender gave. @pre Complete()
   bool HashHolds() const { return HashOf(Text()) == hash_; }
 
  private:

@@ -23,7 +23,7 @@ constexpr std::size_t kKeyIdOffset = kSealMagic.size();
 constexpr std::size_t kSenderOffset = kKeyIdOffset + 2;
 constexpr std::size_t kTagOffset = kSenderOffset + 2;
 
-/// The role that a STATUS says that it is from: its first field behind the header, a string as LCM
+/// The role that a STATUS names as its sender: its first field behind the header, a string as LCM
 /// encodes it (int32 length with the final 0, then the characters).
 std::string_view RoleNamedIn(Bytes status) {
   constexpr std::size_t kLengthBytes = 4;
@@ -37,14 +37,14 @@ std::string_view RoleNamedIn(Bytes status) {
   return {reinterpret_cast<const char*>(status.data() + kText), length - 1};
 }
 
-/// Whose message this is if it is what it says; nothing if anybody may send it.
+/// The role that should have sent this message; nullopt if every role may send it.
 std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
   if (channel == ChannelOf<status_t>().name) {
     const std::string_view name = RoleNamedIn(payload);
     for (const RoleInfo& info : kRoles) {
       if (info.name == name) return info.role;
     }
-    return Role::kRunner;  // who sends none
+    return Role::kRunner;  // a STATUS with an unknown role; the runner itself sends no STATUS
   }
   if (channel == ChannelOf<resend_t>().name) return std::nullopt;
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);
@@ -52,7 +52,8 @@ std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
   return found->from;
 }
 
-/// The recorder answers for steps that their producers have forgotten.
+/// Whether a role may send this message. A role may send its own messages. The recorder may also
+/// send steps of other roles, because it answers for steps that their producers have forgotten.
 bool MaySend(Role sender, std::string_view channel, Bytes payload) {
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);
   const bool step = found != kChannels.end() && found->pace == Pace::kStep;
@@ -69,7 +70,7 @@ void StartSodium() {
   if (!started) throw std::runtime_error("libsodium cannot be used here");
 }
 
-/// Bytes that nobody finds in memory afterwards, whatever happens.
+/// Bytes that are wiped from memory in the end, even after an exception.
 template <class T, std::size_t kSize>
 struct Wiped : std::array<T, kSize> {
   Wiped() : std::array<T, kSize>{} {}
@@ -79,10 +80,11 @@ struct Wiped : std::array<T, kSize> {
 };
 
 constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SealKey::Secret>;
-// A key, its line end and one character more: a longer file is none.
+// Room for a key, its line end and one character more. A longer file is no key.
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
-/// How many bytes there are, at most those of `text`. @return -1 and errno if it cannot be read
+/// Reads a file, at most as many bytes as `text` has.
+/// @return the number of bytes; -1 with errno if it cannot be read
 ssize_t ReadAll(int fd, KeyText& text) {
   std::size_t size = 0;
   while (size < text.size()) {
@@ -95,13 +97,14 @@ ssize_t ReadAll(int fd, KeyText& text) {
   return static_cast<ssize_t>(size);
 }
 
-/// Whether a file was opened: not a folder, nor a pipe or device, which has nothing yet or no end.
+/// Whether a regular file was opened. A folder cannot be read, and a pipe or device may have no
+/// data yet or no end.
 bool IsFile(int fd) {
   struct stat info {};
   return fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/// Why an open file is no secret of this user's, "" if it is one.
+/// Why an open file is not a secret of this user; "" if it is one.
 std::string WhyNoSecret(int fd, const std::filesystem::path& file) {
   struct stat info {};
   if (fstat(fd, &info) != 0) return std::strerror(errno);
@@ -143,7 +146,7 @@ SealKey SealKey::Load(const std::filesystem::path& file) {
                    "not a key, which is 64 hexadecimal digits and nothing else; `fogline keygen "
                    "FILE` makes one");
   }
-  // What a script makes that finds no randomness; anybody tries it first.
+  // A script that finds no randomness makes such a key, and an attacker tries it first.
   if (sodium_is_zero(key.secret_.data(), key.secret_.size()) == 1) {
     throw KeyError(file, "a key of zeros keeps nobody out; `fogline keygen FILE` makes one");
   }

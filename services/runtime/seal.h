@@ -1,12 +1,13 @@
-// Signed traffic: a trailer behind the LCM payload proves that the sender has the key. Generated
-// decoders do not look behind a payload, so lcm-spy, lcm-logger and lcm-logplayer go on working.
+// Signed traffic (a message signer): a trailer behind the LCM payload proves that the sender has
+// the key. Generated decoders do not look behind a payload, so lcm-spy, lcm-logger and
+// lcm-logplayer still work.
 //
 //   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
 //
 // The tag is BLAKE2b (RFC 7693) under the key, over the channel's name, a 0, the sender and the
-// payload. The payload's own header has run id and step in it, so a message proves nothing in
-// another run, in another step, on another channel or from another role. One key for all: whoever
-// has it can sign as any role. The key id tells keys apart, it does not protect anything.
+// payload. The payload's own header contains run id and step. So a message is not valid in another
+// run, in another step, on another channel or from another role. All processes share one key: a
+// process that has it can sign as any role. The key id distinguishes keys and protects nothing.
 #pragma once
 
 #include <array>
@@ -33,10 +34,10 @@ class SealKey {
   SealKey(const SealKey&) = default;
   SealKey& operator=(const SealKey&) = default;
 
-  /// @throws InputError when the file cannot be read, holds no key, or is not its user's secret:
-  ///     of somebody else (but root), or open to others
+  /// @throws InputError when the file cannot be read, holds no key, or is not a secret of this
+  ///     user: it belongs to another user (except root), or other users can read or change it
   static SealKey Load(const std::filesystem::path& file);
-  /// Draws a key into a new file that its owner alone can read.
+  /// Writes a random key into a new file that only its owner can read.
   /// @throws InputError when the file exists or cannot be written
   static void Create(const std::filesystem::path& file);
 
@@ -46,12 +47,12 @@ class SealKey {
   Secret secret_;
 };
 
-/// Bytes of the trailer.
+/// Size of the trailer in bytes.
 inline constexpr std::size_t kSealBytes = 24;
 
 inline constexpr std::array<std::uint8_t, 4> kSealMagic{'F', 'L', 'S', '1'};
 
-/// Whether the message ends like a signed one; nothing is verified.
+/// Whether the message ends like a signed one. The signature is not verified.
 inline bool LooksSealed(Bytes message) {
   return message.size() >= kSealBytes && std::memcmp(message.data() + message.size() - kSealBytes,
                                                      kSealMagic.data(), kSealMagic.size()) == 0;
@@ -62,8 +63,8 @@ inline Bytes WithoutSeal(Bytes message) { return message.first(message.size() - 
 /// Signs and verifies for one process.
 class Seal {
  public:
-  /// @param sender this process's role. Without it the process is every role (a run in memory), and
-  ///     each message is signed as from its producer.
+  /// @param sender this process's role; nullopt if the process has every role (a run in memory):
+  ///     then each message is signed as from its producer
   Seal(const SealKey& key, std::optional<Role> sender)
       : key_(key), id_(IdOf(key)), sender_(sender) {}
 
@@ -73,11 +74,11 @@ class Seal {
   enum class Verdict {
     kGood,
     kNotSigned,    // without a trailer
-    kBadlySigned,  // another key, something altered, or a sender that may not publish this
+    kBadlySigned,  // another key, altered bytes, or a sender that may not publish this
   };
   struct Opened {
     Verdict verdict;
-    Bytes payload;  // without the trailer, if the verdict is good
+    Bytes payload;  // without the trailer; empty unless the verdict is good
   };
   Opened Open(std::string_view channel, Bytes message) const;
 
@@ -91,7 +92,7 @@ class Seal {
   SealKey key_;
   KeyId id_;
   std::optional<Role> sender_;
-  std::vector<std::uint8_t> message_;  // signed last
+  std::vector<std::uint8_t> message_;  // the last signed message
 };
 
 }  // namespace fogline

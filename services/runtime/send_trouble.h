@@ -1,5 +1,5 @@
-// Messages that processes of a run could not send: the kernel or a relay would not take them. Each
-// is a loss like one on the network.
+// Messages that processes of a run could not send, because the kernel or a relay refused them. Each
+// counts as lost, like a message that the network loses.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace fogline {
 
-/// Of one process.
+/// The failed sends of one process.
 struct SendTrouble {
   std::string role;
   std::int64_t count = 0;

@@ -23,14 +23,15 @@ namespace {
 
 enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
 
-// In real time the clock of the run comes first, then everybody else, then the rest of the machine.
+// Priorities in real time: the world, which is the clock of the run, goes first, then the other
+// roles, then the rest of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
 
 struct Arguments {
   std::string name;  // of the program
   Role role;
-  std::string url;  // "": as NetworkUrl()
+  std::string url;  // "": NetworkUrl() decides
   std::optional<std::int64_t> run_id;
   double wait_s = 60;
   TrafficOptions traffic;
@@ -40,7 +41,7 @@ struct Arguments {
     app.add_option("--run-id", run_id, "Join only the run with this id");
     app.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
         ->check(CLI::Range(0.0, 1e6))
-        ->check([](const std::string& text) {  // CLI::Range lets it pass
+        ->check([](const std::string& text) {  // CLI::Range accepts NaN
           return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
         })
         ->capture_default_str();
@@ -48,7 +49,7 @@ struct Arguments {
   }
 };
 
-/// The process on its network: a bus, and the role's node on it.
+/// A process on its network: a bus, and the role's node on that bus.
 class Service {
  public:
   /// @throws InputError, std::runtime_error if it cannot join the network
@@ -98,7 +99,7 @@ class Service {
   }
 
   std::string HowToStartOne() const {
-    // The runner itself starts the recorder, and whatever it gives a run's id.
+    // The runner starts the recorder, and every role with a run's id, itself.
     if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
     const std::string url =
         arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);
@@ -116,7 +117,7 @@ class Service {
     }
   }
 
-  /// Goes where a run waits for the role, and back if it does not.
+  /// Goes to the network of a run that waits for the role. Goes back if nothing is heard there.
   /// @throws std::runtime_error after --wait
   void Seek(TimePoint now) {
     if (arguments_.wait_s > 0 &&
@@ -136,13 +137,13 @@ class Service {
     Say("joins " + run.Text());
     try {
       Join(run.url, std::nullopt);
-    } catch (const std::exception& error) {  // the address came from the network
+    } catch (const std::exception& error) {  // the address came from the network and may be wrong
       GoBack(error.what());
     }
   }
 
-  /// The runner is silent. If another run waits for the role, it goes there. (What is said on the
-  /// network where it is, its node hears.)
+  /// Called while the runner is silent. If another run waits for the role, the process goes there.
+  /// (The node itself hears runs on its present network.)
   void SeekAnother(TimePoint now) {
     if (!arguments_.url.empty() || arguments_.run_id) return;
     if (!seeker_) {
@@ -156,7 +157,7 @@ class Service {
     GoTo(*run);
   }
 
-  /// The node has given up its place. It waits for a run where it is.
+  /// The node has given up its place. The process waits for a run on the same network.
   void StartOver(TimePoint now) {
     Say(node_->error());
     began_ = now;
@@ -182,13 +183,13 @@ class Service {
 
   void PreferIfRealtime() {
     if (!node_->realtime() || std::exchange(preferred_, true)) return;
-    // If it is not granted, the process keeps time as well as the machine lets it.
+    // If the kernel does not grant it, the process keeps time as well as the machine allows.
     RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
   }
 
   const Arguments& arguments_;
   const NodeFactory& make_;
-  TimePoint began_;  // to wait for a run
+  TimePoint began_;  // when the wait for a run began
   OwnPauses pauses_;
   std::optional<Bus> bus_;
   std::unique_ptr<Node> node_;

@@ -1,6 +1,6 @@
-// Whether a process that is not heard of is silent, or the network loses what it says. All speak in
-// the same rhythm over the same network, so how much of the others is heard tells how likely it is
-// that nothing of this one came through.
+// Whether a process that is not heard is silent, or the network loses its messages. All processes
+// speak in the same rhythm over the same network. So the share of the others' messages that arrives
+// gives the probability that no message of this one arrived.
 #pragma once
 
 #include <algorithm>
@@ -15,23 +15,23 @@ namespace fogline {
 
 class SignsOfLife {
  public:
-  /// @param every how often each process says something, at least
+  /// @param every the longest interval between two messages of a living process
   explicit SignsOfLife(Duration every) : every_(every) {}
 
-  /// A role has said something; so many messages of it before that were not heard.
+  /// A message of a role has come. @param lost how many messages of the role before it were lost
   void Heard(Role role, std::int64_t lost, TimePoint now) {
     ++heard_;
     lost_ += std::max<std::int64_t>(0, lost);
     Since(role, now);
   }
-  /// The role can be heard from now on.
+  /// The role can be heard from `now` on.
   void Since(Role role, TimePoint now) {
     since_[static_cast<std::size_t>(role)] = {.time = now, .heard = heard_, .lost = lost_};
   }
 
-  /// How likely it is that the role has spoken all the time in which it was not heard, such as that
-  /// it is alive: 1 if nobody was heard.
-  /// @param silence time since the last word in which it could have been heard
+  /// The probability that the network lost all messages of a living role in the time in which it
+  /// was not heard; 1 if no other role was heard since.
+  /// @param silence time since its last message in which it could have been heard
   double ChanceOfLife(Role role, Duration silence) const {
     const Mark& last = since_[static_cast<std::size_t>(role)];
     const auto others =
@@ -40,14 +40,15 @@ class SignsOfLife {
     const double signs = Seconds(silence) / Seconds(every_);
     const auto heard = static_cast<double>(heard_ - last.heard);
     const auto lost = static_cast<double>(lost_ - last.lost);
-    // Of what was said at least, and of what is known to have been said.
+    // The share of lost messages: the larger of two estimates, by the number that the others must
+    // have sent at least, and by the number that is known to be lost.
     const double share_lost =
         std::max(1 - heard / (static_cast<double>(others) * signs), lost / (heard + lost));
     return std::pow(std::clamp(share_lost, 0.0, 1.0), signs);
   }
 
  private:
-  /// When a role was heard last, and how much had been heard and lost by then.
+  /// When a role was last heard, and how many messages had been heard and lost by then.
   struct Mark {
     TimePoint time{};
     std::int64_t heard = 0;

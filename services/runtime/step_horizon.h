@@ -1,11 +1,11 @@
-// How far a run in real time can be, by the reader's own clock: what is of a later step is from the
-// future, and whoever claims it is wrong.
+// The newest step that a run in real time can have reached, by the reader's own clock. A message of
+// a later step must be wrong.
 //
-// The world never runs faster than its clock, so each proof that it had begun a step by some time
-// bounds all later times. A proof that comes late (a TRUTH that was lost and sent again) bounds too
-// low, so the loosest one counts: that of the message that was on its way for the shortest time. A
-// world that stands still makes it only looser, and of two clocks that drift apart the newer
-// proofs know better, so old ones are forgotten.
+// The world never runs faster than its clock. So each message that proves that the world had begun
+// a step by some time gives an upper bound for all later times. A proof that comes late (a TRUTH
+// that was lost and sent again) gives a bound that is too low, so the loosest bound counts: that of
+// the message that was on its way for the shortest time. If the world stands still, the bound only
+// becomes looser. If two clocks drift apart, newer proofs are better, so old ones are forgotten.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace fogline {
 class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param slack steps by which the world can be further than the best proof says
+  /// @param slack steps by which the world can be ahead of the best proof
   StepHorizon(Duration period, std::int64_t slack) : period_(period), slack_(slack) {}
 
-  /// The world had begun this step by then.
+  /// The world had begun `step` by `now`.
   void Heard(std::int64_t step, TimePoint now) {
     const Proof proof{.step = step, .time = now};
     if (num_recent_ == kRemembered) {
@@ -39,8 +39,8 @@ class StepHorizon {
     return loosest_.step + (now - loosest_.time) / period_ + slack_;
   }
 
-  /// So many proofs are remembered at least, twice as many at most: many more than can come late in
-  /// a row, which are those of the steps that somebody asks for again.
+  /// At least this many proofs are remembered, and at most twice as many. That is many more than
+  /// can come late in a row (late proofs are those of steps that a node asked for again).
   static constexpr int kRemembered = 256;
 
  private:
@@ -49,7 +49,7 @@ class StepHorizon {
     TimePoint time{};
   };
 
-  /// Whether the newer of two proofs allows as much as the older one.
+  /// Whether the newer of two proofs gives a bound that is at least as loose as that of the older.
   bool Allows(const Proof& newer, const Proof& older) const {
     const double periods = static_cast<double>((newer.time - older.time).count()) /
                            static_cast<double>(period_.count());
@@ -60,7 +60,7 @@ class StepHorizon {
   std::int64_t slack_;
   bool known_ = false;
   Proof loosest_;
-  Proof recent_;  // loosest of the last ones
+  Proof recent_;  // loosest of the last num_recent_ proofs
   int num_recent_ = 0;
 };
 

@@ -1,8 +1,9 @@
-// An algorithm as a node: its typed inputs and outputs around the bytes of Node.
+// An algorithm as a node: it connects the typed inputs and outputs of the algorithm with the bytes
+// of Node.
 //
-// Two roles go on in real time when inputs fail, and have an algorithm for that, Failsafe, which
-// takes each input as a Heard<M>: the role that begins the steps (the world) and one that decides
-// in every step (the arbitrator). The others leave out a step that lacks an input.
+// Two roles go on in real time when inputs fail: the role that begins the steps (the world) and one
+// that decides in every step (the arbitrator). They have an algorithm for that, Failsafe, which
+// takes each input as a Heard<M>. The other roles leave out a step that lacks an input.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +25,8 @@
 
 namespace fogline {
 
-/// @tparam Failsafe what stands in for the algorithm in real time; void: the algorithm itself
+/// @tparam Failsafe the algorithm that replaces Algorithm in real time; void: Algorithm also runs
+///     in real time
 template <class Algorithm, class Failsafe = void>
 class StepNode final : public Node {
  public:
@@ -122,7 +124,7 @@ class StepNode final : public Node {
     return algorithm_->Step(std::get<I>(rings_)[RingSlot(step - kLag<I>)]...);
   }
 
-  /// Before each step of an algorithm that hears in this scenario.
+  /// Passes the input on demand to the algorithm before each step, if the scenario demands it.
   template <class A>
   void Hear(A& algorithm, std::int64_t step) {
     if constexpr (Traits::kHears) {
@@ -134,8 +136,8 @@ class StepNode final : public Node {
     }
   }
 
-  /// The newest message of an input that is not newer than a step; nullptr if none has come. In
-  /// lockstep that is the step's.
+  /// The newest message of an input that is not newer than `step`; nullptr if none has come. In
+  /// lockstep it is the message of `step`.
   template <std::size_t I>
   const std::tuple_element_t<I, AllInputs>* NewestOf(std::int64_t step) {
     const StepRing& ring = InputOf<I>().ring;
@@ -151,7 +153,7 @@ class StepNode final : public Node {
                               &Input::channel);
   }
 
-  // ---- real time, with what there is ------------------------------------------------------------
+  // ---- real time, with the inputs that are there ------------------------------------------------
 
   void ComputeFailsafe(std::int64_t step) {
     if constexpr (Traits::kStarts) {
@@ -185,11 +187,11 @@ class StepNode final : public Node {
     return {.state = rule.StateFor(place, step), .newest = newest};
   }
 
-  /// That of the input which brings the step.
+  /// The header of the first input, which brings the step.
   header_t HeaderOf(std::int64_t step) { return std::get<0>(rings_)[RingSlot(step)].header; }
 
-  /// Takes over from a world that was killed. What is known to be under way since the last step
-  /// that is recorded is computed again, so that no step is there twice.
+  /// Takes over from a world that was killed. It computes the steps after the last recorded one up
+  /// to the known progress again without publishing them, so that no step is published twice.
   void Resume(const truth_t& truth) {
     if constexpr (kFailsafe && Traits::kStarts) {
       failsafe_->Resume(truth, minimal_risk());
@@ -233,11 +235,11 @@ class StepNode final : public Node {
   }
 
   std::unique_ptr<Algorithm> algorithm_;
-  std::unique_ptr<InRealtime> failsafe_;  // in real time, if there is one
+  std::unique_ptr<InRealtime> failsafe_;  // in real time, if Failsafe is not void
   InputRings rings_;
-  bool hears_ = false;  // in this scenario
+  bool hears_ = false;  // whether the input on demand is read in this scenario
   std::vector<std::uint8_t> encoded_;
-  std::optional<LeadGate> gate_;  // of the role that begins the steps
+  std::optional<LeadGate> gate_;  // only for the role that begins the steps
 };
 
 }  // namespace fogline

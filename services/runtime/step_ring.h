@@ -10,14 +10,14 @@
 
 namespace fogline {
 
-/// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder,
-/// so whatever somebody may still ask for is in the ring of its producer; what is older than
-/// kRingSteps is on disk, and the recorder answers for it.
+/// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder.
+/// So a step that a role may still ask for is in the ring of its producer, or it is older than
+/// kRingSteps. Then it is on disk, and the recorder answers for it.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "there would be steps that nobody answers for");
 
-/// Far beyond any run; no arithmetic on steps up to here overflows.
+/// Far beyond any run. Arithmetic on steps up to here does not overflow.
 inline constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 
 /// Steps `first` to `first + count - 1`.
@@ -26,26 +26,27 @@ struct StepRange {
   std::int64_t count;
 };
 
-/// Where a step lies in any ring.
+/// The slot of a step in any ring.
 inline constexpr std::size_t RingSlot(std::int64_t step) {
   return static_cast<std::size_t>(step % kRingSteps);
 }
 
-/// Ring of messages. Buffers are reused: no allocation once they have grown.
+/// Ring of messages. Buffers are reused: once they have grown, nothing is allocated.
 class StepRing {
  public:
   /// What to do with a message that arrives.
   enum class Verdict {
-    kNew,          // Store() it
-    kDuplicate,    // known already, or so old that nobody needs it
-    kConflict,     // the same step with other bytes: two producers, or a producer that is not a
-                   // function
-    kOutOfWindow,  // so far ahead that it cannot belong to a run in step
+    kNew,        // Store() it
+    kDuplicate,  // known already, or so old that it is not needed
+    // The same step with other bytes: two producers, or a producer whose output is not a function
+    // of its inputs.
+    kConflict,
+    kOutOfWindow,  // so far ahead that it cannot belong to a run in lockstep
     kElsewhere,    // of no use here, but known to be under way
-    kLate,         // came when its step was over
+    kLate,         // came after the end of its step
   };
 
-  /// @param needed the next step that the reader of this ring works on
+  /// @param needed the next step that the reader of this ring needs
   Verdict Classify(std::int64_t step, Bytes bytes, std::int64_t needed) const {
     const Slot& slot = slots_[RingSlot(step)];
     if (slot.step == step) {

@@ -11,10 +11,10 @@
 namespace fogline {
 namespace {
 
-// Of a host name (POSIX HOST_NAME_MAX on Linux).
+// The longest host name (POSIX HOST_NAME_MAX on Linux).
 constexpr std::size_t kMaxHost = 64;
 
-/// A host's name from the network, as it may be printed.
+/// A host's name from the network, made safe to print.
 std::string HostName(const std::string& name) { return Printable(name.substr(0, kMaxHost)); }
 
 }  // namespace
@@ -35,7 +35,8 @@ void Strangers::Hear(const status_t& status) {
     return;
   }
   if (watched_.size() == kMaxWatched) {
-    watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));  // the oldest of them
+    // The oldest of those that were heard least.
+    watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));
     forgotten_ = true;
   }
   watched_.push_back({.stranger = {.role = status.role,

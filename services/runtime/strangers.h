@@ -1,5 +1,6 @@
-// Processes that speak on a run's network without being of it: roles of another run there, or left
-// over from an earlier one. What they send is refused; this is to know who they are.
+// Processes that speak on a run's network but are not part of the run (foreign peers): roles of
+// another run there, or left over from an earlier one. Their messages are refused. This class only
+// records which processes they are.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +21,25 @@ struct Stranger {
 /// "fusion (pid 4711 on lab2) of run 123"
 std::string Describe(const Stranger& stranger);
 
-/// Those that were heard most often. Whoever floods the network with names fills no memory, and
-/// hides nobody who goes on speaking: a name that was heard once makes room before one that was
-/// heard again.
+/// The foreign processes that were heard most often. A flood of invented names does not fill the
+/// memory. It does not hide a process that continues to speak either: a name that was heard once is
+/// forgotten before one that was heard again.
 class Strangers {
  public:
-  /// So many are told of.
+  /// The most processes that are reported.
   static constexpr std::size_t kMax = 32;
-  /// So many are watched. A role says its STATUS ten times a second, so it is heard again before it
-  /// is forgotten unless others invent more than 10,000 names a second.
+  /// The most processes that are watched. A role sends a STATUS at least five times a second. So it
+  /// is heard again before it is forgotten, unless others invent more than 5,000 names a second.
   static constexpr std::size_t kMaxWatched = 1024;
 
-  /// Takes note of a STATUS of another run. Names that are no role's are nobody's; host names are
-  /// cut to what may stand in a terminal.
+  /// Takes note of a STATUS of another run. A STATUS whose role does not exist is ignored. Host
+  /// names are shortened and made safe to print.
   void Hear(const status_t& status);
 
-  /// At most kMax, in the order in which they were heard first.
+  /// The most heard ones, at most kMax, in the order in which they were first heard.
   std::vector<Stranger> known() const;
-  /// One line each, "ignored: ...", and one more if there were more than kMax. Empty without any.
+  /// One line each, "ignored: ...", and one more if there were more than kMax; "" if there are
+  /// none.
   std::string Text() const;
 
  private:
@@ -45,7 +47,7 @@ class Strangers {
     Stranger stranger;
     std::int64_t heard;
   };
-  std::vector<Watched> watched_;  // in the order in which they were heard first
+  std::vector<Watched> watched_;  // in the order in which they were first heard
   bool forgotten_ = false;
 };
 

@@ -21,19 +21,20 @@
 namespace fogline::tcpq {
 namespace {
 
-// How long a relay may take to answer, and to take at least a byte of what it is sent.
+// How long a relay may take to answer, and how long it may accept no byte.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
-// The same for one that was there and is to come back. Meanwhile a process does nothing else.
+// kAnswerLimit for a relay that the client connects to again. The process does nothing else
+// meanwhile.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 constexpr std::size_t kReadBytes = 64 << 10;
-// What is kept of what the relay sends while it takes nothing.
+// The most bytes from the relay that are kept while the relay takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;
-// Who publishes so much without a look at what has come takes that look: a relay disconnects those
+// After publishing this many bytes without reading, the client reads: a relay disconnects clients
 // that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
-/// Waits for a socket, or without one (-1) for the time to pass.
+/// Waits for a socket. With -1 in its place it waits until the time has passed.
 bool Poll(int socket, short events, Duration timeout) {
   pollfd waited{.fd = socket, .events = events, .revents = 0};
   const auto left = std::max(Duration::zero(), timeout);
@@ -42,12 +43,13 @@ bool Poll(int socket, short events, Duration timeout) {
   return ppoll(&waited, 1, &limit, nullptr) > 0;
 }
 
-/// A file that is never readable: polled in place of a lost connection, it wakes no program.
+/// A file that is never readable. It replaces a lost connection, so that a poll of it wakes no
+/// program.
 int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
 
 }  // namespace
 
-/// This connection does not work any more.
+/// The connection is lost.
 class Client::Lost : public std::runtime_error {
  public:
   Lost(const Endpoint& relay, std::string_view why)
@@ -78,7 +80,7 @@ int Client::Connect(Duration limit) const {
     ThrowIfExhausted(errno, endpoint_.ToString());
     throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
   }
-  const int on = 1;  // a message is a packet at once, not when the one before is acknowledged
+  const int on = 1;  // sends each message at once, not after the previous packet is acknowledged
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -139,7 +141,7 @@ void Client::SubscribeAll(Watcher watcher) {
 
 void Client::Subscribe(std::string_view pattern) {
   patterns_.emplace_back(pattern);
-  if (lost_) return;  // it is told when it is back
+  if (lost_) return;  // Greet() subscribes when the relay is back
   frame_.clear();
   AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
   try {
@@ -220,7 +222,7 @@ bool Client::Parse() {
 
 void Client::Handle() {
   if (!Parse()) return;
-  const Frame frame = *next_;  // its bytes stay until Readable() appends others
+  const Frame frame = *next_;  // its bytes stay valid until Readable() appends others
   next_.reset();
   for (const auto& [channel, handler] : handlers_) {
     if (channel == frame.name) handler(frame.payload);
@@ -265,7 +267,7 @@ bool Client::ConnectAgain(Duration timeout) {
   try {
     BeReplacedBy(Connect(kSecondAnswerLimit));
     Greet(kSecondAnswerLimit);
-  } catch (const std::runtime_error&) {  // not yet
+  } catch (const std::runtime_error&) {  // the relay is not back yet
     BeReplacedBy(QuietFile());
     return false;
   }

@@ -26,10 +26,11 @@ inline constexpr std::uint32_t kVersion = 0x0100;
 
 enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscribe = 3 };
 
-/// What a frame may hold at most, in bytes. What is longer is refused before it is read.
+/// The largest parts of a frame, in bytes. A longer part is refused before it is read.
 struct Limits {
-  std::size_t channel = 63;   // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
-  std::size_t pattern = 256;  // of a subscription: what it may cost to match grows with its square
+  std::size_t channel = 63;  // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
+  // Of a subscription: the cost of a match grows with the square of its length.
+  std::size_t pattern = 256;
   std::size_t payload = 4 << 20;
 };
 
@@ -37,27 +38,27 @@ struct Limits {
 struct Frame {
   FrameType type;
   std::string_view name;  // channel, or regular expression
-  Bytes payload;          // of PUBLISH
-  Bytes wire;             // the whole frame as it came
+  Bytes payload;          // only of PUBLISH
+  Bytes wire;             // the whole frame as received
 };
 
-/// Cuts a byte stream into frames. Holds no more than one frame and what came in with its end, if
-/// the frames are taken after every Append().
+/// Cuts a byte stream into frames. If the caller takes all frames after every Append(), the parser
+/// holds at most one frame and the bytes that came with its end.
 class FrameParser {
  public:
-  /// @param magic what the other side must begin with
+  /// @param magic the word that the other side must begin with
   FrameParser(std::uint32_t magic, const Limits& limits) : magic_(magic), limits_(limits) {}
 
   /// Adds what was received, in pieces of any size.
   void Append(Bytes bytes);
 
-  /// Whether the other side has said its two first words.
+  /// Whether the other side has sent its first two words.
   bool Greeted();
 
-  /// The next whole frame. Nothing: more bytes are needed, or error() says what is wrong.
+  /// The next whole frame; nullopt if more bytes are needed, or if error() says what is wrong.
   std::optional<Frame> Next();
 
-  /// Why the stream cannot be tcpq, "" as long as it can. There is no way back.
+  /// Why the stream cannot be tcpq; "" while it can. An error is final.
   const std::string& error() const { return error_; }
 
  private:
@@ -67,14 +68,14 @@ class FrameParser {
   std::uint32_t magic_;
   Limits limits_;
   std::vector<std::uint8_t> buffer_;
-  std::size_t begin_ = 0;  // of what is not yet taken
+  std::size_t begin_ = 0;  // of the bytes that are not taken yet
   bool greeted_ = false;
   std::string error_;
 };
 
 /// Adds the first two words of a side.
 void AppendHello(std::uint32_t magic, std::vector<std::uint8_t>& out);
-/// Adds a frame; `payload` counts for PUBLISH only.
+/// Adds a frame. `payload` is used only for PUBLISH.
 void AppendFrame(FrameType type, std::string_view name, Bytes payload,
                  std::vector<std::uint8_t>& out);
 

@@ -26,7 +26,7 @@ std::uint16_t ParsePort(std::string_view text, std::string_view what) {
 }
 
 std::string AddressOf(const std::string& host, std::string_view what) {
-  // This machine always (RFC 6761, section 6.3), also where /etc/hosts does not say so.
+  // "localhost" is always this machine (RFC 6761, section 6.3), even if /etc/hosts does not say so.
   if (host == "localhost") return "127.0.0.1";
   addrinfo hints{};
   hints.ai_family = AF_INET;

@@ -1,5 +1,6 @@
-// Where a tcpq relay is. LCM resolves no host names: its inet_aton() test cannot fail, and a name
-// silently becomes 0.0.0.0, this machine. Names are resolved here, before LCM's programs see them.
+// The address of a tcpq relay. LCM resolves no host names: its inet_aton() test cannot fail, and a
+// name silently becomes 0.0.0.0, this machine. So Fogline resolves names before LCM's programs see
+// them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct Endpoint {
   std::uint16_t port;
 
   std::string ToString() const { return address + ":" + std::to_string(port); }
-  /// As LCM's programs take it.
+  /// The URL in the form that LCM's programs take.
   std::string Url() const { return "tcpq://" + ToString(); }
 };
 

@@ -38,7 +38,8 @@ bool RunBeforeOthers(int priority) {
     const auto thread = static_cast<pid_t>(std::atoi(task.path().filename().c_str()));
     granted = sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0 && granted;
   }
-  // A page that the kernel has taken back comes again from the disk, when that has time.
+  // Locks pages in memory: reading back a page that the kernel has dropped takes as long as the
+  // disk does.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
 }

@@ -1,4 +1,4 @@
-// What a process can say about itself.
+// Facts about this process, and settings for it.
 #pragma once
 
 #include <cstdint>
@@ -7,22 +7,23 @@
 namespace fogline {
 
 struct ProcessUse {
-  std::int64_t cpu_ms;     // of all its threads, since it was started
+  std::int64_t cpu_ms;     // of all its threads, since its start
   std::int64_t rss_bytes;  // resident now
 };
 ProcessUse MeasureThisProcess();
 
 /// Asks the kernel to run every thread of this process before all ordinary ones (SCHED_FIFO), so
-/// that its steps begin on time on a busy machine, too. That takes CAP_SYS_NICE, or RLIMIT_RTPRIO.
-/// @return whether it was granted to all threads
+/// that its steps begin on time on a busy machine, too. It also locks the process's pages in
+/// memory. The first needs CAP_SYS_NICE or RLIMIT_RTPRIO.
+/// @return whether both were granted, the first to all threads
 bool RunBeforeOthers(int priority);
 
-/// A write beyond the limit for the size of files (ulimit -f) fails from now on, in this process
-/// and those that it starts, as one on a full disk does. Without this the kernel kills the process
-/// (SIGXFSZ), which could not say why.
+/// Makes a write beyond the limit for the size of files (ulimit -f) fail like one on a full disk,
+/// in this process and those that it starts. Otherwise the kernel kills the process (SIGXFSZ),
+/// which then cannot say why.
 void FailWritesBeyondTheSizeLimit();
 
-/// Why a write failed, and what to do where the limit for the size of files is the reason.
+/// Why a write failed, and what to do if the limit for the size of files is the reason.
 /// @param error errno
 std::string WhyWriteFailed(int error);
 

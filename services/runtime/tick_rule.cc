@@ -6,19 +6,19 @@
 namespace fogline {
 namespace {
 
-// How long the recorder may take to write the last steps: it waits for repairs, or is itself
-// started again.
+// How long the recorder may take to write the last steps. It may wait for repairs or be started
+// again itself.
 constexpr Duration kEndLimit = milliseconds(3000);
-// A world that is started again asks the recorder this often, and takes the newest answer that has
-// come so long after the first.
+// A world that is started again asks the recorder at this interval. It takes the newest answer that
+// comes within kAnswersLast after the first.
 constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
-// What the runner knows of the progress is so many steps old at most, or it does not matter.
+// A world that is started again asks for steps from this many before the known progress on.
 constexpr std::int64_t kProgressAge = 8;
-// A tick that is so late, in periods, was held up by more than the usual jitter.
+// A tick that is later than this, in periods, was held up by more than the usual jitter.
 constexpr double kHeldUp = 0.05;
-// Then the others get this long at most to finish the step before, several times what they need;
-// and the next tick is so many periods away at least.
+// After such a tick the other roles get at most this long to finish the step before, which is
+// several times what they need. The next tick is at least kApart periods away.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 
@@ -133,10 +133,10 @@ TimePoint TickRule::End(TimePoint now) {
 
 TimePoint TickRule::Resume(TimePoint now) {
   start_ = now;
-  phase_ = Phase::kTicking;  // unless the run is over with it
+  phase_ = Phase::kTicking;  // take_over_ sets another phase if the run ends with this step
   try {
     take_over_(*truth_);
-  } catch (const std::exception&) {  // it is of another road
+  } catch (const std::exception&) {  // the TRUTH is of another road
     ++status().malformed;
     truth_.reset();
     phase_ = Phase::kResuming;
@@ -147,7 +147,7 @@ TimePoint TickRule::Resume(TimePoint now) {
 
 std::int64_t TickRule::FirstAsked() { return std::max<std::int64_t>(0, progress() - kProgressAge); }
 
-// Of this run, and not far from where it is known to be.
+// The TRUTH must be of this run, and near the known progress.
 bool TickRule::CanResume(const truth_t& truth) {
   return truth.header.run_id == status().header.run_id && truth.header.step >= 0 &&
          truth.header.step < std::min(steps_, FirstAsked() + kRingSteps);
@@ -170,7 +170,8 @@ TimePoint TickRule::LookForTruth(TimePoint now) {
     ask_at_ = now + kAskEvery;
     const std::int64_t first = FirstAsked();
     Ask(ChannelOf<truth_t>().name, {.first = first, .count = kRingSteps});
-    for (const Input& input : inputs()) {  // what was commanded then, from who commanded it
+    // Also asks for the commands of these steps, from their producers.
+    for (const Input& input : inputs()) {
       Ask(kChannels[input.channel].name, {.first = first, .count = kRingSteps});
     }
     ++status().repairs_asked;

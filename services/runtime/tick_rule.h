@@ -1,14 +1,14 @@
-// Real time for the role that begins the steps (the world): one step at each tick of the wall
-// clock, whoever has answered.
+// The real-time rule for the role that begins the steps (the world): one step at each tick of the
+// wall clock, even if roles have not answered.
 //
-// Step k is due k periods after the start, on a grid that does not drift. A tick at which the
-// process did not run (it was stopped, or the machine was) is not made up for: of those that are
-// over only the last one is begun. When the machine stood still the step before may not be
-// finished: the others get a moment for it, and the tick after a late one is not close behind it.
-// Simulated time is the number of steps, so it stands still with the world's process, and no step
-// is ever left out; what was missed is counted.
+// Step k is due k periods after the start, on a grid that does not drift. Ticks at which the
+// process did not run (it was stopped, or the machine was) are not made up for: of the ticks that
+// have passed, only the last one begins a step. If the machine stood still, the step before may not
+// be finished: the other roles get a moment for it, and the next tick is not close behind the late
+// one. Simulated time is the number of steps. So it stands still with the world's process, and no
+// step is ever left out. Missed ticks are counted.
 //
-// A world that is started again goes on behind the last TRUTH that the recorder has.
+// A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
 
 #include <array>
@@ -22,7 +22,8 @@ namespace fogline {
 
 class TickRule final : public RealtimeRule {
  public:
-  /// Takes over behind this step, and computes in silence what is known to be under way.
+  /// Takes over after the step of `truth`, and computes the steps that are known to be under way
+  /// without publishing them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 
   TickRule(Node& node, const Scenario& scenario, double speed, LeadGate& gate, TakeOver take_over);
@@ -38,16 +39,16 @@ class TickRule final : public RealtimeRule {
 
   TimePoint Fire(TimePoint now) override;
   TimePoint LookForTruth(TimePoint now);
-  /// Where the steps begin that a world which is started again asks for.
+  /// The first of the steps that a restarted world asks for.
   std::int64_t FirstAsked();
-  /// Whether a TRUTH can be the one to go on from.
+  /// Whether the world can continue after this TRUTH.
   bool CanResume(const truth_t& truth);
   TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
-  /// A step's command has come, in time or not: takes its latency, once.
+  /// A step's command has come, in time or late: takes its latency, once.
   void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
-  /// The step before the next one has its commands, or there is none.
+  /// Whether the commands for the next step are there, or it needs none.
   bool Answered() const;
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
@@ -58,18 +59,19 @@ class TickRule final : public RealtimeRule {
   Phase phase_ = Phase::kWaiting;
 
   TimePoint start_{};
-  std::int64_t tick_ = 0;  // next one on the grid
+  std::int64_t tick_ = 0;  // next tick on the grid
   std::int64_t ticks_missed_ = 0;
-  std::optional<TimePoint> finish_by_{};  // until then a late tick waits for the step before
-  /// A step that is out, until its command has come.
+  // The latest time until which a late tick waits for the step before.
+  std::optional<TimePoint> finish_by_{};
+  /// A published step whose command has not come yet.
   struct Sent {
     std::int64_t step = -1;
     TimePoint time{};
   };
   std::array<Sent, kRingSteps> sent_{};
-  std::optional<TimePoint> give_up_at_{};  // waiting for the recorder at the end
+  std::optional<TimePoint> give_up_at_{};  // end of the wait for the recorder at the end of the run
 
-  std::optional<truth_t> truth_;  // newest one that the recorder has sent
+  std::optional<truth_t> truth_;  // newest TRUTH that has come as an answer
   TimePoint truth_at_{};          // when the first one came
   TimePoint ask_at_{};
   bool subscribed_ = false;

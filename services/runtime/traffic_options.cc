@@ -28,7 +28,8 @@ void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
 
 std::optional<SealKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SealKey::Load(options.key_file);
-  // Whoever sets it to a file that a script has not found does not want to run unsigned.
+  // A user who sets the variable wants signatures. It may be empty because a script has not found
+  // the key's file.
   if (const char* variable = std::getenv(kKeyVariable); variable != nullptr && *variable == '\0') {
     throw InputError(fmt::format(
         "error: {} is empty: name the key's file, or unset it to run unsigned", kKeyVariable));

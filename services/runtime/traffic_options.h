@@ -1,5 +1,5 @@
-// What a user asks of the traffic of a process: a key, faults. The same options for `fogline run`
-// and for every service.
+// The options for a process's traffic: a key, faults. They are the same for `fogline run` and for
+// every service.
 #pragma once
 
 #include <optional>
@@ -16,18 +16,18 @@ namespace fogline {
 
 struct TrafficOptions {
   std::string key_file;  // "": unsigned
-  std::string faults;    // as ParseFaults() takes it; "": none
+  std::string faults;    // text for ParseFaults(); "": none
 };
 
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 
-/// The key, if one was asked for.
-/// @throws InputError when its file is wrong, or FOGLINE_KEY is there and empty
+/// The key; nullopt if the options name none.
+/// @throws InputError when its file is wrong, or FOGLINE_KEY is set but empty
 std::optional<SealKey> KeyOf(const TrafficOptions& options);
 
-/// Gives a bus what was asked for.
-/// @param role of this process; nothing when it is every role
+/// Applies the options to a bus.
+/// @param role of this process; nullopt when the process has every role
 /// @throws InputError when the options, or the key's file, are wrong
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus);
 

@@ -5,8 +5,8 @@
 
 namespace fogline {
 
-/// Version and message types, such as "0.1.0, message types 4fe3a21b90c7d655": what `--version` of
-/// every program prints. Programs that work together have it in common.
+/// Version and message types, such as "0.1.0, message types 4fe3a21b90c7d655". `--version` of every
+/// program prints this text. It is the same for programs that work together.
 std::string VersionText();
 
 }  // namespace fogline

@@ -1,4 +1,5 @@
-// Messages as bytes: encoding, checked decoding, the parts of every message's header.
+// Messages as bytes: encoding, checked decoding, and the parts of the header that every message
+// has.
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@ namespace fogline {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The most that a message may take, so that it travels in one Ethernet frame unfragmented, with
-/// the headers of UDP and LCM, the channel's name and a signature.
+/// The largest message. With the headers of UDP and LCM, the channel's name and a signature it
+/// still fits into one Ethernet frame, so it is not fragmented.
 inline constexpr std::size_t kMaxMessageBytes = 1400;
 
 /// Every message begins with its type's fingerprint (8 bytes) and header_t: run_id, step, utime.
@@ -29,7 +30,7 @@ inline constexpr std::size_t kRunIdOffset = 8;
 inline constexpr std::size_t kStepOffset = 16;
 inline constexpr std::size_t kHeaderEnd = 32;
 
-/// Big-endian integer at an offset; the caller has checked the size.
+/// Big-endian integer at an offset. The caller has checked the size.
 inline std::int64_t ReadInt64(Bytes bytes, std::size_t offset) {
   std::uint64_t value = 0;
   std::memcpy(&value, bytes.data() + offset, sizeof(value));
@@ -46,7 +47,8 @@ inline std::string EncodedText(std::string_view text) {
   return encoded + '\0';
 }
 
-/// The fingerprint that the messages of a channel begin with, by place in kChannels.
+/// The fingerprint with which the messages of a channel begin.
+/// @param channel its place in kChannels
 inline std::int64_t FingerprintOf(std::size_t channel) {
   static const auto fingerprints = std::apply(
       [](const auto&... each) {
@@ -56,8 +58,8 @@ inline std::int64_t FingerprintOf(std::size_t channel) {
   return fingerprints[channel];
 }
 
-// LCM's generated code works byte by byte. Inlined whole (flatten) its offsets are constants, and
-// the compiler makes one load and one swap of each number.
+// LCM's generated code works byte by byte. If all of it is inlined (flatten), its offsets are
+// constants, and the compiler makes one load and one byte swap of each number.
 
 /// Encodes a message into `buffer`, which keeps its capacity.
 template <class M>
@@ -75,7 +77,7 @@ template <class M>
              static_cast<int>(bytes.size());
 }
 
-/// Name of the first field with a value that is not finite, "" if there is none.
+/// Name of the first field with a value that is not finite; "" if there is none.
 template <class M>
 std::string_view FirstNonFiniteField(const M& message) {
   std::string_view found;

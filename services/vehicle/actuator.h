@@ -1,4 +1,4 @@
-// The way from a demanded force to the force: it comes late, and then gradually.
+// Actuator: the force follows the demanded force with a delay and a lag.
 #pragma once
 
 #include <array>
@@ -10,33 +10,33 @@ namespace fogline {
 ///
 ///     tau dF/dt = u(t - D) - F
 ///
-/// solved exactly for a demand u that is constant within a step: D may be any time, not only whole
-/// steps, so the demand that arrives may change once within the step; each piece of length t brings
+/// solved exactly for a demand u that is constant within a step. D may be any time, not only whole
+/// steps, so the demand that arrives may change once within the step. For each piece of length t
 ///
 ///     F(t) = u + (F(0) - u) e^(-t/tau)        integral = u t + (F(0) - u) tau (1 - e^(-t/tau))
 ///
-/// There is no error of discretisation: halving the step changes F by rounding only.
+/// There is no error of discretisation: a smaller step changes F only by rounding.
 class Actuator {
  public:
   /// Longest delay in steps.
   static constexpr std::size_t kMaxDelaySteps = 254;
 
   /// @param delay_s D, at least 0
-  /// @param lag_s tau, at least 0; with 0 the force follows what arrives at once
+  /// @param lag_s tau, at least 0; with 0 the force equals the arriving demand
   /// @throw std::invalid_argument if one is negative, or D is longer than kMaxDelaySteps steps.
   Actuator(double delay_s, double lag_s, double step_s);
 
-  /// As after this demand for a long time.
+  /// Sets the state that this demand leads to after a long time.
   void Settle(double demand_n);
 
-  /// Goes on by one step in which this is demanded. Returns the mean force over the step.
+  /// Advances by one step with this demand. Returns the mean force over the step.
   double Step(double demand_n);
 
   /// F at the end of the last step.
   double force_n() const { return force_n_; }
 
  private:
-  // A part of the step in which what arrives is constant.
+  // A part of the step in which the arriving demand is constant.
   struct Piece {
     double duration_s = 0;
     double decay = 1;     // e^(-t/tau)
@@ -53,7 +53,7 @@ class Actuator {
   Piece older_;                  // while the demand of one step earlier still arrives
   Piece newer_;
   std::array<double, kMaxDelaySteps + 2> demands_n_{};  // a ring
-  std::size_t last_ = 0;                                // where the last demand is
+  std::size_t last_ = 0;                                // index of the last demand
   double force_n_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Hills: how steep the road is, along its length.
+// Hills: the grade of the road along its length.
 #pragma once
 
 #include <memory>
@@ -8,14 +8,15 @@
 
 namespace fogline {
 
-/// The grade between points in proportion, before the first and after the last as there. No points
-/// are a level road. Copies share the points: every car has the road, and none changes it.
+/// The grade between points is interpolated linearly; before the first and after the last point it
+/// is constant. Without points the road is level. Copies share the points, which never change.
 class GradeProfile {
  public:
   GradeProfile() = default;
 
-  /// @throw std::invalid_argument that names the point, as a field of the scenario, if positions do
-  /// not increase or a number is not finite.
+  /// @throw std::invalid_argument if positions do not increase or a number is not finite; its text
+  /// names
+  ///     the point as a field of the scenario
   explicit GradeProfile(std::vector<GradePoint> points);
 
   /// Rise per horizontal length: tan(theta).

@@ -61,8 +61,8 @@ double LongitudinalVehicle::Step(double command_mps2, const Motion& now) {
     return Respond({.traction_n = traction_n_, .brake_n = brake_n_}, SlopeAt(at.position_m),
                    now.speed_mps);
   };
-  // With the limits and the slope of the beginning to the middle of the step, and with those there
-  // through the whole of it.
+  // First uses the limits and the slope at the beginning to find the middle of the step. Then uses
+  // those of the middle for the whole step.
   last_mps2_ = respond(Middle(now, respond(now)));
   return last_mps2_;
 }
@@ -105,7 +105,8 @@ double LongitudinalVehicle::Respond(const Forces& forces, const Slope& slope,
   const double rolling_n = vehicle_.rolling_coefficient * weight_n * slope.cosine;
   const double free_mps2 = MeanAcceleration(forces.traction_n - forces.brake_n - rolling_n - down_n,
                                             effective_mass_kg_, speed_mps);
-  // Tyres that slip, forwards or backwards: the wheels' own inertia is then no matter of the road.
+  // If the tyres slip, the inertia of the wheels has no effect on the car: the mass is m, not
+  // m_eff.
   const double sliding_mps2 = MeanAcceleration(-grip_n - down_n, mass_kg, speed_mps);
   const double spinning_mps2 =
       MeanAcceleration(vehicle_.driven_weight_share * grip_n - down_n, mass_kg, speed_mps);
@@ -115,8 +116,8 @@ double LongitudinalVehicle::Respond(const Forces& forces, const Slope& slope,
 
 double LongitudinalVehicle::MeanAcceleration(double force_n, double mass_kg,
                                              double speed_mps) const {
-  // dv/dt = p - q v^2, of which v(t) = (v + p S) / (1 + q v S) is the solution, with S(t) = t,
-  // tanh(k t)/k or tan(k t)/k for p q = 0, above or below 0, and k^2 = |p q|.
+  // dv/dt = p - q v^2 has the solution v(t) = (v + p S) / (1 + q v S). With k^2 = |p q|, S(t) is t
+  // if p q = 0, tanh(k t)/k if p q > 0, and tan(k t)/k if p q < 0.
   const double p = force_n / mass_kg;
   const double q = drag_nps2pm2_ / mass_kg;
   const double v = speed_mps;

@@ -1,19 +1,19 @@
-// What a car is made of, as far as driving straight ahead goes, for three kinds of car; and how
-// well its tyres hold on a road.
+// Parameters of three kinds of car for driving straight ahead, and the friction of their tyres on
+// different roads.
 #pragma once
 
 #include "scenario/vehicle.h"
 
 namespace fogline {
 
-/// A vehicle on its longitudinal axis. The defaults are the sedan. Where no published figure was at
-/// hand the source says "estimate": a value of the usual size, chosen here.
+/// A vehicle on its longitudinal axis. The defaults are the sedan. If no published figure was
+/// available, the source says "estimate": a usual value of our choice.
 struct VehicleParameters {
   /// m in kg, 500 to 60,000. Sedan: estimate, a mid-size car with its driver.
   double mass_kg = 1500.0;
 
-  /// m_eff / m, 1 to 1.5: what turns with the wheels has to be accelerated as well. Estimate; 1.03
-  /// to 1.1 is usual for cars in the higher gears.
+  /// m_eff / m, 1 to 1.5: rotating parts have to be accelerated as well. Estimate; 1.03 to 1.1 is
+  /// usual for cars in the higher gears.
   double rotating_mass_factor = 1.05;
 
   /// c_d, 0 to 1.5. Sedan: estimate, the middle of 0.28 to 0.32.
@@ -34,34 +34,35 @@ struct VehicleParameters {
   /// Share of the weight on driven wheels, above 0 to 1. Cars: estimate, front drive.
   double driven_weight_share = 0.6;
 
-  /// Strongest force of the brakes per mass in m/s2, above 0. What the tyres hold is the road's.
-  /// Cars: estimate, above what any road allows, so that the tyres are the limit.
+  /// Strongest force of the brakes per mass in m/s2, above 0. The friction of the road is a
+  /// separate limit. Cars: estimate, more than any road allows, so that the tyres are the limit.
   double max_brake_mps2 = 10.5;
 
-  /// From the demand to the first change of traction, s, at least 0. Cars: estimate, of 0.1 to 0.3.
+  /// Time from the demand to the first change of traction, s, at least 0. Cars: estimate, usual are
+  /// 0.1 to 0.3.
   double powertrain_delay_s = 0.2;
 
   /// Time constant of traction, s, at least 0. Takahama & Akasaka 2018, by public ports: 0.460.
   double powertrain_lag_s = 0.46;
 
-  /// From the demand to the first change of braking, s, at least 0. Cars: estimate, of 0.05 to
-  /// 0.15.
+  /// Time from the demand to the first change of braking, s, at least 0. Cars: estimate, usual are
+  /// 0.05 to 0.15.
   double brake_delay_s = 0.1;
 
   /// Time constant of braking, s, at least 0. Takahama & Akasaka 2018, by public ports: 0.193.
   double brake_lag_s = 0.193;
 
-  /// Half the width of the band of demands, as force per m_eff in m/s2, around none at all in which
-  /// the foot does not change pedals. At least 0. Estimate: the whole band 0.1 to 0.2.
+  /// Half the width of the band of demands around 0 in which the foot does not change pedals, as
+  /// force per m_eff in m/s2, at least 0. Estimate: the whole band is 0.1 to 0.2.
   double pedal_dead_band_mps2 = 0.1;
 };
 
 /// The defaults.
 inline constexpr VehicleParameters kSedan{};
 
-/// A light car. m is the BMW 320i's of the CommonRoad vehicle models (vehicle 2), and P what their
-/// acceleration limit comes to above the switching speed: 1093 kg * 11.5 m/s2 * 7.319 m/s = 92 kW.
-/// The rest: estimate.
+/// A light car. m is that of the BMW 320i in the CommonRoad vehicle models (vehicle 2). P follows
+/// from their acceleration limit above the switching speed: 1093 kg * 11.5 m/s2 * 7.319 m/s = 92
+/// kW. The rest: estimate.
 inline constexpr VehicleParameters kCompact{
     .mass_kg = 1093.0,
     .drag_coefficient = 0.31,
@@ -72,8 +73,9 @@ inline constexpr VehicleParameters kCompact{
 
 /// A loaded tractor with semi-trailer. m is the European limit for five axles (Directive 96/53/EC,
 /// 40 t). c_d and A: a tractor of Auburn University's GAVLAB in its published parameter files
-/// (0.79, 7.80 m2); c_r: 0.0098, from that laboratory's Peterbilt trucks. The rest: estimate; the
-/// brakes are above the 5.0 m/s2 that UN R13 asks of heavy trucks, and slow, as compressed air is.
+/// (0.79, 7.80 m2); c_r: 0.0098, from that laboratory's Peterbilt trucks. The rest: estimate. The
+/// brakes are stronger than the 5.0 m/s2 that UN R13 requires of heavy trucks, and slow, because
+/// they use compressed air.
 inline constexpr VehicleParameters kTruck{
     .mass_kg = 40e3,
     .rotating_mass_factor = 1.1,
@@ -90,7 +92,7 @@ inline constexpr VehicleParameters kTruck{
     .brake_lag_s = 0.3,
 };
 
-/// The car of a scenario.
+/// Parameters of a car of the scenario.
 constexpr const VehicleParameters& ParametersOf(CarKind car) {
   switch (car) {
     case CarKind::kCompact:

@@ -1,4 +1,4 @@
-// Which of two pedals a demanded force is given to.
+// Splits a demanded force between two pedals.
 #pragma once
 
 namespace fogline {
@@ -10,11 +10,11 @@ struct PedalDemand {
   double brake_n = 0;     // at least 0
 };
 
-/// One foot: never both pedals. From the throttle it goes to the brake when the force demanded
-/// falls below -band, and back when it rises above band; in between it stays on its pedal, and a
-/// demand that this pedal cannot give is not given: the car coasts. So a demand that trembles
-/// around 0 by less than the band moves the foot at most once. The price is an error of at most the
-/// band, while the demand is within it and on the other side.
+/// One foot uses only one pedal at a time. It goes from the throttle to the brake when the demanded
+/// force falls below -band, and back when the force rises above band. Between these limits it stays
+/// on its pedal. If this pedal cannot give the demanded force, the car coasts. So a demand that
+/// changes sign within the band moves the foot at most once. While the car coasts for this reason,
+/// the force has an error of at most the band.
 class Pedals {
  public:
   /// @param band_n at least 0
@@ -28,7 +28,7 @@ class Pedals {
     return {.brake_n = force_n < 0.0 ? -force_n : 0.0};
   }
 
-  /// The foot is where it is before the first demand: on the throttle.
+  /// Puts the foot on the throttle, its place before the first demand.
   void Release() { pedal_ = Pedal::kThrottle; }
 
   Pedal pedal() const { return pedal_; }

@@ -1,5 +1,5 @@
-// The world in real time: it moves the cars at every tick with the commands that are there. What a
-// car does without one is the vehicle's own fallback (vehicle_fallback.h).
+// The world in real time: it moves the cars at every tick with the commands that are there. A car
+// without a command follows the fallback of vehicle_fallback.h.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ class FailsafeWorld {
   explicit FailsafeWorld(const Scenario& scenario) : world_(scenario), vehicles_(scenario) {}
 
   const Output& Start(std::int64_t run_id) { return world_.Start(run_id); }
-  /// Goes on behind a step that a process before this one gave out.
+  /// Continues after a step that an earlier process published.
   /// @param minimal_risk cars that were in the manoeuvre (bits of status_t), and stay in it
   void Resume(const truth_t& truth, std::int8_t minimal_risk);
   /// The next step.
   const Output& Step(const WorldInputs& inputs);
 
-  /// What cars do without a command, "" if every car has one.
+  /// Text that says what cars without a command do; "" if every car has one.
   const std::string& fallback() const { return fallback_; }
-  /// Cars that are in a minimal risk manoeuvre, bits of status_t.
+  /// Cars that are in a minimal risk manoeuvre, as bits of status_t.
   std::int8_t minimal_risk() const;
 
  private:

@@ -1,4 +1,4 @@
-// When there is fog, and how dense. What fog does to a sensor is the sensor's own business.
+// Time and density of the fog. The sensors model its effects themselves.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ struct Fog {
   double visibility_m = 0;
 };
 
-/// Level of a profile at x in [0, 1): the part of the fog window that has passed.
+/// Level of a profile at x in [0, 1). x is the part of the fog window that has passed.
 double FogLevel(FogProfile profile, double x);
 
-/// The fog of a scenario. Its window is compared in whole microseconds, so that a step belongs to
-/// it or not whatever 0.1 is in binary; its end does not belong to it.
+/// The fog of a scenario. Its window is compared in whole microseconds, so that the binary rounding
+/// of 0.1 does not decide whether a step belongs to it. Its end does not belong to it.
 class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);

@@ -56,7 +56,7 @@ double Leader::SinusoidSpeed(double time_s) const {
 double Leader::EmergencyBrakeSpeed(double time_s) const {
   const EmergencyBrakeSection& brake = lead_.emergency_brake;
   if (time_s < brake.start_s) return lead_.speed_mps;
-  // A car that is slower than the final speed already does not brake, and does not speed up either.
+  // A car that is already slower than the final speed keeps its speed.
   const double final_speed_mps = std::min(brake.final_speed_mps, lead_.speed_mps);
   const double speed_mps = lead_.speed_mps - brake.deceleration_mps2 * (time_s - brake.start_s);
   return std::max(final_speed_mps, speed_mps);

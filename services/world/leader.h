@@ -1,4 +1,5 @@
-// Speed of the preceding car over time: the stimulus of the experiment. It reacts to nobody.
+// Speed of the preceding car over time: the stimulus of the experiment. It does not react to other
+// cars.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +12,11 @@ namespace fogline {
 /// The preceding car's speed profile.
 class Leader {
  public:
-  /// @throw std::invalid_argument if the profile is `recorded` and no speeds are there.
+  /// @throw std::invalid_argument if the profile is `recorded` and there are no speeds.
   explicit Leader(const LeadSection& lead);
 
-  /// Speed in m/s at a step, `time_s` after the start; never negative. Profile `recorded` goes by
-  /// the step, the others by the time; each goes on beyond its end with its last speed.
+  /// Speed in m/s at a step, `time_s` after the start; never negative. Profile `recorded` uses the
+  /// step, the others use the time. A profile that ends keeps its last speed.
   double SpeedAt(std::int64_t step, double time_s) const;
 
  private:
@@ -25,7 +26,7 @@ class Leader {
   double RecordedSpeed(std::int64_t step) const;
 
   LeadSection lead_;
-  std::vector<double> ends_s_;  // of each breakpoint, counted from the start
+  std::vector<double> ends_s_;  // end time of each breakpoint, from the start of the run
 };
 
 }  // namespace fogline

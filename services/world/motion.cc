@@ -7,8 +7,9 @@
 namespace fogline {
 namespace {
 
-// Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, infinite if there is none; gap > 0.
-// Of the two forms of the root, the one that adds numbers of the same sign.
+// Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, infinite if there is none; gap > 0. Of
+// the two forms of the root it uses the one that adds numbers of the same sign, without
+// cancellation.
 double FirstRoot(double gap, double rate, double curvature) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double discriminant = rate * rate - 2.0 * curvature * gap;
@@ -43,7 +44,7 @@ std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
   Motion ahead{0.0, ahead_speed_mps};
   Motion behind{0.0, behind_speed_mps};
   while (gap > 0.0) {
-    // Up to the next moment at which a car comes to rest both accelerations are constant.
+    // Both accelerations are constant until the next moment at which a car comes to rest.
     double end = duration_s;
     if (ahead_rests > now) end = std::min(end, ahead_rests);
     if (behind_rests > now) end = std::min(end, behind_rests);

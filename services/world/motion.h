@@ -1,11 +1,12 @@
-// How a car moves along the lane under a constant acceleration, exactly, and when two cars touch.
+// Exact motion of a car along the lane under a constant acceleration, and the time at which two
+// cars touch.
 #pragma once
 
 #include <optional>
 
 namespace fogline {
 
-/// Where a car is and how fast it goes; its speed is never negative.
+/// Position and speed of a car; the speed is never negative.
 struct Motion {
   double position_m = 0;
   double speed_mps = 0;
@@ -15,12 +16,12 @@ struct Motion {
 double TimeToRest(double speed_mps, double acceleration_mps2);
 
 /// Motion after `duration_s`: x + v t + a t^2 / 2 and v + a t. A braking car that comes to rest
-/// on the way stays at x + v^2 / (2 |a|) with speed 0: cars do not roll backwards.
+/// before that stays at x + v^2 / (2 |a|) with speed 0: cars do not roll backwards.
 Motion Advance(const Motion& from, double acceleration_mps2, double duration_s);
 
-/// First time in [0, duration_s] at which the gap between two cars is closed, none if it stays
-/// open; 0 if it is closed at the beginning. Each car keeps its acceleration until it rests: the
-/// gap is a parabola between those moments, whose first root is taken in closed form.
+/// First time in [0, duration_s] at which the gap between two cars is closed; none if it stays
+/// open; 0 if it is closed at the beginning. Each car keeps its acceleration until it rests.
+/// Between these moments the gap is a parabola; its first root has a closed form.
 std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
                                     double ahead_acceleration_mps2, double behind_speed_mps,
                                     double behind_acceleration_mps2, double duration_s);

@@ -63,7 +63,8 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   }
 }
 
-// A message without an acceleration for the car is as good as none: it must not keep the input OK.
+// A message without an acceleration for the car counts as a missing one: it must not keep the input
+// OK.
 void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
                                    const Heard<follower_command_t>& followers) {
   FollowingCar& follower = followers_[car];
@@ -84,7 +85,7 @@ void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
       state, command_mps2, now.follower_speed_mps.at(car), now.follower_acceleration_mps2.at(car));
 }
 
-// At the first step without one, the last command came two periods ago.
+// At the first step without an acceleration, the last command is two periods old.
 InputState VehicleFallback::StateAfter(std::int64_t steps) const {
   const double age = static_cast<double>(steps) + 1;
   if (age > std::max(health_.stale_periods, health_.lost_periods)) return InputState::kLost;

@@ -1,5 +1,5 @@
-// What the cars themselves do, in real time, when their commands stay away: the last one holds for
-// a moment, then the car stops. No process but the world itself is needed for it.
+// Fallback of the cars in real time if their commands are missing: the last command holds for a
+// short time, then the car stops. Only the world itself is needed for it.
 #pragma once
 
 #include <cstddef>
@@ -19,18 +19,18 @@ namespace fogline {
 
 /// One car:
 ///
-///     command        | carried out
+///     input          | acceleration of the car
 ///     ---------------|---------------------------------------------------------
 ///     OK             | the command
-///     AWAITED, STALE | the last one; before the first, what is applied now
-///     LOST           | minimal risk manoeuvre, whatever comes afterwards
+///     AWAITED, STALE | the last command; before the first, the applied acceleration
+///     LOST           | minimal risk manoeuvre, in which the car then stays
 class CarFallback {
  public:
   CarFallback(const MinimalRiskSection& limits, double step_s) : minimal_risk_(limits, step_s) {}
 
-  /// The acceleration for the step that begins here. Once per step.
+  /// The acceleration for the step that begins here. Call it once per step.
   /// @param command_mps2 the newest command, if any has come
-  /// @param speed_mps, applied_mps2 of the car now
+  /// @param speed_mps, applied_mps2 of the car at the begin of the step
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
               double applied_mps2);
 
@@ -43,42 +43,45 @@ class CarFallback {
   std::optional<double> last_mps2_;
 };
 
-/// The host and the following cars. Their commands come out in the form that World::Step takes.
-/// Each following car stops by itself: one whose acceleration a message leaves out does, and the
-/// others go on.
+/// The host and the following cars. The results have the form that World::Step takes. Each
+/// following car has its own fallback: if messages leave out the acceleration of one car, only this
+/// car stops.
 ///
-/// Once the arbitrator has commanded the host's minimal risk manoeuvre the vehicle remembers it: it
-/// goes on with that command as long as it comes, and by itself when it stays away or when another
-/// arbitrator, which knows nothing of it, commands anything else. Only a driver who was asked and
-/// has come (mode RECOVERING) ends it.
+/// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers it.
+/// It follows the arbitrator's commands as long as they continue the manoeuvre. If they stop
+/// coming, or if another arbitrator commands something else, the vehicle makes the manoeuvre by
+/// itself. Only a driver who was asked and has taken over (mode RECOVERING) ends it.
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);
 
-  /// The commands for the step that begins with `now`. Once per step; see host() and followers().
+  /// Computes the commands for the step that begins with `now`; host() and followers() return them.
+  /// Call it once per step.
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
-  /// A process before this one was in the manoeuvre: so is this one, from now on.
+  /// Puts the host into the manoeuvre, because an earlier process had it there.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// It is not known which of them: all following cars are.
+  /// Puts all following cars into the manoeuvre: it is not known which of them the earlier process
+  /// had there.
   void ResumeFollowers(const truth_t& now);
 
-  /// The host's command as it is carried out: while the vehicle stops by itself, or has no command
-  /// yet, with the authorities and the mode that this means.
+  /// The host's command as carried out. While the vehicle stops by itself, its mode is MINIMAL_RISK
+  /// and both authorities are 0; before the first command, its mode is AUTOMATION.
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
-  /// The host is in a manoeuvre that nobody ends, by its own or by the arbitrator's command.
+  /// The host is in a manoeuvre that no command ends: its own, or one that the arbitrator has
+  /// commanded.
   bool host_in_minimal_risk() const {
     return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
   }
-  /// The vehicle itself does it: the arbitrator is to be told.
+  /// The vehicle makes the manoeuvre by itself; the arbitrator has to know this.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Any of the following cars is in the manoeuvre.
   bool follower_in_minimal_risk() const;
-  /// How the followers' commands are, that of the car which is worst off; a message without one for
-  /// it does not count.
+  /// State of the followers' commands: the worst of all cars. For a car, a message without an
+  /// acceleration for it counts as missing.
   InputState follower_state() const { return follower_state_; }
 
  private:
@@ -91,7 +94,7 @@ class VehicleFallback {
   void StepFollower(std::size_t car, const truth_t& now,
                     const Heard<follower_command_t>& followers);
 
-  /// How an input is whose last so many messages said nothing, by the limits of any other.
+  /// State of a command that was missing in this number of last messages, by the limits of inputs.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;

@@ -1,9 +1,9 @@
-// What visibility in fog means, for everyone who computes with it.
+// Definition of visibility in fog, for all models that use it.
 #pragma once
 
 namespace fogline {
 
-/// ln 20. At the meteorological optical range 5 % of a contrast are left (WMO-No. 8; Koschmieder).
+/// ln 20. At the meteorological optical range 5 % of a contrast remain (WMO-No. 8; Koschmieder).
 inline constexpr double kContrastLog = 2.995732273553991;
 
 /// Extinction coefficient in 1/m of air with this meteorological optical range in m.

@@ -27,7 +27,7 @@ GradeProfile RoadOf(const Scenario& scenario) {
   }
 }
 
-// Nothing for a point mass. @param section its name in the scenario
+// The vehicle model; nothing for a point mass. @param section name of `vehicle` in the scenario
 std::optional<LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle, const char* section,
                                              const Scenario& scenario, const GradeProfile& road,
                                              double step_s) {
@@ -156,7 +156,7 @@ void World::Integrate() {
     }
     for (Car& car : cars_) car.motion = Advance(car.motion, car.acceleration_mps2, substep_s);
   }
-  // The profile itself, free of what the sum v + a t rounds away.
+  // The exact speed of the profile, without the rounding of v + a t.
   cars_[kPreceding].motion.speed_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
 
   for (Car& car : cars_) {

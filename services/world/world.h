@@ -1,5 +1,5 @@
-// The road: it moves the cars, keeps the time of the run and knows everything. What the cars
-// do is not decided here: the preceding car follows its profile, the others their commands.
+// The road: it moves the cars, keeps the time of the run and has the complete state. The preceding
+// car follows its profile, the others follow their commands.
 #pragma once
 
 #include <cstddef>
@@ -21,11 +21,11 @@
 namespace fogline {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
-/// speed of its profile. Each other car is a point mass, which does what it is told, or a vehicle
-/// that obeys as well as it can (services/vehicle). The acceleration of every car is constant
-/// within a step (services/world/motion.h). Cars that have collided do not push each other: unless
-/// the run ends there, they go on as commanded, through one another, and the gap between them is
-/// negative.
+/// speed of its profile. Each other car is a point mass, which has exactly the commanded
+/// acceleration, or a vehicle that follows the command as far as it can (services/vehicle). The
+/// acceleration of every car is constant within a step (services/world/motion.h). Cars that have
+/// collided do not push each other: unless the run ends, they follow their commands through one
+/// another, and the gap between them is negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
@@ -38,20 +38,22 @@ class World {
   /// Step 0: the state that the scenario describes. Begins a new run.
   const Output& Start(std::int64_t run_id);
 
-  /// Goes on behind a step that another instance gave out: with point masses as this one would
-  /// have. TRUTH does not say what engine and brakes of a vehicle were about to do, so a vehicle
-  /// begins as if it had kept its acceleration for long.
+  /// Continues after a step that another instance published. With point masses the steps are the
+  /// same as those of the other instance. TRUTH does not contain the state of a vehicle's engine
+  /// and brakes, so a vehicle begins as if it had kept its acceleration for a long time.
   /// @throw std::invalid_argument if that instance had another number of cars
   void Resume(const truth_t& truth);
 
-  /// With the commands of step k, step k + 1. The acceleration that truth and ego report is the
-  /// command, or what a vehicle made of it; or (v(k+1) - v(k)) / step_s of a car that came to rest
-  /// within the step.
-  /// @pre Start() was called; `host` and `followers` are those of the last step given out.
-  /// @throw std::invalid_argument if a command is not finite, or not one per following car.
+  /// Computes step k + 1 from the commands of step k. The acceleration that truth and ego report is
+  /// the command, or a vehicle's response to it. For a car that came to rest within the step it is
+  /// (v(k+1) - v(k)) / step_s.
+  /// @pre Start() or Resume() was called; `host` and `followers` are those of the last published
+  /// step.
+  /// @throw std::invalid_argument if a command is not finite, or if there is not exactly one per
+  ///     following car.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
 
-  /// The step given out last.
+  /// The last published step.
   const truth_t& truth() const { return std::get<truth_t>(output_); }
 
  private:
@@ -68,7 +70,7 @@ class World {
   double GapOf(std::size_t car) const;
   std::size_t num_followers() const { return cars_.size() - kFirstFollower; }
   void MakeVehicles(const Scenario& scenario);
-  // Puts a car on the road, with this acceleration for some time already.
+  // Puts a car on the road as if it had had this acceleration for a long time.
   void Place(std::size_t car, const Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
   void Obey(std::size_t car, double command_mps2);

@@ -1,5 +1,5 @@
-// The process `world`: moves the cars and starts every step. It decides nothing about how they
-// drive; the wiring is in services/runtime/service.h.
+// The process `world`: moves the cars and starts every step. Other processes decide how the host
+// and the following cars drive. services/runtime/service.h connects it to its channels.
 #include "services/runtime/service.h"
 #include "services/world/failsafe_world.h"
 #include "services/world/world.h"

@@ -1,4 +1,4 @@
-// The build id in a program's file. Input: the file.
+// The search for the build id in a program's file. Input: the file.
 #include <elf.h>
 #include <link.h>
 
@@ -38,7 +38,7 @@ void AddNote(std::uint32_t type, std::string_view name, std::size_t size, Input&
   for (std::size_t i = 0; i < size; ++i) input.push_back(static_cast<std::uint8_t>(0xa0 + i));
 }
 
-/// A program that is nothing but headers and notes.
+/// A program file that consists of headers and notes only.
 Input Program(bool with_build_id) {
   constexpr std::size_t kHashBytes = 20;
   constexpr std::string_view kGnu("GNU\0", 4);

@@ -7,7 +7,7 @@
 namespace fogline::fuzz {
 namespace {
 
-/// Reads to the end; the events are views into `reader`.
+/// Reads all events. They are views into `reader`.
 std::vector<Event> ReadAll(EventLogReader& reader, std::size_t file_size) {
   std::vector<Event> events;
   std::size_t bytes = 0;
@@ -27,8 +27,8 @@ bool SameBut(std::int64_t number, const Event& a, const Event& b) {
          std::ranges::equal(a.data, b.data);
 }
 
-/// The reader maps the file, beyond whose end there is nothing to stumble over; the input is a
-/// block of memory that ends where it ends.
+/// The reader maps the file, so no sanitizer sees a read beyond the file's end. This function
+/// parses the same bytes in a block of memory that ends where the input ends.
 void DemandSameInMemory(Bytes bytes, const std::vector<Event>& events) {
   std::string_view why;
   for (const Event& event : events) {

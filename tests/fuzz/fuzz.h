@@ -1,6 +1,7 @@
-// What every fuzz target is made of. A target is one file, NAME_fuzz.cc: Seeds(), and the function
-// that libFuzzer calls with ever other bytes, which ends the program when an invariant does not
-// hold. fuzz_NAME_replay calls it with the same bytes each time (replay.cc).
+// The parts of every fuzz target. A target is one file, NAME_fuzz.cc. It defines Seeds() and the
+// function that libFuzzer calls again and again with different bytes. That function ends the
+// program if an invariant does not hold. fuzz_NAME_replay calls it with the same bytes in each
+// execution (replay.cc).
 #pragma once
 
 #include <cstddef>
@@ -18,20 +19,20 @@ namespace fogline::fuzz {
 
 using Input = std::vector<std::uint8_t>;
 
-/// Each target's inputs to begin with, made by whatever makes them in a run: they are of the
-/// present message types and formats however these change.
+/// The inputs that the fuzzing of a target starts from. The target makes them with the code that
+/// makes such bytes in a run, so they always have the current message types and formats.
 std::vector<Input> Seeds();
 
-/// Ends the program with what does not hold.
+/// Ends the program with the text `what` if `holds` is false.
 void Demand(bool holds, const char* what);
 
-/// To be called when an input is not refused. Inputs that are all refused, or all taken, would test
-/// nothing.
+/// A target calls it for each input that it does not refuse. A target that refuses all inputs, or
+/// takes all of them, tests nothing.
 void Took();
-/// Calls of Took() so far.
+/// The number of calls of Took() so far.
 long Taken();
 
-/// A file in memory, for what reads files.
+/// A file in memory, for code that reads files.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes content = {});
@@ -39,7 +40,7 @@ class MemoryFile {
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
-  /// As long as this object lives.
+  /// Valid as long as this object lives.
   std::filesystem::path path() const;
   Input Content() const;
 
@@ -47,25 +48,25 @@ class MemoryFile {
   int fd_;
 };
 
-/// Takes an input apart from front to back; beyond the end there are zeros and nothing.
+/// Takes an input apart from front to back. Beyond the end, bytes are 0 and datagrams are empty.
 class Cutter {
  public:
   explicit Cutter(Bytes input) : rest_(input) {}
 
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
-  /// A datagram: two bytes of length, big endian, and so many bytes as far as they are there and
-  /// may be published.
+  /// A datagram: its length in two bytes, big endian, then its bytes. It is shorter than that
+  /// length if the input ends, or if a message may not be so long.
   Bytes Datagram();
 
  private:
   Bytes rest_;
 };
 
-/// Adds what Datagram() takes.
+/// Appends a datagram to `input` in the form that Datagram() reads.
 void AddDatagram(Bytes bytes, Input& input);
 
-/// Whether a text may be written to any terminal: no control characters but line feeds.
+/// Whether a text may be written to any terminal: it has no control characters except line feeds.
 bool Printable(std::string text);
 
 }  // namespace fogline::fuzz

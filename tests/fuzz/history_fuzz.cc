@@ -1,5 +1,4 @@
-// What a recorder that is started again, or a runner that resumes a run, finds in a log. Input: the
-// file.
+// What a restarted recorder, or a runner that resumes a run, reads from a log. Input: the file.
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,7 +11,8 @@
 namespace fogline::fuzz {
 namespace {
 
-// Less than the samples have, so that it may and may not do to look at the end alone.
+// Bytes. The sample logs are longer, so a look at their end alone sometimes suffices and sometimes
+// does not.
 constexpr std::int64_t kShortTail = 2500;
 
 void DemandWhereabouts(const LogFront& front, const Remains& remains, std::int64_t file_size) {
@@ -30,7 +30,7 @@ void DemandWhereabouts(const LogFront& front, const Remains& remains, std::int64
          "what is kept is whole steps");
 }
 
-/// The log that is gone on with, if it was read from front to back.
+/// Checks the log that the recorder goes on with, if it was read from front to back.
 void DemandWholeRun(const Remains& remains, const std::filesystem::path& file) {
   EventLogReader events(file);
   std::int64_t count = 0;
@@ -41,12 +41,12 @@ void DemandWholeRun(const Remains& remains, const std::filesystem::path& file) {
   try {
     while (run.Next() != nullptr) ++steps;
   } catch (const InputError&) {
-    return;  // its scenario is none
+    return;  // its scenario is not valid
   }
   Demand(steps == remains.steps, "what is kept is all complete steps");
 }
 
-/// What is handed out again.
+/// Checks the messages that the recorder would send again.
 void DemandAllMessages(const LogFront& front, const Remains& remains,
                        const std::filesystem::path& file, std::int64_t first) {
   History history(file, front, remains);
@@ -62,7 +62,8 @@ void DemandAllMessages(const LogFront& front, const Remains& remains,
   }
 }
 
-/// What lies before the end of the log may be anything, if only the end was looked at.
+/// If only the end of the log was read, the part before it may hold anything: messages or a
+/// refusal.
 void DemandMessagesOrRefusal(const LogFront& front, const Remains& remains,
                              const std::filesystem::path& file) {
   const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
@@ -107,11 +108,11 @@ void DemandUsefulRemains(Bytes bytes) {
     DemandWholeRun(all, kept.path());
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
-    // Where the end alone tells the same, it still does when the log has grown.
+    // If the end alone gave the right number of steps, it must also do so after the log has grown.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {
-    return;  // no event log
+    return;  // not an event log
   }
 }
 

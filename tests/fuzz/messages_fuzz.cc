@@ -1,4 +1,4 @@
-// Every message type, from the bytes to what a reader is given. Input: a channel's place in
+// Every message type: from the bytes to the values that a reader gets. Input: an index into
 // kChannels, then the message.
 #include <algorithm>
 #include <array>

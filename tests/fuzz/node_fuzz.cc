@@ -1,6 +1,6 @@
-// Roles of a run, in lockstep or in real time, among whatever others say: world, driver and
-// recorder on a bus in memory, and nobody else. Input: actions, a byte each: what a run says comes
-// next, or a datagram on some channel follows.
+// Three roles of a run (world, driver, recorder), in lockstep or in real time, on a bus in memory,
+// among arbitrary messages. Input: actions, one byte each. An action is the next message of a run,
+// or a datagram on some channel; the datagram then follows.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -28,7 +28,7 @@ enum Action : std::uint8_t {
   kNumActions
 };
 
-/// What the roles say, as others hear it.
+/// Checks the messages of the roles as other processes receive them.
 class Listener {
  public:
   explicit Listener(Bus& bus) {
@@ -38,7 +38,7 @@ class Listener {
     bus.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) { OnStatus(bytes); });
   }
 
-  /// Of this one nothing is known.
+  /// The listener does not judge messages with these bytes: the fuzzer has sent them.
   void Ignore(Bytes bytes) { foreign_.assign(bytes.begin(), bytes.end()); }
   std::size_t steps() const { return said_.size(); }
 
@@ -119,7 +119,7 @@ class Run {
     run.phase = phase;
     run.realtime = realtime_;
     run.pace = realtime_ ? kMaxSpeed : 0;
-    run.external = {"world", "driver", "recorder"};  // it waits for all three
+    run.external = {"world", "driver", "recorder"};  // the run waits for all three
     run.holder = {0, 0, 0};
     run.num_external = static_cast<std::int32_t>(run.external.size());
     run.sequence = ++sequence_;
@@ -139,7 +139,7 @@ class Run {
   std::array<Node*, 3> nodes_{&world_, &driver_, &recorder_};
   std::int64_t step_ = 0;
   std::int64_t sequence_ = 0;
-  bool realtime_ = false;  // since it was announced so
+  bool realtime_ = false;  // true from the first kAnnounceRealtime on
 };
 
 template <class M>
@@ -150,7 +150,7 @@ void AddStep(std::int64_t step, Input& input) {
   AddDatagram(Encoded(message), input);
 }
 
-/// Steps that no arithmetic may be done with, on channels that all of them read.
+/// Steps that overflow in arithmetic, on channels that some of the roles read.
 Input WithImpossibleSteps(Action announce) {
   using Limits = std::numeric_limits<std::int64_t>;
   Input input{announce, kGo, kPoll};

@@ -1,8 +1,9 @@
-// Runs a fuzz target on its seeds, on the files of its corpus, and on mutations of both, the same
-// ones each time:
+// Runs a fuzz target on its seeds, on the files of its corpus, and on mutations of both. Each
+// execution uses the same mutations.
 //   fuzz_NAME_replay COUNT [FILE | FOLDER]...
 //   fuzz_NAME_replay --seeds FOLDER     writes the seeds there, for libFuzzer
-// An input that breaks something is left in the file fuzz_NAME_replay.finding beside the program.
+// If an input breaks something, the program leaves the input in the file fuzz_NAME_replay.finding
+// beside itself.
 #include <sanitizer/common_interface_defs.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ constexpr std::size_t kMaxEdits = 4;
 
 using namespace std::string_view_literals;
 
-// What readers trip over: in text, and as numbers, big endian.
+// Values that readers often handle wrongly: as text, and as big-endian numbers.
 constexpr std::string_view kValues[] = {"0"sv,
                                         "-0"sv,
                                         "-1"sv,
@@ -110,7 +111,8 @@ class Mutator {
     }
   }
 
-  /// Keys, values and pieces change places, vanish, double, or become what readers trip over.
+  /// Replaces, deletes, doubles or overwrites a token: by a token of another input, or by one of
+  /// kValues.
   void ChangeToken(Input& input) {
     const auto [begin, end] = Token(input);
     Input token(At(input, begin), At(input, end));
@@ -128,7 +130,7 @@ class Mutator {
       case 2:
         token.insert(token.end(), token.begin(), token.end());
         break;
-      case 3: {  // over what is there: nothing moves
+      case 3: {  // overwrites in place: no byte moves
         const std::string_view value = kValues[Below(std::size(kValues))];
         const std::size_t size = std::min(value.size(), input.size() - begin);
         std::copy_n(value.begin(), size, At(input, begin));
@@ -144,7 +146,8 @@ class Mutator {
     input.insert(At(input, begin), token.begin(), token.end());
   }
 
-  /// A string, a word with the characters of a number, or up to 64 bytes of anything.
+  /// A string in quotation marks, a word of the characters of a number, or up to 64 bytes of
+  /// anything.
   std::pair<std::size_t, std::size_t> Token(Input& input) {
     std::size_t begin = Below(input.size());
     const auto in_word = [&input](std::size_t at) {
@@ -198,7 +201,7 @@ void SaveFinding() {
 
 /// @return whether the input was taken
 bool Run(const Input& input) {
-  // In a block of its own size, so that a look beyond its end is one.
+  // The block has exactly the input's size, so a sanitizer sees a read beyond the input's end.
   const std::vector<std::uint8_t> exact(input.begin(), input.end());
   running = exact;
   const long before = Taken();

@@ -10,7 +10,7 @@
 namespace fogline::fuzz {
 namespace {
 
-/// What a log says.
+/// The contents of a log.
 struct Reading {
   std::vector<std::array<Input, kNumChannels>> steps;
   bool refused = false;
@@ -40,7 +40,7 @@ void DemandWholeSteps(const Reading& reading) {
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       const Input& message = reading.steps[step][i];
       const bool expected = kChannels[i].pace == Pace::kStep;
-      // A run in real time goes on without what is missing.
+      // A run in real time goes on if a message is missing.
       const bool hole = expected && message.empty() && reading.run.realtime;
       Demand(hole || message.empty() != expected, "a step has a message of each of its channels");
       if (message.empty()) continue;
@@ -53,7 +53,7 @@ void DemandWholeSteps(const Reading& reading) {
          "all steps are counted");
 }
 
-/// The run as the recorder would have written it.
+/// Writes the run as the recorder would have written it.
 void Rewrite(const Reading& reading, const std::filesystem::path& file) {
   EventLogWriter log(file);
   const std::vector<std::string> parts = SplitScenario(reading.run.scenario_text);
@@ -76,7 +76,7 @@ void DemandRunOrRefusal(Bytes bytes) {
     DemandWholeSteps(reading);
     Demand(!reading.run.altered || (reading.run.seal && !reading.run.complete),
            "what differs from its seal is not complete");
-    if (reading.refused || reading.run.realtime) return;  // a copy would be of a run in lockstep
+    if (reading.refused || reading.run.realtime) return;  // a copy would be in lockstep
     const MemoryFile copy;
     Rewrite(reading, copy.path());
     const Reading again = Read(copy.path());
@@ -86,11 +86,11 @@ void DemandRunOrRefusal(Bytes bytes) {
     Demand(Printable(reading.run.note), "what is said of a log can be printed");
     if (!reading.steps.empty()) Took();
   } catch (const InputError&) {
-    return;  // no event log
+    return;  // not an event log
   }
 }
 
-/// The log as a run leaves it.
+/// Adds the seal that a run leaves in its log.
 Input WithLogSeal(const Input& log) {
   const MemoryFile file(log);
   const Reading reading = Read(file.path());
@@ -118,7 +118,7 @@ std::vector<Input> Seeds() {
   std::vector<Event> events;
   while (const auto event = reader.Next()) events.push_back(*event);
 
-  // Signed traffic as lcm-logger writes it.
+  // The log of signed traffic as lcm-logger writes it.
   const MemoryFile sealed;
   Seal seal(SealKey({}), {});
   {
@@ -127,7 +127,7 @@ std::vector<Input> Seeds() {
       writer.Write(event.channel, event.utime, seal.Sign(event.channel, event.data));
     }
   }
-  // The same events from back to front, but for the scenario's parts.
+  // The same events in reverse order. The scenario's parts still come first.
   const auto steps = std::ranges::find_if(
       events, [](const Event& event) { return event.channel != ChannelOf<run_t>().name; });
   std::reverse(steps, events.end());

@@ -1,4 +1,4 @@
-// Sound messages and logs, to make seeds from.
+// Valid messages and logs. Targets make seeds from them.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ inline constexpr std::int64_t kRunId = 7;
 inline constexpr std::string_view kScenarioText = R"({"version":1,"steps":3})";
 inline constexpr std::int64_t kSteps = 3;
 
-/// A message of a step with something in every field that has a length.
+/// A valid message of a step. Every field that has a length has something in it.
 template <class M>
 M Sample(std::int64_t step) {
   M message{};
@@ -59,7 +59,7 @@ Input Encoded(const M& message) {
   return bytes;
 }
 
-/// The RUN messages of a text in parts of so many characters.
+/// The RUN messages that carry a text in parts of `part_size` characters.
 inline std::vector<run_t> RunParts(std::string_view text, std::size_t part_size) {
   std::vector<std::string> parts;
   for (std::size_t at = 0; at < text.size(); at += part_size) {

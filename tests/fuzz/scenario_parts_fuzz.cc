@@ -1,4 +1,4 @@
-// A scenario in parts. Input: datagrams on RUN.
+// The assembly of a scenario from its parts. Input: datagrams on RUN.
 #include <map>
 
 #include "tests/fuzz/samples.h"
@@ -6,7 +6,7 @@
 namespace fogline::fuzz {
 namespace {
 
-/// What ScenarioParts should do, the obvious way.
+/// A simple reference for ScenarioParts.
 struct Model {
   std::int32_t num_parts = 0;
   std::string hash;

@@ -1,5 +1,5 @@
-// Signatures. Input: a channel's place in kChannels, a role, where to alter what is signed (two
-// bytes) and how, then a message, signed or not.
+// Signatures. Input: an index into kChannels, a role, the place of an alteration (two bytes) and
+// the alteration itself, then a message that may be signed.
 #include <algorithm>
 #include <array>
 
@@ -19,7 +19,7 @@ bool IsGood(const Seal& seal, std::string_view channel, Bytes message) {
   return seal.Open(channel, message).verdict == Seal::Verdict::kGood;
 }
 
-/// What is good was signed by somebody who has the key and may say it.
+/// A message with a good verdict was signed with the key, by a role that may publish it.
 void DemandUnforgeable(const Seal& seal, const ChannelInfo& channel, Bytes message) {
   const Seal::Opened opened = seal.Open(channel.name, message);
   Demand((opened.verdict == Seal::Verdict::kNotSigned) == !LooksSealed(message),
@@ -37,7 +37,7 @@ void DemandUnforgeable(const Seal& seal, const ChannelInfo& channel, Bytes messa
   Took();
 }
 
-/// What is signed is good for its channel, its key and its bytes alone.
+/// A signed message is good only with its own channel, its own key and its own bytes.
 void DemandBinding(Seal& seal, std::size_t place, Cutter& cutter, Bytes payload) {
   const ChannelInfo& channel = kChannels[place];
   const Bytes sent = seal.Sign(channel.name, payload);

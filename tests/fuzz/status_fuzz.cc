@@ -1,5 +1,5 @@
-// What the runner makes of STATUS and RESEND from anybody. Input: a byte each, odd for RESEND, and
-// a datagram.
+// What the runner does with arbitrary STATUS and RESEND messages. Input: for each message a byte,
+// odd for RESEND, and a datagram.
 #include <algorithm>
 
 #include "services/runtime/conductor.h"
@@ -41,7 +41,7 @@ void DemandSoundRunner(Bytes input) {
   });
   if (heard || !conductor.strangers().known().empty()) Took();
   DemandPrintable(conductor);
-  conductor.Poll(Clock::now() + kLongAfter);  // nothing moves: somebody is to blame
+  conductor.Poll(Clock::now() + kLongAfter);  // nothing has moved: the runner must blame a role
   DemandPrintable(conductor);
 }
 

@@ -1,5 +1,5 @@
-// The relay's subscriptions. Input: a byte each (to add, to take away, to ask) and a datagram, the
-// pattern or the channel.
+// The relay's subscriptions. Input: for each action a byte (add, remove or ask) and a datagram with
+// the pattern or the channel.
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t kMaxSubscriptions = 8;
 constexpr std::size_t kMaxActions = 16;
-constexpr std::size_t kMaxPattern = 1024;  // as tcpq::Limits
+constexpr std::size_t kMaxPattern = 1024;  // as in tcpq::Limits
 constexpr std::size_t kMaxChannel = 63;
 
 bool IsPlain(std::string_view pattern) {
   return std::ranges::all_of(pattern, [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; });
 }
 
-/// The answer, or nothing if it would take too long.
+/// Whether a subscription matches, or nothing if the answer would take too long.
 std::optional<bool> Ask(Subscriptions& subscriptions, std::string_view channel) {
   try {
     return subscriptions.Match(channel, TimePoint{});
@@ -28,7 +28,7 @@ std::optional<bool> Ask(Subscriptions& subscriptions, std::string_view channel) 
   }
 }
 
-/// Subscriptions of one client, and the patterns that should be among them.
+/// The subscriptions of one client, and the patterns that they should consist of.
 class Client {
  public:
   void Add(std::string_view pattern) {
@@ -69,7 +69,7 @@ class Client {
 
 void Act(std::uint8_t action, Bytes bytes, Client& client) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  text = text.substr(0, std::min(text.find('\0'), kMaxPattern));  // frames have no zeros in names
+  text = text.substr(0, std::min(text.find('\0'), kMaxPattern));  // names in frames have no zeros
   switch (action % 4) {
     case 0:
       return client.Add(text);

@@ -1,5 +1,5 @@
-// The parser of tcpq streams, on both sides. Input: a byte, odd for what a relay says, and the
-// stream.
+// The parser of tcpq streams, for the relay's side and the client's. Input: a byte, odd for a
+// stream from a relay, and the stream.
 #include <algorithm>
 #include <functional>
 
@@ -29,7 +29,7 @@ void DemandFaithful(const tcpq::Frame& frame) {
   Demand(frame.wire.size() <= kLargestFrame, "no frame is larger than the limits");
 }
 
-/// @param piece how many bytes come next
+/// @param piece gives the number of bytes that arrive next
 Reading Read(std::uint32_t magic, Bytes stream, const std::function<std::size_t()>& piece) {
   Reading reading;
   tcpq::FrameParser parser(magic, kLimits);

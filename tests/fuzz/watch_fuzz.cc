@@ -1,5 +1,6 @@
-// What `fogline top` makes of whatever is on a network. Input: a byte each, the channel's place in
-// kChannels or beyond it, and a datagram; for a channel that is none of ours its name comes first.
+// What `fogline top` makes of arbitrary traffic. Input: for each message a byte and a datagram. The
+// byte is an index into kChannels, or beyond it for a foreign channel; then the channel's name
+// comes first.
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/samples.h"

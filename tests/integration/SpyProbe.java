@@ -1,6 +1,6 @@
-// Reads what a person sees in lcm-spy: a Java agent that looks at the table in lcm-spy's window and
-// prints all its rows, with tabs between the cells, each time that a channel has appeared. lcm-spy
-// itself runs unchanged:
+// Reads the table that a person sees in lcm-spy's window. It is a Java agent: each time that a
+// channel has appeared, it prints all rows of the table, with tabs between the cells. lcm-spy
+// itself is unchanged:
 //
 //   JAVA_TOOL_OPTIONS=-javaagent:probe.jar fogline spy --lcm-url URL
 import java.awt.Component;
@@ -15,7 +15,7 @@ public final class SpyProbe {
   private static int rowsShown = 0;
 
   public static void premain(String arguments) {
-    new Timer(LOOK_EVERY_MS, event -> look()).start();  // calls on the thread that owns the window
+    new Timer(LOOK_EVERY_MS, event -> look()).start();  // runs on the thread that owns the window
   }
 
   private static void look() {
@@ -28,7 +28,8 @@ public final class SpyProbe {
         System.out.flush();
         rowsShown = rows;
       } catch (IndexOutOfBoundsException error) {
-        // lcm-spy adds rows on its LCM thread, and was about to: the next look finds them.
+        // lcm-spy adds rows on its LCM thread and was just about to add this one. The next look
+        // finds it.
       }
     }
   }

@@ -1,6 +1,6 @@
-// A run on a port of its own is found without being told where it is: by top, doctor and roles.
-// Each test has a meeting address of its own: what others announce on LCM's default address is
-// nothing to it.
+// top, doctor and roles find a run on a port of its own, although no user tells them where it is.
+// Each test has a meeting address of its own, so announcements on LCM's default address do not
+// reach it.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -26,14 +26,14 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// `fogline top --json`, a document for each interval.
+/// `fogline top --json`, which prints a document for each interval.
 class Top {
  public:
   explicit Top(const Meeting& meeting)
       : process_(meeting.Command("fogline", {"top", "--json", "--interval", "0.1"})) {}
 
-  /// Waits for a document that is as it should be, and looks at the file of its output every few
-  /// milliseconds: no event tells that the file has grown. @return it, or the last one
+  /// Waits for a document that `good` accepts. It reads the output file every few milliseconds,
+  /// because no event tells that the file has grown. @return that document, or the last one
   json WaitFor(const std::function<bool(const json&)>& good) {
     const TimePoint end = Clock::now() + kPatience;
     json document;
@@ -96,7 +96,7 @@ TEST(AnnounceTest, TopShowsARunOnAPortOfItsOwnWithoutBeingToldWhereItIs) {
   EXPECT_EQ(seen["runs"][0]["run_id"], place.run_id);
   EXPECT_EQ(seen["runs"][0]["roles"].size(), kRoles.size());
   EXPECT_TRUE(seen["others"].empty()) << "a beacon is no traffic";
-  // AND the head of the table says what it is
+  // AND the head of the table names the run
   const Outcome table =
       RunCommand(meeting.Command("fogline", {"top", "--once", "--interval", "5"}));
   EXPECT_THAT(table.out,
@@ -137,7 +137,7 @@ TEST(AnnounceTest, TopFollowsTheNewestRunAndNamesTheOthers) {
   EXPECT_EQ(seen["announced"][1]["run_id"], first.run_id);
   EXPECT_EQ(seen["announced"][1]["followed"], false);
   EXPECT_EQ(seen["lcm_url"], second.url);
-  // WHEN the newest is killed, which says nothing at its end, THEN the other one is followed
+  // WHEN the newest run is killed and so announces no end, THEN top follows the other one
   newer.Signal(SIGKILL);
   top.WaitFor([&first](const json& now) { return now["lcm_url"] == first.url; });
 }
@@ -211,13 +211,13 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest());
   EXPECT_TRUE(json::parse(run.out)["restarts"].empty()) << run.out;
-  // AND the other takes part in the next one
+  // AND the other driver takes part in the next run
   const Outcome next = RunCommand(meeting.Run({"--transport", "udpm", "--external", "driver"}));
   ASSERT_EQ(next.code, 0) << next.err;
   for (Background& driver : drivers) EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
-/// A run with a driver from elsewhere, whose runner is killed under way.
+/// A run with a driver from elsewhere. Its runner is killed in the middle of the run.
 void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"--external", "driver", "--pace", "1"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -275,7 +275,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run", kPatience));
   Top top(meeting);
-  // GIVEN beacons that no runner of this machine sends, by the thousand, and noise
+  // GIVEN thousands of beacons that no runner of this machine sends, and noise
   const auto attack = [&] {
     for (std::int64_t i = 1; i <= 1000; ++i) {
       beacon_t beacon = Beacon(i, "udpm://10.0.0.1:7700");
@@ -286,12 +286,12 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
     }
   };
   attack();
-  // WHEN a run goes on among them
+  // WHEN a run takes place among them
   Background run(
       meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "5"}));
   const Place place = PlaceOf(run);
   attack();
-  // THEN it is followed, and no other is
+  // THEN top follows this run and no other
   top.WaitFor([&](const json& seen) {
     attack();
     return seen["announced"].size() == 1 && seen["announced"][0]["run_id"] == place.run_id &&
@@ -300,7 +300,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  // AND it is told how much of that there is
+  // AND doctor tells that it refused such announcements
   Background doctor(meeting.Command("fogline", {"doctor"}));
   const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(doctor.pid()) && Clock::now() < end) {
@@ -333,7 +333,7 @@ class AnnounceOnMachineTest : public NetworkTest {};
 
 TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOfThat) {
   const Machine island("island");
-  // Where programs meet over TCP there is no announcing.
+  // No run announces itself where LCM_DEFAULT_URL names a relay (TCP).
   std::vector<std::string> command{"env", "LCM_DEFAULT_URL=tcpq://127.0.0.1:1"};
   const auto rest = Run({"--transport", "udpm", "--set", "/steps=30"});
   command.insert(command.end(), rest.begin(), rest.end());

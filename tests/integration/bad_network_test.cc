@@ -1,5 +1,5 @@
-// The lockstep on networks that lose, repeat, reorder, delay and damage messages: slower, and the
-// same result. Networks of the kernel's own are in network_test.cc.
+// The lockstep on networks that lose, repeat, reorder, delay and damage messages. It gets slower;
+// its result stays the same. network_test.cc has networks of the kernel's own.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +12,7 @@ namespace {
 
 class BadNetworkTest : public testing::Test {
  protected:
-  /// A run of the paper's scenario: of its first steps, unless the campaign wants more.
+  /// A run of the paper's scenario. Only the campaign runs more than the first steps.
   nlohmann::json Run(const std::vector<std::string>& more, int first_steps = 40) {
     const char* steps = std::getenv("FOGLINE_TEST_STEPS");
     std::vector<std::string> command{

@@ -1,4 +1,4 @@
-// What a person may choose when he configures the build.
+// The options that a person may choose when configuring the build.
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A build folder on a machine without make, as a fresh Debian system is.
+/// A build folder on a machine without make, like a fresh Debian system.
 class ConfiguredBuild {
  public:
   explicit ConfiguredBuild(const std::vector<std::string>& options) {
@@ -27,7 +27,7 @@ class ConfiguredBuild {
     EXPECT_EQ(configured.code, 0) << configured.err;
   }
 
-  /// The commands that it would run.
+  /// The commands that the build would run.
   std::string CompileCommands() const {
     std::ifstream file(Folder() + "/compile_commands.json");
     std::ostringstream text;
@@ -36,7 +36,7 @@ class ConfiguredBuild {
     return text.str();
   }
 
-  /// All files that a target is made of.
+  /// All files from which the build makes a target.
   std::string InputsOf(const std::string& target) const {
     const Outcome inputs = RunCommand({"ninja", "-C", Folder(), "-t", "inputs", target});
     EXPECT_EQ(inputs.code, 0) << inputs.err;

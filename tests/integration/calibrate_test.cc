@@ -1,4 +1,4 @@
-// fogline calibrate: finds the parameters that a table was made with, and keeps them in a file.
+// fogline calibrate finds the parameters that produced a table, and writes them into a file.
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// The experiment in 30 s, with a follower that closes up in seconds and no noise.
+// The experiment in 30 s, without noise. The follower closes up within seconds.
 constexpr const char* kScenario = R"({
   "$schema": "scenario.schema.json",
   "version": 1,
@@ -40,7 +40,7 @@ class CalibrateTest : public testing::Test {
     return RunCommand(arguments);
   }
 
-  /// Writes the table of the scenario with these fields.
+  /// Writes the target: the table of the scenario with these fields.
   void MakeTarget(const std::vector<std::string>& overrides, const std::string& seeds) const {
     std::vector<std::string> arguments{"table",   scenario_, "--thresholds", "0.3,0.4,0.5,0.6,0.7",
                                        "--seeds", seeds,     "--json"};
@@ -60,7 +60,7 @@ class CalibrateTest : public testing::Test {
     return json::parse(outcome.out, nullptr, false);
   }
 
-  /// What a command line is told with exit code 2.
+  /// The error text of a command line that is refused with exit code 2.
   std::string ErrorOf(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), {"calibrate", scenario_});
     const Outcome outcome = RunFogline(arguments);
@@ -88,10 +88,9 @@ std::string TextOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// A search ends where every number of the table is within 0.001 points. A field that moves the
-// table by only 0.07 points for 1 % of its range, as the offset does here, is known to a few
-// thousandths of its range then: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the
-// headway.
+// A search ends where every number of the table is within 0.001 points. Here the offset moves the
+// table by only 0.07 points for 1 % of its range. So the search finds the field within a few
+// thousandths of its range: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the headway.
 constexpr double kShareOfRange = 5e-3;
 
 TEST_F(CalibrateTest, RecoversTheFogAndTheOffsetBetweenTheSensors) {
@@ -110,7 +109,7 @@ TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
   const json found = Calibrate(
       {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
   EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
-  // Of three decades that share is a factor of 1.035.
+  // The range is three decades on a logarithmic scale, so that share is a factor of 1.035.
   EXPECT_NEAR(found["fields"][1]["value"], 3, 0.035 * 3);
 }
 
@@ -119,7 +118,7 @@ TEST_F(CalibrateTest, RecoversFogAndOffsetFromMeansOverNoisySeeds) {
   std::vector<std::string> truth = noise;
   truth.insert(truth.end(), {"/fog/bias_m=0.377", "/radar/bias_m=0.9321"});
   MakeTarget(truth, "1:4");
-  // WHEN the seeds are those of the table, so that the table can be met to the last digit
+  // WHEN the seeds are those of the table, so that the search can meet the table to the last digit
   const json found =
       Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"},
                 {"--seeds", "1:4", "--spread-weight", "0", "--set", noise[0], "--set", noise[1]});
@@ -131,13 +130,13 @@ TEST_F(CalibrateTest, WritesTheScenarioWithWhatItFound) {
   MakeTarget({"/fog/bias_m=0.377"}, "1");
   const json found = Calibrate({"/fog/bias_m=0.2:0.5"},
                                {"--seeds", "1", "--out", out_, "--set", "/title=\"Found\""});
-  // THEN the file differs from the scenario by the found value and the override alone
+  // THEN the file differs from the scenario only by the found value and the override
   std::string expected = kScenario;
   expected.replace(expected.find("0.3 }"), 3, found["fields"][0]["value"].dump());
   expected.replace(expected.find("Without noise"), 13, "Found");
   EXPECT_EQ(TextOf(out_), expected);
   EXPECT_EQ(RunFogline({"check", out_}).code, 0);
-  // AND its table is the one that was reported
+  // AND its table is the one that calibrate reported
   const Outcome table =
       RunFogline({"table", out_, "--thresholds", "0.3,0.4,0.5,0.6,0.7", "--seeds", "1", "--json"});
   const json rows = json::parse(table.out)["rows"];

@@ -1,4 +1,4 @@
-// The command line as a person meets it: what it says when asked, and when it cannot follow.
+// The command line as a person meets it: its help, and its errors.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -31,7 +31,7 @@ std::string HelpOf(std::vector<std::string> command) {
   return help.out;
 }
 
-/// What the command line cannot follow: exit code 2, nothing on stdout, one line on stderr.
+/// The error text of a refused command line: exit code 2, nothing on stdout, one line on stderr.
 std::string ErrorOf(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), Program("fogline"));
   const Outcome outcome = RunCommand(arguments);
@@ -41,7 +41,7 @@ std::string ErrorOf(std::vector<std::string> arguments) {
   return outcome.err;
 }
 
-/// What every help text has: exit codes, at least one example, no line too long for a terminal.
+/// Checks a help text: exit codes, at least one example, no line too long for a terminal.
 void ExpectWholeHelp(const std::vector<std::string>& command) {
   SCOPED_TRACE(command.front() + " " + command.back());
   const std::string help = HelpOf(command);
@@ -124,14 +124,15 @@ TEST(CommandLineTest, SaysHowAFieldIsSetThatIsTakenForAnOption) {
   EXPECT_EQ(ErrorOf({"sweep", "scenario/paper.json", "--policy=none"}),
             "fogline sweep: error: no option \"--policy\"" + set +
                 "/arbitrator/policy=none (see fogline sweep --help)\n");
-  // Several sections have the name; a value that the field does not allow is not repeated.
+  // Several sections have a field of this name. The text does not repeat a value that the field
+  // refuses.
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--end-on-collision", "scenario/x.json"}),
             "fogline run: error: no option \"--end-on-collision\"" + set +
                 "/world/end_on_collision=VALUE (see fogline run --help)\n");
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--bias", "0.3"}),
             "fogline run: error: no option \"--bias\"" + set +
                 "/fog/bias_m=0.3 or /radar/bias_m or /lidar/bias_m (see fogline run --help)\n");
-  // A verb that sets no fields has no such hint.
+  // A verb that sets no fields gives no such hint.
   EXPECT_EQ(ErrorOf({"metrics", "x.lcm", "--threshold", "0.8"}),
             "fogline metrics: error: no option \"--threshold\" (see fogline metrics --help)\n");
   for (const char* dashes : {"-", "---", "-x"}) {
@@ -218,7 +219,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
   for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
-    for (int limit = 12; limit <= 28; limit += 4) {  // below, libraries cannot be loaded
+    for (int limit = 12; limit <= 28; limit += 4) {  // fewer do not suffice to load libraries
       const Outcome outcome =
           RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
                       Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",
@@ -231,7 +232,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
     }
   }
   EXPECT_GT(failed, 3);
-  // What is to be done stands behind it.
+  // The error text ends with a remedy.
   const Outcome outcome =
       RunCommand({"sh", "-c", "ulimit -n 12; exec \"$@\"", "sh", Program("fogline"), "run",
                   "scenario/paper.json", "--transport", "udpm", "--log", folder.File("x.lcm")});
@@ -240,7 +241,8 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
 
 TEST(CommandLineTest, PrintsNoNameThatATerminalWouldObey) {
   const ScratchFolder folder;
-  // A name that colours, breaks the line, and turns round what stands behind it.
+  // This name changes the colour, breaks the line, and reverses the direction of the text behind
+  // it.
   const std::string log = folder.File("a\x1b[31m\nb\xe2\x80\xae.lcm");
   const std::string shown = folder.File("a\\u001b[31m\\u000ab\\u202e.lcm");
   const auto expect_shown = [&](std::vector<std::string> arguments) {
@@ -256,7 +258,7 @@ TEST(CommandLineTest, PrintsNoNameThatATerminalWouldObey) {
   const std::vector<std::string> run{
       "run", "scenario/paper.json", "--transport", "direct", "--set", "/steps=5", "--log", log};
   expect_shown(run);
-  expect_shown(run);  // it is there
+  expect_shown(run);  // the log now exists
   for (const char* verb : {"digest", "metrics", "events"}) expect_shown({verb, log});
   expect_shown({"diff", log, log + "x"});
   std::filesystem::resize_file(log, std::filesystem::file_size(log) - 1);
@@ -284,7 +286,7 @@ TEST(CommandLineTest, PrintsJsonThatNoTerminalObeysOfAnyName) {
   for (const char* control : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"}) {
     EXPECT_THAT(digest.out, testing::Not(HasSubstr(control)));
   }
-  // Which JSON cannot carry.
+  // JSON cannot carry this name: it is not valid UTF-8.
   const std::string latin = folder.File("f\xf6hn.lcm");
   std::filesystem::rename(log, latin);
   for (const char* verb : {"digest", "metrics", "events"}) {

@@ -1,5 +1,5 @@
-// Real time on networks that lose one channel for good: who does not hear it is named, and started
-// again if it is the runner's; and no run ends well with a role that is deaf.
+// Real time on networks that lose one channel for good. The run names a role that does not hear it,
+// and starts the role again if the runner owns it. A run with a deaf role fails.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class DeafRoleTest : public NetworkTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Run(arguments);
   }
-  /// Steps of a channel in the log of the last run.
+  /// The newest step of a channel in the log of the last run.
   std::int64_t NewestStepOf(std::string_view channel) {
     std::int64_t newest = -1;
     EventLogReader reader(Log());
@@ -45,13 +45,13 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   Background run(machine.On(RealtimeRun(kSeconds, {})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN nobody hears where the cars are
+  // WHEN no role hears where the cars are
   machine.LoseChannel("TRUTH");
   ASSERT_TRUE(run.WaitForErr("radar (pid " + std::to_string(PidOf(run.Err(), "radar")) +
                              ") has heard no TRUTH for 2."))
       << run.Err();
   machine.LoseNothing();
-  // THEN who reads it was started again, and computes to the end
+  // THEN the run starts a role again that reads TRUTH, and the role computes to the end
   run.Wait();
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();
@@ -64,7 +64,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   }
   EXPECT_TRUE(radar) << result["restarts"];
   EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);
-  // AND the run does not end well: two seconds of the log are not to be had
+  // AND the run fails: about two seconds are missing in the log for good
   EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: the log is not complete: at least "));
 }
 

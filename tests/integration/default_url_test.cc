@@ -1,5 +1,5 @@
-// Every program obeys LCM_DEFAULT_URL, LCM's own included; and a wait for what is not there says
-// what starts it, and has a limit.
+// Every program obeys LCM_DEFAULT_URL, as LCM's own programs do. A program that waits for a process
+// says which command starts that process. The wait has a limit.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
   const json seen = TopOnce(meeting);
   EXPECT_EQ(seen["runs"].size(), 1U);
   EXPECT_TRUE(seen["announced"].empty()) << "it is where programs listen";
-  // BUT the command line wins
+  // AND the command line has precedence over the variable
   const std::string other = FreshMulticastUrl();
   Background told(meeting.Run({"--pace", "1", "--lcm-url", other}));
   EXPECT_THAT(PlaceOf(told).url, testing::StartsWith(other));
@@ -54,7 +54,7 @@ TEST(DefaultUrlTest, IsWhereATableFindsARoleFromElsewhere) {
   const Outcome table = RunCommand(meeting.Command("fogline", external));
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_EQ(json::parse(table.out)["transport"], meeting.url());
-  // A table without one is direct as ever.
+  // A table without an external role still runs in one process ("direct").
   const Outcome direct = RunCommand(meeting.Command("fogline", what));
   EXPECT_EQ(json::parse(direct.out)["transport"], "direct");
   EXPECT_EQ(json::parse(direct.out)["rows"], json::parse(table.out)["rows"]);
@@ -149,7 +149,7 @@ std::string ReadmeLinesOfLogger() {
 }
 
 TEST(ReadmeLinesTest, RecordARunWithLcmLoggerByTheLinesThatItShows) {
-  // GIVEN the lines, with a port that no other test has, and a run of three seconds
+  // GIVEN these lines, with a port that no other test has, and a run of three seconds
   std::string lines = ReadmeLinesOfLogger();
   const std::string port = "udpm://239.255.76.67:7700?ttl=0";
   ASSERT_THAT(lines, HasSubstr(port));
@@ -157,7 +157,7 @@ TEST(ReadmeLinesTest, RecordARunWithLcmLoggerByTheLinesThatItShows) {
   const std::string run = "fogline run scenario/paper.json";
   ASSERT_THAT(lines, HasSubstr(run));
   lines.insert(lines.find(run) + run.size(), " --set /steps=30 --log run.lcm");
-  // WHEN a shell does them in a folder of its own
+  // WHEN a shell executes them in a folder of its own
   const ScratchFolder folder;
   std::filesystem::create_directory_symlink(SourceDirectory() / "scenario",
                                             folder.path() / "scenario");
@@ -165,7 +165,7 @@ TEST(ReadmeLinesTest, RecordARunWithLcmLoggerByTheLinesThatItShows) {
       RunCommand({"bash", "-c",
                   "cd " + folder.path().string() + " && PATH=" + ProgramDirectory().string() +
                       ":$PATH\n" + lines + "\nkill -INT $!; wait"});
-  // THEN lcm-logger has steps of the run; it begins with the one at which it was there
+  // THEN lcm-logger has logged steps of the run; the first is the step at which it began to listen
   EventLogReader log(folder.File("copy.lcm"));
   std::int64_t truths = 0;
   while (const auto event = log.Next()) truths += event->channel == "TRUTH" ? 1 : 0;

@@ -1,5 +1,5 @@
-// What a program does where stderr cannot be written, or is read by no process; and which signals
-// end it.
+// What a program does if it cannot write to stderr, or if no process reads its stderr; and which
+// signals end it.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -29,7 +29,7 @@ namespace {
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// A busy machine takes so long for a run of 20 steps, and not longer.
+// A run of 20 steps takes less than this, even on a busy machine.
 constexpr std::chrono::seconds kPatience(60);
 
 std::string Content(const std::filesystem::path& file) {
@@ -37,7 +37,7 @@ std::string Content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A command with a redirection or a builtin of the shell before it, such as "exec 2>/dev/full".
+/// A command after a redirection or a builtin of the shell, such as "exec 2>/dev/full".
 Words Shell(const std::string& before, Words command) {
   command.insert(command.begin(), {"sh", "-c", before + "; exec \"$@\"", "sh"});
   return command;
@@ -47,7 +47,7 @@ Words ShortRun(const std::string& log) {
   return {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=20", "--log", log};
 }
 
-/// A pipe with a name that nothing can be written into any more, and that is not read.
+/// A named pipe that is full and that no process reads.
 class FullPipe {
  public:
   explicit FullPipe(const std::string& name) : name_(name) {
@@ -75,7 +75,7 @@ std::vector<pid_t> ChildrenOf(pid_t pid) {
   return {std::istream_iterator<pid_t>(words), {}};
 }
 
-/// Waits for the process of a role that a run has started. @return 0 if it does not come
+/// Waits for the process of a role that a run starts. @return 0 if none appears
 pid_t WaitForRole(pid_t run, const std::string& program) {
   const TimePoint end = Clock::now() + kPatience;
   while (Clock::now() < end) {
@@ -152,7 +152,7 @@ TEST(DiagnosticsTest, AnErrorIsNotWaitedForWithoutEnd) {
 }
 
 TEST(DiagnosticsTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
-  // The shell's own writes to the pipe wait for room, before the run and after it.
+  // The shell's own writes to the pipe block until there is room, before the run and after it.
   const ScratchFolder folder;
   const Outcome outcome =
       RunCommand({"bash", "-c",
@@ -167,11 +167,11 @@ TEST(DiagnosticsTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
 TEST(DiagnosticsTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
-  // GIVEN a run whose stderr takes nothing
+  // GIVEN a run with a stderr that accepts nothing
   Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
                                             "--set", "/steps=60", "--pace", "2", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
-  // WHEN a role is killed THEN the run starts it again, although it cannot say so
+  // WHEN a role is killed THEN the run starts it again, although it cannot report so
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
   kill(radar, SIGKILL);
@@ -185,17 +185,17 @@ TEST(DiagnosticsTest, ARunGoesOnWhenItsTerminalIsGone) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
-  // GIVEN a run that says on a terminal what goes on
+  // GIVEN a run that reports its progress on a terminal
   Background run(Shell("exec 2>" + std::string(ptsname(terminal)),
                        {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=60",
                         "--pace", "2", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
-  // WHEN its window is closed, and then there is something to say
+  // WHEN the terminal's window is closed and a role is killed, which the run would report
   close(terminal);
   kill(radar, SIGKILL);
-  // THEN it goes on
+  // THEN the run goes on
   EXPECT_EQ(run.Wait(), 0);
 }
 
@@ -214,7 +214,7 @@ TEST(DiagnosticsTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
   ASSERT_EQ(RunCommand(sweep).code, 0);
   const std::string whole = Content(file);
   std::filesystem::resize_file(file, whole.rfind('\n', whole.size() - 2) + 1);
-  // It says how many rows are there.
+  // The sweep reports on stderr how many rows the file already has.
   EXPECT_EQ(RunCommand(Shell("exec 2>&-", sweep)).code, 0);
   EXPECT_EQ(Content(file), whole);
 }
@@ -222,18 +222,18 @@ TEST(DiagnosticsTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
 TEST(InterruptTest, SignalsThatWereIgnoredAtTheStartStayIgnoredInEveryProgram) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
-  // GIVEN a run as under nohup, in the background of a script
+  // GIVEN a run that ignores SIGHUP and SIGINT, as under nohup or in the background of a script
   Background run(Shell("trap '' HUP INT", {Program("fogline"), "run", "scenario/paper.json",
                                            "--set", "/steps=40", "--pace", "2", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
-  // WHEN the terminal goes, or Ctrl-C is pressed there
+  // WHEN the terminal is closed, or a person presses Ctrl-C there
   for (const int signal : {SIGHUP, SIGINT}) {
     run.Signal(signal);
     kill(radar, signal);
   }
-  // THEN the run goes on to its end, with the same processes
+  // THEN the run goes on to its end with the same processes
   EXPECT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_THAT(run.Out(), HasSubstr("40 steps"));
   EXPECT_EQ(run.Out().find("started again"), std::string::npos) << run.Out();
@@ -248,7 +248,7 @@ TEST(InterruptTest, TheRelayEndsInOrderWhenItsTerminalIsGoneUnlessThatIsIgnored)
   Background stays(Shell("trap '' HUP INT TERM", relay));
   ASSERT_TRUE(stays.WaitForOut("\n")) << stays.Err();
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) stays.Signal(signal);
-  // It still answers.
+  // The relay still answers.
   const std::string url = stays.Out().substr(0, stays.Out().find('\n'));
   EXPECT_THAT(RunCommand({Program("fogline"), "doctor", "--lcm-url", url}).out,
               HasSubstr("the relay " + url + " answers\n"));

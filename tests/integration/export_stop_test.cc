@@ -1,4 +1,4 @@
-// `fogline export` that is stopped or killed while some of its files are written and some are not.
+// `fogline export` is stopped or killed when it has written some of its files.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -31,8 +31,8 @@ std::string Content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// An export into a folder in which one file is a pipe that is never read: it waits there, with
-/// some files written and some not.
+/// An export into a folder in which one file is a pipe that no process reads. The export waits at
+/// this file, with some files written and some not.
 class HaltedExport {
  public:
   HaltedExport(const std::string& log, const std::string& folder, const std::string& file)
@@ -98,12 +98,13 @@ TEST_F(HaltedExportTest, LeavesNoFolderWithFilesOfTwoLogsWhenItIsKilled) {
   // GIVEN the log of a shorter run
   const std::string other = folder_.File("other.lcm");
   Run(other, "/steps=200");
-  // WHEN its export is killed while some files have their names and some have not
+  // WHEN its export is killed while some files have their final names and some have not
   HaltedExport halted(other, out_, "ACC_COMMAND.csv");
   ASSERT_TRUE(halted.WaitUntilItWaits()) << halted.process().Err();
   halted.process().Signal(SIGKILL);
   halted.process().Wait();
-  // THEN those that are there are of one log, and the last one shows that not all are
+  // THEN the files that are there come from one log. The missing scenario.json, which an export
+  // writes last, shows that the export is not whole.
   EXPECT_FALSE(std::filesystem::exists(out_ + "/scenario.json"));
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(out_)) {

@@ -1,4 +1,4 @@
-// `fogline export`: other programs get every number of a log to the last bit.
+// `fogline export` gives other programs every number of a log, exact to the last bit.
 #include <matio.h>
 #include <unistd.h>
 
@@ -37,7 +37,8 @@ std::string Content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Calls visit(name, values) for every field of a message, that of the header by its dotted names.
+/// Calls visit(name, values, is_list) for every field of a message. Fields of the header have
+/// dotted names.
 template <class M, class Visit>
 void ForEachField(const M& message, const Visit& visit) {
   VisitFields(message, [&]<class V>(std::string_view name, const V& value) {
@@ -63,13 +64,13 @@ void ForEachMessage(const StepMessages& messages, const Visit& visit) {
   });
 }
 
-/// A field of a channel in a log, by which a MAT-file is judged.
+/// The values of one field of a channel in a log. The tests compare MAT-files with them.
 struct Field {
   std::string type;
-  std::vector<std::string> rows;  // bytes, of a message each
-  std::size_t size = 0;           // of a number
+  std::vector<std::string> rows;  // the bytes of the field in each message
+  std::size_t size = 0;           // bytes of one number
   std::size_t columns() const { return rows.front().size() / size; }
-  /// As MAT-files have them: column by column.
+  /// The bytes in the order of a MAT-file: column by column.
   std::string ByColumns() const {
     std::string bytes;
     for (std::size_t i = 0; i < columns(); ++i) {
@@ -79,7 +80,7 @@ struct Field {
   }
 };
 
-/// Those of every channel, by names such as "TRUTH.header.step".
+/// The fields of every channel, by names such as "TRUTH.header.step".
 std::map<std::string, Field> FieldsOf(const std::string& log) {
   std::map<std::string, Field> fields;
   RunLogReader reader(log);
@@ -101,7 +102,7 @@ class MatFile {
  public:
   explicit MatFile(const std::string& file) : file_(Mat_Open(file.c_str(), MAT_ACC_RDONLY)) {}
 
-  /// What a name such as "TRUTH.header.step" stands for; nullptr if there is none.
+  /// The variable with a name such as "TRUTH.header.step", nullptr if there is none.
   const matvar_t* Find(const std::string& name) {
     std::istringstream parts(name);
     std::string part;
@@ -163,7 +164,7 @@ class ExportTest : public testing::Test {
   const std::string mat_ = folder_.File("run.mat");
 };
 
-/// A CSV file that is read line by line.
+/// A reader that goes through a CSV file line by line.
 class Csv {
  public:
   explicit Csv(const std::filesystem::path& file) : stream_(Content(file)) { names_ = Cells(); }
@@ -204,7 +205,7 @@ TEST_F(ExportTest, WritesEveryNumberOfEveryChannelAsCsvToTheLastBit) {
             for (std::size_t i = 0; i < values.size(); ++i, ++next) {
               ASSERT_LT(next, cells.size());
               EXPECT_EQ(file.names()[next], is_list ? fmt::format("{}.{}", name, i) : name);
-              // int8_t is a number here, too.
+              // from_chars() must parse int8_t as a number, not as a character.
               std::conditional_t<std::is_same_v<T, std::int8_t>, int, T> number{};
               const std::string& cell = cells[next];
               std::from_chars(cell.data(), cell.data() + cell.size(), number);
@@ -227,7 +228,7 @@ TEST_F(ExportTest, WritesEqualMatFilesOfLevel5ForEqualLogs) {
   const std::string content = Content(mat_);
   EXPECT_EQ(content, Content(again));
   EXPECT_THAT(content, StartsWith("MATLAB 5.0 MAT-file"));
-  // Version 0x0100 and the mark of little endian, as level 5 files have it at byte 124.
+  // Bytes 124 to 127 of a level 5 file: version 0x0100 and the mark of little endian.
   EXPECT_EQ(content.substr(124, 4), std::string("\0\1IM", 4));
 }
 
@@ -270,7 +271,7 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   EXPECT_EQ(error(out_), out_ + "/TRUTH.csv: error: --out: the file exists; --force replaces it\n");
   EXPECT_EQ(Export({"--out", mat_, "--force"}).code, 0);
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 0);
-  // Not even then what no export has written.
+  // --force does not replace a file that no export has written.
   std::ofstream(mat_) << "MATLAB 5.0 MAT-file, my own analysis";
   EXPECT_EQ(Export({"--out", mat_, "--force"}).err,
             mat_ + ": error: --out: the file is no export and stays as it is, --force or not\n");
@@ -308,7 +309,8 @@ TEST_F(ExportTest, FailsOnAFullDiskAndKeepsTheMatFileThatWasThere) {
   if (const Outcome own = RunCommand({"unshare", "--mount", "true"}); own.code != 0) {
     return MachineLacks("mount namespaces: " + own.err);
   }
-  // Of 64 KiB, which hold some channels of the log and not all. It is mounted for these commands.
+  // A file system of 64 KiB, which holds some channels of the log but not all. It is mounted only
+  // for these commands.
   const ScratchFolder folder;
   const Outcome outcome = RunCommand({"unshare", "--mount", "sh", "-c",
                                       "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
@@ -327,7 +329,7 @@ TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
   const std::string last = out_ + "/scenario.json";
   std::filesystem::remove(last);
   std::filesystem::create_directory(last);
-  // GIVEN another log
+  // GIVEN another log: the same one cut in half
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
   const Outcome outcome = Export({"--out", out_, "--force"});
   EXPECT_EQ(outcome.code, 2);
@@ -335,7 +337,7 @@ TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
   EXPECT_EQ(Content(out_ + "/TRUTH.csv"), before);
 }
 
-// The bytes of every field in Octave, column by column, in hexadecimal.
+// Prints the bytes of every field in Octave, column by column, in hexadecimal.
 constexpr const char* kOctave = R"(
   s = load(argv(){1});
   function show(name, x)
@@ -362,7 +364,7 @@ TEST_P(OctaveExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
   std::ofstream(folder_.File("show.m")) << kOctave;
   const Outcome octave = RunCommand({"octave-cli", "--norc", folder_.File("show.m"), mat_});
   ASSERT_EQ(octave.code, 0) << octave.err;
-  // GIVEN the same fields out of the log: for each a row of numbers for each message
+  // GIVEN the same fields from the log, with a row of numbers for each message
   std::vector<std::string> expected;
   for (const auto& [name, field] : FieldsOf(log_)) {
     std::string hex;
@@ -373,7 +375,7 @@ TEST_P(OctaveExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
         fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), field.columns(), hex));
   }
   expected.emplace_back("title F\u00f6hn");
-  // THEN they are what Octave shows
+  // THEN Octave shows the same
   std::vector<std::string> shown;
   std::istringstream lines(octave.out);
   for (std::string line; std::getline(lines, line);) shown.push_back(line);

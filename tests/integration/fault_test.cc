@@ -1,5 +1,5 @@
-// What happens to a run when a process, the runner or the user ends it. (When roles may be started
-// again: crash_test.cc.)
+// How a run ends if one of its processes, its runner or the user ends it. (crash_test.cc has the
+// runs that may start roles again.)
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,17 +16,17 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// Steps after which a run counts as well under way: one second of it.
+// A run is well under way after so many steps: one second of it.
 constexpr int kUnderWay = 10;
 
-/// A run in real speed that is well under way and ends when a role does.
+/// A run in real speed that is well under way. It ends if one of its roles ends.
 class PacedRun {
  public:
   PacedRun()
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // Under way: so many steps are on disk.
+    // It is under way when so many steps are on disk.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);
@@ -73,7 +73,7 @@ TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAnd
   const std::string err = paced.run().Err();
   EXPECT_NE(err.find("error: " + role + " (pid "), std::string::npos) << err;
   EXPECT_NE(err.find("was killed by signal 9"), std::string::npos) << err;
-  // AND nothing runs on, and the log is readable
+  // AND no process is left, and the log is readable
   for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
   EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
 }

@@ -1,4 +1,4 @@
-// A run under thousands of datagrams a second that are none of its messages.
+// A run under thousands of datagrams per second that are not its messages.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -9,19 +9,21 @@
 namespace fogline::test {
 namespace {
 
-// Simulated time of the scenario.
+// Simulated time of the scenario, seconds.
 constexpr double kScenarioS = 50;
 
-/// How long a run shall take: the campaign asks for more. It has the machine to itself, too, so
-/// that it can judge rates and times.
+/// How long a run shall take, in seconds, if the campaign sets it. The campaign runs this test
+/// alone on the machine, so only there it judges rates and times.
 const char* const kCampaignSeconds = std::getenv("FOGLINE_TEST_SECONDS");
 double Seconds(double usually) {
   return kCampaignSeconds != nullptr ? std::atof(kCampaignSeconds) : usually;
 }
 
-/// A rate that a machine bears which has other work to do, and the one that is promised.
+/// Datagrams per second. The campaign uses the rate that Fogline promises to withstand. The plain
+/// tests use a rate that a machine with other work to do withstands.
 const double kRateHz = kCampaignSeconds != nullptr ? 20'000 : 4'000;
-/// What is sent in this time at least; where other work is done, enough to be seen.
+/// The least number of datagrams that are sent in this time. The plain tests ask only for a visible
+/// number.
 double Plenty(double seconds) {
   return kCampaignSeconds != nullptr ? 0.9 * kRateHz * seconds : 1'000;
 }
@@ -30,11 +32,11 @@ class HostileTrafficTest : public NetworkTest {
  protected:
   struct Ended {
     nlohmann::json result;  // of the run
-    nlohmann::json sent;    // at the run
+    nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run of so many seconds on a machine whose network is full of hostile traffic since before it
-  /// began. It must succeed.
+  /// A run that takes so many seconds. The network of its machine is full of hostile traffic from
+  /// before the start. The run must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, double seconds) {
     const Machine machine("target");
@@ -54,7 +56,7 @@ class HostileTrafficTest : public NetworkTest {
 TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
   const double seconds = Seconds(4);
   const auto [result, sent] = RunUnder({}, seconds);
-  // GIVEN that it was there
+  // GIVEN that hostile datagrams were sent
   EXPECT_GT(sent["sent"], Plenty(seconds)) << sent;
   for (const char* kind :
        {"noise", "noise_on_a_channel", "not_finite", "wrong_step", "foreign_run", "wrong_type",
@@ -63,20 +65,20 @@ TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
   }
   // THEN the result is that of the undisturbed run
   EXPECT_EQ(result["digest"], Undisturbed());
-  // AND it took no longer than its pace wants, but for moments
+  // AND it took little longer than its pace asks
   if (kCampaignSeconds != nullptr) {
     EXPECT_LT(result["wall_s"], 2 * seconds);
   }
-  // AND what was refused is counted by its kind
+  // AND the run counts each kind of refused datagram
   for (const char* kind : {"foreign", "malformed", "wrong_type", "not_finite", "out_of_window"}) {
     EXPECT_GT(result["refused"][kind], kCampaignSeconds != nullptr ? 500 : 50) << result["refused"];
   }
-  // AND of those who claimed to be of other runs a few are named
+  // AND it names some of the senders that claimed to be of other runs
   EXPECT_FALSE(result["strangers"].empty());
 }
 
-/// Floods of the kinds that cost most: what must be answered, what LCM's parser takes amiss, and
-/// what was true a moment ago.
+/// Floods of the kinds that cost most: requests that must be answered, fragments that LCM's parser
+/// handles badly, and copies of genuine messages.
 class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(FloodTest, ChangesNoResult) {

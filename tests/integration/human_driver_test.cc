@@ -1,4 +1,5 @@
-// A driver with weaknesses: one digest however the messages travel, whoever reads whom.
+// A driver with human weaknesses: the digest is the same on every transport, whichever roles read
+// each other.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Fog early in a short run, and a driver who takes over in it.
+/// Fog early in a short run, in which the driver takes over.
 const Words kFoggy{"/steps=60",      "/fog/model=beam",   "/fog/visibility_m=40",
                    "/fog/start_s=1", "/fog/duration_s=3", "/arbitrator/threshold=0.5"};
 

@@ -1,4 +1,4 @@
-// --json of every verb that reports: one JSON document on stdout and nothing else.
+// --json of every verb that reports prints one JSON document on stdout and nothing else.
 #include <map>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A log for the verbs that read one, behind a recorded leader for `compare`.
+/// A log behind a recorded leader (for `compare`). The verbs that read a log read this one.
 class JsonOutputTest : public testing::Test {
  protected:
   JsonOutputTest() : log_(folder_.File("run.lcm")) {
@@ -26,7 +26,7 @@ class JsonOutputTest : public testing::Test {
     EXPECT_EQ(run.code, 0) << run.err;
   }
 
-  /// What to call each verb with.
+  /// The arguments of each verb.
   std::map<std::string, std::vector<std::string>> Calls() const {
     const std::string paper = "scenario/paper.json";
     const std::string url = FreshMulticastUrl();
@@ -64,7 +64,7 @@ TEST_F(JsonOutputTest, IsOneDocumentForEveryVerbThatReports) {
     arguments.insert(arguments.begin(), {Program("fogline"), verb});
     arguments.emplace_back("--json");
     const Outcome outcome = RunCommand(arguments);
-    // Of doctor, 1 is an answer too.
+    // doctor also answers with exit code 1.
     EXPECT_TRUE(outcome.code == 0 || (verb == "doctor" && outcome.code == 1)) << outcome.err;
     EXPECT_TRUE(nlohmann::json::accept(outcome.out)) << outcome.out;
   }

@@ -1,4 +1,4 @@
-// Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it,
+// Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it, and
 // lcm-spy shows it.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -23,12 +23,12 @@ namespace {
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// A virtual machine starts, and a window opens, within this even when every processor is busy.
+// A Java virtual machine starts, and a window opens, within this time even on a busy machine.
 constexpr seconds kPatience(60);
 
 using Payload = std::vector<std::uint8_t>;
 
-/// What a log or a network carried: payloads by channel, in order of arrival.
+/// The payloads of a log or a network by channel, in order of arrival.
 using Traffic = std::map<std::string, std::vector<Payload>, std::less<>>;
 
 Traffic ReadTraffic(const std::string& log) {
@@ -41,7 +41,7 @@ Traffic ReadTraffic(const std::string& log) {
   return traffic;
 }
 
-/// Payloads by step. A repetition (a repair) is allowed if it is the same, byte by byte.
+/// Payloads by step. A step may come again (a repair) if all its bytes are the same.
 std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
   std::map<std::int64_t, Payload> steps;
   for (const Payload& payload : payloads) {
@@ -62,8 +62,8 @@ std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& pa
   return parts;
 }
 
-/// Publishes on a channel of no role until `seen`: whoever has seen it listens, and has got all
-/// that was sent before. False after kPatience.
+/// Publishes on a channel of no role until `seen` is true. The program that has seen the mark
+/// listens and has got everything that was sent before it. @return false after kPatience
 bool Mark(Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
   const auto end = Clock::now() + kPatience;
   while (!seen()) {
@@ -74,8 +74,8 @@ bool Mark(Bus& bus, const std::string& channel, const std::function<bool()>& see
   return true;
 }
 
-/// The command, run before all other work if that is permitted. lcm-logger keeps 30 messages that
-/// it has no time for, and loses the next ones: on a busy machine those of a few ms.
+/// The command, with real-time priority if that is permitted. lcm-logger queues 30 messages and
+/// loses the ones beyond that: on a busy machine, those of a few milliseconds.
 std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
   const std::vector<std::string> first{"chrt", "--rr", "1"};
   std::vector<std::string> probe = first;
@@ -93,11 +93,11 @@ class Logger {
         process_(BeforeOtherWork(
             {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), file_})) {}
 
-  /// Waits until it has logged everything that was sent so far.
+  /// Waits until lcm-logger has logged everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
     return Mark(bus_, mark, [&] { return Content().find(mark) != std::string::npos; });
   }
-  /// Ends it as a person does, with Ctrl-C. @return its exit code
+  /// Ends lcm-logger with Ctrl-C, as a person does. @return its exit code
   int End() {
     process_.Signal(SIGINT);
     return process_.Wait();
@@ -116,8 +116,7 @@ class Logger {
   Background process_;
 };
 
-/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own, with SpyProbe looking at
-/// it.
+/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads its window.
 class Spy {
  public:
   explicit Spy(Bus& bus)
@@ -130,7 +129,7 @@ class Spy {
                                               Program("fogline"), "spy", "--lcm-url", bus.url()});
   }
 
-  /// Waits until it shows everything that was sent so far.
+  /// Waits until lcm-spy shows everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
     return Mark(bus_, mark, [&] {
       const std::string out = process_->Out();
@@ -144,7 +143,7 @@ class Spy {
     std::int64_t messages = 0;
     std::int64_t undecodable = 0;
   };
-  /// The table in its window, by channel.
+  /// The table in lcm-spy's window, by channel.
   std::map<std::string, Row> Rows() const {
     std::map<std::string, Row> rows;
     std::istringstream lines(process_->Out());
@@ -162,7 +161,7 @@ class Spy {
   std::string Err() const { return process_->Err(); }
 
  private:
-  /// @return the agent's jar
+  /// Compiles SpyProbe. @return the path of its jar
   std::string BuildProbe() const {
     const std::string source = (SourceDirectory() / "tests/integration/SpyProbe.java").string();
     const std::string classes = folder_.File("classes");
@@ -190,7 +189,7 @@ std::vector<std::string> TypeNames() {
       kGraph);
 }
 
-/// Removes the signatures of all that processes of a run have sent; each message has one.
+/// Removes the signatures from all messages of a run. Each message must have one.
 void RemoveSignatures(Traffic& traffic) {
   for (const ChannelInfo& channel : kChannels) {
     const auto found = traffic.find(channel.name);
@@ -202,7 +201,8 @@ void RemoveSignatures(Traffic& traffic) {
   }
 }
 
-/// Plays a log of signed traffic to somebody who has the key. @return how many TRUTH he takes
+/// Plays a log of signed traffic to a receiver that has the key. @return how many TRUTH messages
+/// the receiver accepts
 std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   Bus bus(FreshMulticastUrl());
   bus.Secure(Seal(SealKey::Load(key), Role::kFusion));
@@ -217,13 +217,13 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
-// After so many steps the driver waits for lcm-spy. What is sent next finds it ready; of the rest
-// it may lose what comes while it has no processor.
+// After so many steps the driver waits for lcm-spy, so lcm-spy is ready for the next messages. It
+// may lose later messages of this interval if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 
-/// The driver of a run, which answers for a step only when lcm-logger has written what was sent
-/// before it. lcm-logger queues 30 messages and lcm-spy as many as its socket holds: neither can
-/// promise more on a busy machine, and a run that waits for its driver sends fewer at a time.
+/// The driver of a run. It answers for a step only after lcm-logger has written everything that was
+/// sent before. lcm-logger queues 30 messages, and lcm-spy as many as its socket holds. Neither can
+/// promise more on a busy machine. A run that waits for its driver sends fewer messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
@@ -233,10 +233,10 @@ class DriverThatWaits {
     node_.emplace(bus_, std::nullopt);
   }
 
-  /// Takes part in one run of `steps` steps. False if it takes too long.
+  /// Takes part in one run of `steps` steps. @return false if it takes too long
   [[nodiscard]] bool TakePart(std::int64_t steps) {
     std::int64_t waited = 0;
-    auto end = Clock::now() + kPatience;  // of the next step
+    auto end = Clock::now() + kPatience;  // the time limit of the next step
     while (!node_->left() && Clock::now() < end) {
       const TimePoint now = Clock::now();
       bus_.Wait(std::min(node_->Poll(now) - now, Duration(milliseconds(100))));
@@ -252,7 +252,7 @@ class DriverThatWaits {
 
  private:
   Bus bus_;
-  std::int64_t begun_ = 0;  // steps
+  std::int64_t begun_ = 0;  // the number of steps that have begun
   std::optional<StepNode<Driver>> node_;
   Logger& logger_;
   Spy& spy_;
@@ -262,7 +262,7 @@ enum class Signing { kNone, kKey };
 class LoggerAndSpyTest : public testing::TestWithParam<Signing> {};
 
 TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
-  // GIVEN lcm-logger and lcm-spy, which listen
+  // GIVEN lcm-logger and lcm-spy, both listening
   const ScratchFolder folder;
   const std::string key = GetParam() == Signing::kKey ? folder.File("key") : "";
   constexpr int kSteps = 40;
@@ -273,7 +273,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   Spy spy(bus);
   ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
   ASSERT_TRUE(spy.CatchUp("BEFORE")) << spy.Err();
-  // WHEN a run goes on, whose driver waits for them
+  // WHEN a run takes place and its driver waits for both
   std::vector<std::string> command{Program("fogline"),
                                    "run",
                                    "scenario/paper.json",
@@ -315,7 +315,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
       EXPECT_EQ(ScenarioTexts(got), ScenarioTexts(expected->second));
     }
   }
-  // AND its log is as good as ours
+  // AND its log gives the same results as ours
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", "--json", own, debian});
   ASSERT_EQ(metrics.code, 0) << metrics.err;
   const auto logs = nlohmann::json::parse(metrics.out);
@@ -323,7 +323,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   EXPECT_EQ(logs[1]["digest"], logs[0]["digest"]);
   EXPECT_EQ(logs[1]["metrics"], logs[0]["metrics"]);
   EXPECT_EQ(logs[0]["digest"], nlohmann::json::parse(run.Out())["digest"]);
-  // AND lcm-spy shows every channel by its type; only RESEND may have had nothing to carry
+  // AND lcm-spy shows every channel with its type. RESEND may be missing, if no message came on it.
   const auto rows = spy.Rows();
   const std::vector<std::string> types = TypeNames();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
@@ -336,7 +336,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
     EXPECT_EQ(row->second.undecodable, 0);
     EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? kSteps / kStepsOfSpy : 1);
   }
-  // AND what lcm-logger has logged of signed traffic is signed when lcm-logplayer plays it
+  // AND the signatures in lcm-logger's log still hold when lcm-logplayer plays it
   if (!key.empty()) {
     EXPECT_EQ(PlayedAndVerified(debian, key), logged["TRUTH"].size());
   }
@@ -376,9 +376,9 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
     bus.Drain();
     return ended;
   }));
-  // THEN everything has arrived, in order, and decodes
+  // THEN every message has arrived, in order, and decodes
   Traffic logged = ReadTraffic(log);
-  EXPECT_EQ(logged.erase(std::string(kLogSealChannel)), 1U);  // no message of a process
+  EXPECT_EQ(logged.erase(std::string(kLogSealChannel)), 1U);  // no process sends it
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());

@@ -1,5 +1,5 @@
-// The log and the traffic of a run are changed while it goes on, or later: the run, or the reader
-// of the log, says so.
+// The log or the traffic of a run is altered during the run or later. The run, or the reader of the
+// log, reports it.
 #include <fcntl.h>
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Words With(Words command, const Words& more) {
   return command;
 }
 
-/// Where the first event of a channel begins in a log, and the event.
+/// The offset of the first event of a channel in a log, and the event's size in bytes.
 struct Place {
   std::size_t at = 0;
   std::size_t size = 0;
@@ -55,7 +55,7 @@ void FlipLowestBit(const std::string& file, std::size_t at) {
   close(fd);
 }
 
-/// Writes the events of a log into another file, as `change` leaves them; without its seal.
+/// Copies the events of a log into another file, altered by `change` and without the log's seal.
 void Rewrite(const std::string& from, const std::string& to,
              const std::function<void(std::string_view channel, Payload&)>& change) {
   EventLogReader reader(from);
@@ -77,7 +77,7 @@ void PutRunId(std::int64_t run_id, Payload& bytes) {
 
 class LogIntegrityTest : public testing::Test {
  protected:
-  /// A run with a driver from elsewhere, so that the test says when it goes on.
+  /// A run with a driver from elsewhere. The run waits until the test starts this driver.
   Words Run(const Words& more = {}) const {
     return With({Program("fogline"), "run", "scenario/paper.json", "--json", "--external", "driver",
                  "--stall-timeout", "60", "--lcm-url", url_, "--log", log_},
@@ -92,7 +92,7 @@ class LogIntegrityTest : public testing::Test {
     EXPECT_EQ(outcome.code, code) << outcome.out << outcome.err;
     return nlohmann::json::parse(outcome.out, nullptr, false)[0];
   }
-  /// A log of a run in one process.
+  /// Makes a log of a run in one process. @return its path
   std::string DirectLog(const std::string& name, const Words& more = {}) const {
     const std::string log = folder_.File(name);
     const Outcome run =
@@ -115,7 +115,7 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN a log of another run, which says that it is of this one, takes the place of its log
+  // WHEN the log of another run that carries this run's id replaces its log
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });
@@ -130,8 +130,8 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
 
 class FlippedBitTest : public LogIntegrityTest {
  protected:
-  /// Lets a run begin, stops its driver, and has `disturb` change the log of what is on the disk.
-  /// @return what has come of the run
+  /// Lets a run begin, stops its driver, and calls `disturb`, which changes the log on disk. Then
+  /// the driver goes on. @return the outcome of the run
   Outcome Disturbed(const std::function<void(const Background& run)>& disturb) {
     Background run(Run({"--pace", "10", "--set", "/steps=60"}));
     Background driver(Driver());
@@ -205,7 +205,7 @@ TEST_F(LogIntegrityTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
   EXPECT_THAT(json["verified"]["roles"], IsEmpty());
   EXPECT_EQ(json["verified"]["left_out"][0]["why"], "a run in real time");
   EXPECT_EQ(Digest({log_}, 0)["seal"], "holds");
-  // WHEN a STATUS is changed, from which the measures of real time are made
+  // WHEN a STATUS is changed (the measures of real time come from STATUS)
   const Place status = PlaceOf(log_, "STATUS");
   FlipLowestBit(log_, status.at + status.size - 1);
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log_});
@@ -240,7 +240,7 @@ TEST_F(LogIntegrityTest, EveryReaderNamesALogThatWasChangedSinceItWasSealed) {
 
 TEST_F(LogIntegrityTest, TheFileOfASealedLogIsComparedByDigest) {
   const std::string log = DirectLog("log.lcm");
-  FlipLowestBit(log, 19);  // the time of the first event, which is in no digest
+  FlipLowestBit(log, 19);  // the time of the first event; no digest covers it
   EXPECT_EQ(Digest({log}, 1)["seal"], "broken");
 }
 
@@ -259,7 +259,7 @@ TEST_F(LogIntegrityTest, ALogIsSignedWithTheKeyOfItsRun) {
     EXPECT_EQ(Digest({log}, 0)["signature"], "not checked");
     EXPECT_EQ(Digest({log, "--key", key}, 0)["signature"], "holds");
     EXPECT_EQ(Digest({log, "--key", other}, 1)["signature"], "wrong");
-    // WHEN the log is changed, and sealed again without the key
+    // WHEN the log is changed and written again without the key
     const std::string forged = folder_.File("forged.lcm");
     Rewrite(log, forged, [](std::string_view channel, Payload& bytes) {
       if (channel == "RADAR") bytes.back() ^= 1;
@@ -275,7 +275,8 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   {
     Bus bus(url_);
     Background logger({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url_, copy});
-    // Until it listens, and until it has all.
+    // Waits until the logger listens ("BEGIN"), and later until it has logged every message
+    // ("END").
     const auto mark = [&](std::string_view channel) {
       const auto has = [&] {
         std::ifstream in(copy, std::ios::binary);
@@ -356,7 +357,7 @@ TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
 
 // ---- builds -------------------------------------------------------------------------------------
 
-/// A driver that is of another build: the same program, but for what its linker has said of it.
+/// A driver of another build: the same program with another build id.
 std::string DriverOfAnotherBuild(const ScratchFolder& folder) {
   const std::string program = folder.File("fogline-driver");
   std::filesystem::copy_file(Program("fogline-driver"), program);
@@ -414,7 +415,7 @@ TEST_F(LogIntegrityTest, RolesOfTheSameBuildAreAcceptedWithSameBuildOnEveryTrans
 
 // ---- traffic ------------------------------------------------------------------------------------
 
-/// Carries messages between a run and a role of it on another network, and alters one of them.
+/// Carries messages between a run and one role on another network. It alters one message.
 class Bridge {
  public:
   Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
@@ -422,7 +423,7 @@ class Bridge {
     for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
   }
 
-  /// The range of this step becomes larger on its way.
+  /// The range of this step's LIDAR message grows by 0.25 m on its way.
   void Alter(std::int64_t step) { altered_ = step; }
 
   void RunUntilTheEndOf(const Background& program) {
@@ -453,7 +454,7 @@ class Bridge {
 
 class AlteredTrafficTest : public LogIntegrityTest {
  protected:
-  /// A run whose LiDAR is behind the bridge.
+  /// A run with its LiDAR on the other side of the bridge.
   Outcome RunAcross(Bridge& bridge, const Words& more) {
     const Background lidar({Program("fogline-lidar"), "--lcm-url", lidar_url_});
     Background run(With({Program("fogline"), "run", "scenario/paper.json", "--json", "--external",

@@ -1,5 +1,5 @@
-// A log belongs to one run, and a folder of logs to one table, for as long as they write and read
-// there.
+// While a run writes its log, no other run may write it. While a table writes its folder of logs,
+// no other table may write there.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -35,7 +35,7 @@ bool HoldsALock(pid_t pid) {
 
 class LogLockTest : public testing::Test {
  protected:
-  /// A run into log_, or a table into its folder: it waits for a driver for as long as none comes.
+  /// A run into log_, or a table into its folder, which waits until a driver comes.
   std::vector<std::string> WaitingForADriver(const std::vector<std::string>& command) const {
     return With(command, {"--external", "driver", "--lcm-url", url_});
   }
@@ -65,14 +65,14 @@ class LogLockTest : public testing::Test {
 };
 
 TEST_F(LogLockTest, ASecondRunIntoOneLogIsRefusedByNameAndTheFirstKeepsItsResult) {
-  // GIVEN a run that has yet to begin: its log may be empty still
+  // GIVEN a run that waits for its driver, so its log may still be empty
   Background first(WaitingForADriver(With(run_, {"--json", "--seed", "1"})));
   ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
   ExpectRefusalOfASecondRun(first.pid());
   // WHEN it goes on
   const Background driver(StartADriver());
   ASSERT_EQ(first.Wait(), 0) << first.Err();
-  // THEN result and log are its own
+  // THEN its result and its log are those of this run
   const Outcome direct = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                      "--transport", "direct", "--seed", "1"});
   const auto result = nlohmann::json::parse(first.Out());
@@ -88,11 +88,11 @@ TEST_F(LogLockTest, ALogStaysLockedWhileItsRunStandsStillAndWhileItsRecorderIsSt
   Background first(With(run_, {"--pace", "1"}));
   ASSERT_TRUE(first.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN it stands still with its recorder dead; THEN the log is its own nevertheless
+  // WHEN the run is stopped and its recorder is dead, THEN other runs still may not write the log
   first.Signal(SIGSTOP);
   kill(PidOf(first.Err(), "recorder"), SIGKILL);
   ExpectRefusalOfASecondRun(first.pid());
-  // AND the recorder that is started in its place goes on with it
+  // AND the recorder that replaces the dead one continues the log
   first.Signal(SIGCONT);
   ASSERT_TRUE(first.WaitForErr("started again as pid")) << first.Err();
   const auto size = std::filesystem::file_size(log_);
@@ -100,13 +100,13 @@ TEST_F(LogLockTest, ALogStaysLockedWhileItsRunStandsStillAndWhileItsRecorderIsSt
   first.Signal(SIGINT);
   EXPECT_EQ(first.Wait(), 130);
   EXPECT_THAT(first.Err(), HasSubstr("the log so far: " + log_));
-  // AND it is free in the end
+  // AND the log is free after the run
   EXPECT_EQ(RunCommand(With(run_, {"--force", "--transport", "direct"})).code, 0);
 }
 
 TEST_F(LogLockTest, ARunInOneProcessLocksItsLogToo) {
   for (const char* transport : {"direct", "memq"}) {
-    // GIVEN a run of a day that has begun, and stands still
+    // GIVEN a run of a simulated day that has begun and is then stopped
     Background first(With(run_, {"--transport", transport, "--set", "/steps=1000000"}));
     ASSERT_TRUE(GrowsTo(1, log_)) << first.Err();
     first.Signal(SIGSTOP);
@@ -144,14 +144,14 @@ TEST_F(LogLockTest, ARunRefusesALogThatIsNotItsOwn) {
                         "--seed", "2", "--log", other})
                 .code,
             0);
-  // GIVEN a run whose recorder has begun its log
+  // GIVEN a run with a log that its recorder has begun
   Background run(WaitingForADriver(With(run_, {"--json"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
   // WHEN another log takes its place
   std::filesystem::rename(other, log_);
   const Background driver(StartADriver());
-  // THEN the run fails, and reports nothing
+  // THEN the run fails and reports no result
   EXPECT_EQ(run.Wait(), 3);
   EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: " + log_ + ": the log is that of run "));
   EXPECT_EQ(run.Out(), "");
@@ -170,7 +170,7 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
     EXPECT_EQ(second.err, logs + ": error: --logs: is being written by another table (pid " +
                               std::to_string(first.pid()) + ")\n");
   }
-  // A run may not take a log out of the folder either, but may have one of its own there.
+  // Another run may not replace a log of the table either, but it may write a log of its own there.
   const std::vector<std::string> run{
       Program("fogline"), "run",  "scenario/paper.json", "--transport", "direct",
       "--force",          "--log"};
@@ -200,18 +200,18 @@ TEST_F(LogLockTest, OfRunsThatBeginAtOnceIntoOneLogOneHasIt) {
 }
 
 TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
-  // GIVEN a run that waits in vain for its driver, with a scenario and no step in its log
+  // GIVEN a run that waits for a driver in vain; its log would hold a scenario and no step
   const Outcome run = RunCommand(With(WaitingForADriver(run_), {"--wait", "0.5"}));
   EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("waited 0.5 s for the driver in vain"));
   EXPECT_THAT(run.err, HasSubstr("\n  no log was written\n"));
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND a recorder that waits in vain for a run
+  // AND a recorder that waits for a run that never comes
   const std::vector<std::string> recorder{Program("fogline-recorder"), "--log",  log_, "--lcm-url",
                                           FreshMulticastUrl(),         "--wait", "0.5"};
   EXPECT_EQ(RunCommand(recorder).code, 3);
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND an older log is as it was, where it would have been replaced
+  // AND such a recorder does not touch an older log that it would have replaced
   ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
   const auto size = std::filesystem::file_size(log_);
   EXPECT_EQ(RunCommand(recorder).code, 3);
@@ -238,7 +238,7 @@ TEST_F(LogLockTest, AnEmptyFileIsAsGoodAsNone) {
 }
 
 TEST_F(LogLockTest, AnInterruptedRunSpeaksOfNoLogWhereThereIsNone) {
-  // GIVEN a run whose recorder never learns what to record
+  // GIVEN a run in which the recorder never gets the scenario
   Background run(With(run_, {"--faults", "loss=0.999999"}));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   run.Signal(SIGINT);

@@ -1,5 +1,5 @@
-// Real time on networks that lose much for a while: when they are clean again every role computes
-// again, whatever was lost, and a run that ends well has a whole log.
+// Real time on networks that lose many messages for a while. When the network is clean again, every
+// role computes again, whatever was lost. A run that succeeds has a whole log.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -21,25 +21,25 @@ namespace fogline::test {
 namespace {
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-// What the runner says without a key, as it ends: see the exit codes of `fogline run`.
+// Exit code of `fogline run` for a run that failed.
 constexpr int kFailed = 3;
 
 struct Burst {
   int loss_pct;
   double length_s;
-  std::size_t where;  // number of the machine that it befalls; kEverywhere
+  std::size_t where;  // index of the machine that loses messages, or kEverywhere
 };
 constexpr std::size_t kEverywhere = 99;
 
-/// A run with bursts of loss, one after the other.
+/// A run with several bursts of loss, one after the other.
 struct Plan {
   int rate_hz;
   int machines;
   std::vector<Burst> bursts;
-  double clean_s;  // after each burst
+  double clean_s;  // the time after each burst, without loss
 };
 
-/// What became of a role after a burst: from when the network was clean until it computed in time.
+/// The time from the end of a burst until a role computed in time again. Empty if it never did.
 struct Back {
   Role role;
   std::optional<double> after_s;
@@ -48,11 +48,11 @@ struct Back {
 struct Played {
   Plan plan;
   std::vector<std::vector<Back>> back;  // by burst
-  std::string trouble;                  // "" if the run ended as it should
+  std::string trouble;                  // "" if the run ended in an allowed way
   std::int64_t restarts = 0;
 };
 
-/// Machines on which all datagrams can be lost for a while.
+/// Machines that can lose all kinds of datagrams for a while.
 class Machines {
  public:
   explicit Machines(int count) {
@@ -82,7 +82,7 @@ class Machines {
   std::vector<const Machine*> all_;
 };
 
-/// Hears on the runner's machine what the roles of a run publish, and when.
+/// Hears, on the runner's machine, when the roles of a run publish which steps.
 class Listener {
  public:
   Listener(const Machine& machine, Duration period) : period_(period) {
@@ -97,7 +97,8 @@ class Listener {
       bus_->Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
         const auto* status = arrival.As<status_t>();
         if (status == nullptr || status->role != NameOf(Role::kRecorder)) return;
-        // Its STATUS comes now and then: what it has written was under way a moment ago.
+        // The recorder sends STATUS only now and then, so its period does not count: it is back if
+        // its last written step began after the burst.
         if (began_.contains(status->header.step)) back_.try_emplace(Role::kRecorder, Clock::now());
       });
     });
@@ -113,7 +114,7 @@ class Listener {
     }
     return newest_ >= step;
   }
-  /// From now on notes which roles compute steps that begin from now on.
+  /// Forgets all steps so far. Since() then counts only steps that begin later.
   void Forget() {
     began_.clear();
     back_.clear();
@@ -171,7 +172,7 @@ class BurstRun {
   }
 
  private:
-  static constexpr double kRest_s = 2;  // of the run, before and after the bursts
+  static constexpr double kRest_s = 2;  // seconds without bursts, at both ends of the run
 
   std::vector<std::string> Command() const {
     double run_s = 2 * kRest_s;
@@ -213,7 +214,7 @@ class BurstRun {
   static Duration Periods(double seconds) {
     return duration_cast<Duration>(std::chrono::duration<double>(seconds));
   }
-  /// The run ends well with a whole log, or says what is wrong.
+  /// Checks that the run either succeeded with a whole log or failed with an error text.
   void Judge(Background& run, Played& result) const {
     const int code = run.Wait();
     const auto json = nlohmann::json::parse(run.Out(), nullptr, false);
@@ -236,7 +237,7 @@ class BurstRun {
   Listener listener_;
 };
 
-/// Plays plans, several side by side: most of the time they wait.
+/// Plays plans, several at the same time, because a run mostly waits.
 std::vector<Played> PlayAll(std::deque<Plan> plans, unsigned at_once) {
   std::vector<Played> results;
   std::mutex mutex;
@@ -266,13 +267,14 @@ std::vector<Played> PlayAll(std::deque<Plan> plans, unsigned at_once) {
 /// The figures of one kind of burst at one rate.
 struct Figures {
   int bursts = 0;
-  int back = 0;  // of these, every role within the limit
+  int back = 0;  // bursts after which every role was back within the limit
   double longest_s = 0;
 };
 
 class LossBurstInRealtimeTest : public NetworkTest {
  protected:
-  /// Every role was back within the limit after every burst, and every run ended as it should.
+  /// Expects that every role was back within the limit after every burst, and that every run ended
+  /// in an allowed way.
   void Judge(const std::vector<Played>& results, double limit_s) {
     for (const Played& result : results) {
       const std::string what = std::to_string(result.plan.rate_hz) + " Hz on " +
@@ -298,7 +300,7 @@ class LossBurstInRealtimeTest : public NetworkTest {
     }
   }
 
-  /// One table for each rate, as in docs/real-time.md.
+  /// Prints one table for each rate, as in docs/real-time.md.
   void Print() const {
     Figures sum;
     for (const auto& [rate, cells] : figures_) {
@@ -345,7 +347,7 @@ TEST_F(LossBurstInRealtimeTest, LeavesNoRoleDeaf) {
   Print();
 }
 
-/// Bursts of every kind, so many hundreds.
+/// Bursts of every kind. The parameter is their number in hundreds.
 class EveryLossBurstInRealtimeTest : public LossBurstInRealtimeTest,
                                      public testing::WithParamInterface<std::size_t> {};
 
@@ -360,7 +362,7 @@ TEST_P(EveryLossBurstInRealtimeTest, IsOverASecondAfterTheNetworkIsClean) {
         for (const int loss_pct : {10, 30, 70, 90, 100}) {
           Plan plan{.rate_hz = rate_hz, .machines = machines, .bursts = {}, .clean_s = 2};
           for (const double length_s : {0.1, 0.3, 1.0, 2.0, 3.0}) {
-            // On three machines it befalls all of them and one of them in turn.
+            // Of three machines, bursts hit all of them and one of them in turn.
             const std::size_t number = plan.bursts.size();
             const bool one = machines > 1 && (repeat + number) % 2 == 1;
             plan.bursts.push_back({loss_pct, length_s, one ? number % 3 : kEverywhere});

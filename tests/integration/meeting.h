@@ -1,4 +1,4 @@
-// A place where the programs of a test meet that are given no URL.
+// A meeting address for the programs of a test that get no URL on their command line.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,12 +18,12 @@ namespace fogline::test {
 // Programs start and messages arrive within this even when every processor is busy.
 inline constexpr std::chrono::seconds kPatience(30);
 
-/// The place where programs listen that are given no URL, as the environment names it.
+/// A multicast address that the variable LCM_DEFAULT_URL gives to all programs of a test.
 class Meeting {
  public:
   const std::string& url() const { return url_; }
 
-  /// A program there.
+  /// The command line of a program at this address.
   std::vector<std::string> Command(const std::string& program,
                                    const std::vector<std::string>& arguments) const {
     std::vector<std::string> command{"env", "LCM_DEFAULT_URL=" + url_, Program(program)};
@@ -46,7 +46,7 @@ class Meeting {
   int logs_ = 0;
 };
 
-/// What a run says on stderr: "run ID on URL".
+/// The run id and the URL that a run prints on stderr: "run ID on URL".
 struct Place {
   std::int64_t run_id = 0;
   std::string url;
@@ -61,7 +61,7 @@ inline Place PlaceOf(Background& run) {
   return place;
 }
 
-/// What `fogline top` saw of one interval.
+/// The document in which `fogline top` describes one interval.
 inline nlohmann::json TopOnce(const Meeting& meeting) {
   const Outcome top =
       RunCommand(meeting.Command("fogline", {"top", "--once", "--json", "--interval", "3"}));

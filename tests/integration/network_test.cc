@@ -1,4 +1,5 @@
-// The lockstep on networks of the kernel's own: machines with addresses of their own, and loss.
+// The lockstep on networks of the kernel's own. Their machines have their own addresses and lose
+// messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// One group and port for everything: each test has networks of its own.
+// All tests use one group and port, because each test has networks of its own.
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(NetworkTest, LosingThreeOfTenDatagramsInTheKernelChangesNoResult) {
@@ -29,7 +30,7 @@ TEST_F(NetworkTest, LosingThreeOfTenDatagramsInTheKernelChangesNoResult) {
   EXPECT_GT(run["repairs"], 500);
 }
 
-/// Three machines, and every role but the recorder started by hand on one of them.
+/// Three machines. The test starts every role except the recorder by hand on one of them.
 class ThreeMachinesTest : public NetworkTest {
  protected:
   nlohmann::json RunOn(const Lab& lab, std::vector<std::string> more) {
@@ -84,14 +85,14 @@ TEST_F(ThreeMachinesTest, RunTheSameWhenTheLinksDelayRepeatAndReorder) {
     const Outcome netem =
         RunCommand(machine.On({"tc", "qdisc", "add", "dev", "eth0", "root", "netem", "delay", "5ms",
                                "3ms", "reorder", "20%", "duplicate", "10%"}));
-    // A module of its own, which kernels that have all the rest may be without.
+    // netem is a kernel module that some otherwise suitable kernels lack.
     if (netem.code != 0) GTEST_SKIP() << "the kernel has no netem: " << netem.err;
   }
   const auto run = RunOn(lab, {"--set", "/steps=80"});
   EXPECT_EQ(run["digest"], Undisturbed({"--set", "/steps=80"}));
 }
 
-/// Where two runs are: on machines of one network, or on one machine.
+/// The place of two runs: on two machines of one network, or on one machine.
 class TwoRunsTest : public NetworkTest, public testing::WithParamInterface<std::size_t> {};
 
 TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
@@ -99,14 +100,14 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   // GIVEN a run that takes 1.5 s
   Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "10"})));
   ASSERT_TRUE(paced.WaitForErr("processes: "));
-  // WHEN there is another meanwhile, which differs from its first step on
+  // WHEN another run takes place meanwhile, which differs from the first from its first step on
   const auto other =
       Result(RunCommand(lab[GetParam()].On(Run({"--lcm-url", kUrl, "--seed", "7"}))));
-  // THEN both have the results that they have alone
+  // THEN both have the results that they have when they run alone
   EXPECT_EQ(other["digest"], Undisturbed({"--seed", "7"}));
   const auto first = ResultOf(paced);
   EXPECT_EQ(first["digest"], Undisturbed({"--set", "/steps=150"}));
-  // AND each has refused what is not its own, and knows whose it was
+  // AND each has refused the other's messages, and knows which run sent them
   EXPECT_GT(first["refused"]["foreign"], 500);
   EXPECT_GT(other["refused"]["foreign"], 0);
   EXPECT_EQ(first["strangers"].size(), kRoles.size());
@@ -135,16 +136,16 @@ TEST_F(NetworkTest, AProcessThatIsBoundToAnotherRunIsIgnoredAndNamed) {
 
 TEST_F(NetworkTest, ARoleWhoseRunnerHasDiedTakesNoPartInTheNextRun) {
   const Lab lab(2);
-  // GIVEN a run with its driver on another machine, whose runner is killed
+  // GIVEN a run with its driver on another machine, and a runner that is killed
   Background orphan(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background first(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
   ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
-  // A dozen steps: the driver takes part.
+  // The log has a dozen steps, so the driver takes part.
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   const std::string id = first.Err().substr(4, first.Err().find(" on ") - 4);
   first.Signal(SIGKILL);
   first.Wait();
-  // WHEN there is another run, with a driver of its own
+  // WHEN another run takes place with a driver of its own
   Background second(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "40"})));
   // THEN the old driver changes nothing
   EXPECT_EQ(ResultOf(second)["digest"], Undisturbed());
@@ -156,7 +157,7 @@ TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
   const Lab lab(3);
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
-  // Told which run they are of, they ask for no place in it.
+  // A role that knows its run by --run-id asks for no place in it.
   const std::string id = run.Err().substr(4, run.Err().find(" on ") - 4);
   Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
   Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
@@ -193,7 +194,7 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsAsAnyOther) {
       {Program("fogline"), "table", "scenario/paper.json", "--transport", "udpm", "--json"}));
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_EQ(table.err, "");
-  // AND a run is found without being told where it is
+  // AND a role finds a run although it gets no URL
   Background waiting(machine.On({Program("fogline-driver")}));
   ASSERT_TRUE(waiting.WaitForErr("waiting for a run"));
   EXPECT_EQ(Result(RunCommand(machine.On(Run({"--external", "driver"}))))["digest"], Undisturbed());
@@ -211,13 +212,13 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneAnUrlNeeds) {
                                        "76.67; as root: \"ip route add 239.0.0.0/8 dev lo\""));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
   }
-  // AND that is all it needs
+  // AND this route is all that the run needs
   machine.Do("ip route add 239.0.0.0/8 dev lo");
   EXPECT_EQ(Result(RunCommand(machine.On(Run({}))))["digest"], Undisturbed());
 }
 
 TEST_F(NetworkTest, OfSeveralInterfacesTheRouteChoosesOne) {
-  // GIVEN machines whose default route leads elsewhere than to each other
+  // GIVEN machines with a default route that does not lead to each other
   const Lab lab(2);
   for (const Machine& machine : lab.machines()) {
     machine.Do(

@@ -1,5 +1,6 @@
-// What a run does when messages cannot be sent for a while: an interface, its address or its route
-// goes away and comes back, a firewall drops what is sent. Each in a network of the kernel's own.
+// A run while messages cannot be sent for some time: an interface, its address or its route goes
+// away and comes back, or a firewall drops outgoing messages. Each test has a network of the
+// kernel's own.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
-/// Something that goes away and comes back, as lines of sh.
+/// Something that goes away and comes back. Both are lines of sh.
 struct Outage {
   std::string name;
   std::string begin;
@@ -32,7 +33,7 @@ void PrintTo(const Outage& outage, std::ostream* out) { *out << outage.name; }
 const char* const kFirewall =
     "nft 'table inet reload { chain out { type filter hook output priority 0; policy drop; }; }'";
 
-/// On one machine, whose interface leads elsewhere.
+/// Tests on one machine with an interface that leads elsewhere.
 class OutageTest : public NetworkTest {
  protected:
   static void SetUpInterface(const Machine& machine) {
@@ -40,12 +41,12 @@ class OutageTest : public NetworkTest {
         "ip link add eth0 type veth peer name peer0; ip addr add 192.0.2.1/24 dev eth0;"
         "ip link set eth0 up; ip link set peer0 up; ip route add default via 192.0.2.2");
   }
-  /// A run that is watched takes 2.5 s and waits for longer than anything here is away.
+  /// A run of 2.5 s. Its time limits are longer than any outage here.
   std::vector<std::string> PacedRun(std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--pace", "20"});
     return Run(more);
   }
-  /// For some steps at least; nothing tells when a run has noticed.
+  /// Lets an outage last for some steps at least. No event tells when a run has noticed it.
   static void LastFor(milliseconds time) { std::this_thread::sleep_for(time); }
 };
 
@@ -83,7 +84,7 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background run(lab[0].On(PacedRun({"--lcm-url", kUrl, "--external", "driver"})));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN something of the network goes away there and comes back
+  // WHEN a part of the network fails there and comes back
   lab[1].Do(GetParam().begin);
   LastFor(milliseconds(300));
   lab[1].Do(GetParam().end);
@@ -91,7 +92,7 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  // AND it is known who could not send, and why
+  // AND the result names the role that could not send, and the reason
   ASSERT_EQ(result["failed_sends"].size(), 1U) << result["failed_sends"];
   EXPECT_EQ(result["failed_sends"][0]["role"], "driver");
   EXPECT_GT(result["failed_sends"][0]["count"], 0);
@@ -124,7 +125,7 @@ TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
     EXPECT_EQ(one["error"], "Operation not permitted");
   }
   EXPECT_GT(failed, 50) << "of 4500 messages and more";
-  // AND a person reads it, too
+  // AND the printed text tells it, too
   const Outcome text = RunCommand(
       machine.On({Program("fogline"), "run", "scenario/paper.json", "--log", Log() + ".text"}));
   EXPECT_THAT(text.out, ContainsRegex("\nmessages that could not be sent: .*world [0-9]+.* "
@@ -138,14 +139,14 @@ TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   machine.Do(kFirewall);
   EXPECT_EQ(run.Wait(), 3);
-  // Whichever is noticed first: that nothing goes out, or that nothing comes in.
+  // The run may notice first that nothing goes out, or that nothing comes in.
   EXPECT_THAT(run.Err(),
               AllOf(ContainsRegex("(nothing could be sent for 1\\.[0-9] s: |messages that "
                                   "could not be sent: .*)\\(?Operation not permitted"),
                     HasSubstr("the log so far: " + Log())));
 }
 
-/// The steps of TRUTH in a log that a program has written or is writing.
+/// The steps of TRUTH in a log, which a program may still be writing.
 std::set<std::int64_t> StepsIn(const std::string& log) {
   std::set<std::int64_t> steps;
   EventLogReader reader(log);
@@ -163,9 +164,9 @@ TEST_F(OutageTest, OfAnInterfaceKeepsNoStockProgramFromHearingARunOrBeingHeard) 
   const std::string stock = Log() + ".stock";
   Background logger(
       machine.On({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url, stock}));
-  // It listens when there is such a socket; the kernel prints addresses as numbers.
+  // lcm-logger listens when this socket exists; the kernel prints addresses as hexadecimal numbers.
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
-  // WHEN a run on loopback goes on, and the interface goes down in it
+  // WHEN a run takes place on loopback and the interface goes down during it
   Background run(machine.On(PacedRun({"--lcm-url", url})));
   ASSERT_TRUE(GrowsTo(100'000, Log()));
   machine.Do("ip link set eth0 down");
@@ -174,13 +175,14 @@ TEST_F(OutageTest, OfAnInterfaceKeepsNoStockProgramFromHearingARunOrBeingHeard) 
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   logger.Signal(SIGINT);
   EXPECT_EQ(logger.Wait(), 0);
-  // THEN it has heard all of it but what it loses when the machine is busy
+  // THEN lcm-logger has logged the whole run, except messages that it loses when the machine is
+  // busy
   const std::set<std::int64_t> steps = StepsIn(stock);
   EXPECT_GT(steps.size(), 250U);
   for (std::int64_t step = 0; step < 500; step += 100) {
     EXPECT_NE(steps.lower_bound(step), steps.lower_bound(step + 100)) << step;
   }
-  // AND lcm-logplayer, which sends where the route leads, is heard
+  // AND top hears lcm-logplayer, which sends where the route leads
   Background top(machine.On(
       {Program("fogline"), "top", "--json", "--once", "--interval", "3", "--lcm-url", url}));
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");

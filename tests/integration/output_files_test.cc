@@ -1,4 +1,4 @@
-// Where results go: files, links, pipes and devices, as a person expects of a program.
+// The kinds of output for results: files, links, pipes and devices, treated as a person expects.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ using testing::StartsWith;
 using testing::UnorderedElementsAre;
 using Words = std::vector<std::string>;
 
-/// A folder with the log of a short run, and what it has besides.
+/// A folder with the log of a short run. The tests add links, pipes and devices to it.
 class OutputFilesTest : public testing::Test {
  protected:
   OutputFilesTest() {
@@ -85,7 +85,7 @@ TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
   ASSERT_EQ(Report(page_).code, 0);
   EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
   EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
-  // Descriptor 9 reads from the beginning on, and never sees an end: so many bytes are to come.
+  // Descriptor 9 keeps the pipe open for reading, so `head` must know how many bytes to read.
   EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
                  "head -c $(stat -c %s page.html) <&9 > named; wait $report")
                 .code,

@@ -1,5 +1,5 @@
-// Every policy has one digest, however the messages travel: it has a say in two processes, and each
-// has an instance of its own.
+// Every policy has one digest on all transports. A policy takes part in two processes, and each of
+// them has its own instance.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace fogline::test {
 namespace {
 
-/// The LiDAR loses the car in step 15 or so; the wheel changes hands with all that is smooth.
+/// The LiDAR loses the car in about step 15. Transfers of the wheel are smooth.
 const std::vector<std::string> kFoggy{"/steps=60",
                                       "/fog/start_s=1",
                                       "/fog/duration_s=4",

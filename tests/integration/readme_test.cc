@@ -29,18 +29,18 @@ TEST(ReadmeTest, HasTheTablesOfTheGraph) {
 
 TEST(ReadmeTest, ShowsThePartThatTheSwapTestBuilds) {
   std::string source = ReadSource("tests/integration/external_driver/my_driver.cc");
-  source.erase(0, source.find("#include"));  // without the comment on top
+  source.erase(0, source.find("#include"));  // drops the comment at the top
   EXPECT_NE(ReadSource("services/README.md").find(source), std::string::npos) << source;
 }
 
 TEST(ReadmeTest, BuildsAndDrivesAPartByTheCommandsOfSwapAPart) {
-  // GIVEN a clone with its build, on a machine without make, and a home of its own
+  // GIVEN a clone with its build on a machine without make, and a home folder of its own
   const ScratchFolder folder;
   for (const char* part : {"scenario", "tests"}) {
     std::filesystem::create_directory_symlink(SourceDirectory() / part, folder.path() / part);
   }
   std::filesystem::create_directory_symlink(FOGLINE_BINARY_DIR, folder.path() / "build");
-  // WHEN the README's commands are followed
+  // WHEN a shell executes the README's commands
   const std::string readme = ReadSource("README.md");
   const std::size_t begin = readme.find("\n## Swap a part");
   const std::string section = readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
@@ -54,7 +54,7 @@ TEST(ReadmeTest, BuildsAndDrivesAPartByTheCommandsOfSwapAPart) {
   std::vector<std::string> command = WithoutMake(folder);
   command.insert(command.end(), {"bash", "-c", commands});
   const Outcome outcome = RunCommand(command);
-  // THEN the part drives
+  // THEN the part that they build drives the car
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
 }
@@ -73,7 +73,7 @@ TEST(ReadmeTest, IsShortAndNamesOnlyFilesThatAreThere) {
 }
 
 TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
-  // GIVEN a clone, as far as these commands need one
+  // GIVEN those parts of a clone that these commands need
   const ScratchFolder clone;
   for (const char* part : {".gitignore", "scenario", "docs"}) {
     std::filesystem::copy(SourceDirectory() / part, clone.path() / part,
@@ -89,13 +89,13 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   };
   in_clone("git init -q && git add -A");
   in_clone("fogline table scenario/paper.json --logs logs/demo");  // as tools/demo does
-  // WHEN the README's commands are followed
+  // WHEN a shell executes the README's commands
   const std::string readme = ReadSource("README.md");
   static const std::regex kCommand(
       "`(fogline (run|table|sweep|calibrate|study|report) [^`]*(scenario/|--out |logs/)[^`]*)`");
   std::size_t commands = 0;
   for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
-    // Some seeds have the same files as the many of these two.
+    // These two take long with many seeds. Few seeds give the same files.
     const bool takes_long = (*at)[2] == "study" || (*at)[2] == "calibrate";
     in_clone((*at)[1].str() + (takes_long ? " --seeds 1:2" : ""));
     ++commands;
@@ -106,7 +106,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   in_clone("fogline export logs/paper-1.lcm " + words[1].str());
   ASSERT_TRUE(std::regex_search(readme, words, std::regex("\n    lcm-logger ([^ ]*) &")));
   in_clone("cp logs/paper-1.lcm " + words[1].str());
-  // THEN git has nothing to say
+  // THEN git finds no new files
   EXPECT_EQ(in_clone("git ls-files --others --exclude-standard"), "");
 }
 

@@ -1,5 +1,5 @@
-// Runs in real time: roles are killed or stopped while the automation drives, and what counts is
-// what the cars do. Everything is judged from the log.
+// Runs in real time: the tests kill or stop roles while the automation drives, and judge what the
+// cars do. They judge everything from the log.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -20,15 +20,16 @@ namespace {
 
 constexpr double kSpeed = 5;
 constexpr double kPeriodS = kStepS / kSpeed;
-// From a role's last message until somebody calls it lost; then until something is done about it.
+// From a role's last message until a reader calls it lost. kInForce: from then until the fallback
+// acts.
 constexpr std::int64_t kDetection = 3;  // periods
 constexpr std::int64_t kInForce = 1;
-// The runner's word reaches a role within 100 ms.
+// A role hears the runner's news within 100 ms: 5 periods.
 constexpr std::int64_t kNews = 5;
-// So long a manoeuvre takes from 20 m/s.
+// The length of a manoeuvre from 20 m/s, steps.
 constexpr int kManoeuvre = 230;
 
-/// A run in real time whose processes this test can stop.
+/// A run in real time. This test can stop its processes.
 class RealtimeRun {
  public:
   RealtimeRun(const std::string& scenario, int steps, double speed = kSpeed,
@@ -61,8 +62,8 @@ class RealtimeRun {
     kill(pids_.at(role), signal);
     return step_;
   }
-  /// Between the world's last TRUTH and the first word that it is missed, on this process's clock;
-  /// nothing if it is back before.
+  /// The time between the world's last TRUTH and the first STATUS that calls the world lost, on
+  /// this process's clock. Nothing if the world is back before that.
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);
@@ -140,8 +141,8 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
-  // A machine that stands still for half a period disturbs a run, which then says nothing of the
-  // others. It does not do so every time.
+  // If the machine stands still for half a period, it disturbs a run, and that run proves nothing.
+  // This does not happen in every run.
   for (int i = 0; i < 3; ++i) {
     RealtimeRun run("scenario/paper.json", 60);
     const auto result = run.Finish();
@@ -158,7 +159,7 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
-// Behind him a column of ACCs and people, none of whom may miss a step.
+// A column of ACCs and people follows the driver. None of them may miss a step.
 TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   constexpr int kSteps = 140;
   constexpr int kColumn = 5;
@@ -178,7 +179,7 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   const auto after_s = [&](const char* what) {
     return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
   };
-  // A decision may be a step late when its inputs are.
+  // A decision is a step late if its inputs are.
   EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
   EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
   EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);
@@ -196,7 +197,7 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   }
 }
 
-/// How a role fails, in which scenario.
+/// Which role fails, how (by a signal), and in which scenario.
 struct Fault {
   std::string scenario;
   std::string role;
@@ -212,7 +213,7 @@ std::string NameOfFault(const testing::TestParamInfo<Fault>& info) {
          (info.param.signal == SIGKILL ? "_killed" : "_stopped");
 }
 
-/// The channel by which a role's silence shows.
+/// The channel on which a role falls silent.
 std::string ChannelOfRole(const std::string& role) {
   std::string name;
   for (const ChannelInfo& channel : kChannels) {
@@ -221,9 +222,9 @@ std::string ChannelOfRole(const std::string& role) {
   return name;
 }
 
-/// When a fault happens, in which run.
+/// The step of a fault, and the settings of its run.
 struct Plan {
-  int fault_step = 60;  // the automation drives, and nothing else goes on
+  int fault_step = 60;  // the automation drives, and nothing else happens
   int steps = 140;
   double speed = kSpeed;
   std::vector<std::string> settings;
@@ -234,21 +235,21 @@ Plan PlanOf(const Fault& fault) {
   if (fault.role == "arbitrator" || fault.role == "follower") {
     plan.steps = plan.fault_step + kManoeuvre;
   } else if (fault.role == "driver") {
-    // He is wanted some 20 steps after the fault: 13 steps into the fog of the paper, 120 into the
-    // dense one. A process that is stopped is missing for 50.
+    // The human is needed some 20 steps after the fault: 13 steps into the fog of the paper, 120
+    // into the dense one. A stopped process is missing for 50 steps.
     const bool dense = fault.scenario == "dense_fog";
     plan.fault_step = dense ? 100 : 60;
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
-    // Until its silence counts as a hang a second passes: not more periods than the others keep
-    // their messages for it.
+    // A second passes until the recorder's silence counts as a hang. At this speed it has no more
+    // periods than the other roles keep their messages for the recorder.
     plan.speed = 2;
   }
   return plan;
 }
 
-// The vehicle stops by itself, and the next arbitrator takes part in that.
+// The vehicle stops by itself. The next arbitrator lets it finish the stop.
 void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
   EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
             log.truth.at(lost).host_acceleration_mps2);
@@ -269,7 +270,7 @@ void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectStandstillWithinLimits(log, lost, Follower);
 }
 
-// The automation drives alone, until the human is wanted and is not there.
+// The automation drives alone until the human is needed and does not answer.
 void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
                         std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
@@ -292,7 +293,7 @@ void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& 
   ExpectStandstillWithinLimits(log, wanted->first, Host);
 }
 
-// The human drives until the automation has been there again for a while.
+// The human drives until the automation has been back for some steps.
 void JudgeWithoutAutomation(const Log& log, const Log::Silence& silence, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ASSERT_TRUE(log.command.contains(lost + kInForce));
@@ -310,7 +311,7 @@ void Judge(const Log& log, const Fault& fault, std::int64_t fault_step) {
   if (fault.role == "recorder") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   const auto loss = log.FirstLossOf(channel, fault_step);
   if (!loss) {
-    // Who is killed may be back before anybody misses it.
+    // A killed role may be back before another role misses it.
     ASSERT_EQ(fault.signal, SIGKILL) << "nobody missed it";
     EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "nobody missed it";
     ExpectFollowerObeys(log, 1, log.last());
@@ -322,7 +323,7 @@ void Judge(const Log& log, const Fault& fault, std::int64_t fault_step) {
   if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
   if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
   if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
-  // Time stands still without the world: nothing else changes.
+  // Time stands still without the world. Nothing else changes.
   if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   JudgeWithoutAutomation(log, silence, loss->step);
 }
@@ -336,7 +337,8 @@ TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) {
   run.WaitForStep(plan.fault_step);
   const std::int64_t step = run.Signal(fault.role, fault.signal);
   if (fault.role == "world") {
-    // Steps cannot tell how long it was silent. One period more for this process to hear of it.
+    // Steps cannot tell how long the world was silent. This process may hear of it one period
+    // later.
     const auto missed = run.WaitForTheWorldToBeMissed();
     EXPECT_TRUE(missed || fault.signal == SIGKILL) << "nobody missed it";
     if (missed) {
@@ -360,7 +362,7 @@ std::vector<Fault> EveryFault() {
   return faults;
 }
 
-// Some faults always; every role, killed and stopped, in the campaign.
+// The plain tests have some faults. The campaign kills and stops every role.
 INSTANTIATE_TEST_SUITE_P(Some, FaultInRealtimeTest,
                          testing::Values(Fault{"paper", "fusion", SIGSTOP},
                                          Fault{"paper", "arbitrator", SIGSTOP},

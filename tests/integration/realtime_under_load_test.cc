@@ -1,4 +1,4 @@
-// Real time while other programs want both cores: nothing is missed, and nothing grows.
+// Real time while other programs use all cores: the run misses nothing, and no process grows.
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@
 namespace fogline::test {
 namespace {
 
-/// Steps per second, and how much of the time that a campaign asks for it takes.
+/// Steps per second, and the share of the campaign's time that the run takes.
 struct Rhythm {
   int rate_hz;
   double share;
@@ -25,7 +25,7 @@ struct Rhythm {
 
 void PrintTo(const Rhythm& rhythm, std::ostream* out) { *out << rhythm.rate_hz << " Hz"; }
 
-/// A program for each core that never rests. They end with this object, and by themselves.
+/// One busy program for each core. The programs end with this object, or after 20 minutes.
 class Load {
  public:
   Load() {
@@ -39,7 +39,7 @@ class Load {
   std::list<Background> busy_;
 };
 
-/// Memory of every role in the course of a run, by role, as its STATUS said it.
+/// The resident memory of every role during a run, by role, from its STATUS.
 std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::string& log) {
   std::map<std::string, std::vector<std::int64_t>> memory;
   EventLogReader reader(log);
@@ -51,13 +51,13 @@ std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::string& log
   return memory;
 }
 
-/// Time that a hypervisor has given to other machines than this one since it began, in ms.
+/// Milliseconds that the hypervisor has given to other machines since this one started.
 std::int64_t StolenMs() {
   std::ifstream stat("/proc/stat");
   std::string cpu;
   std::int64_t ticks = 0;
   stat >> cpu;
-  for (int column = 0; column < 8; ++column) stat >> ticks;  // user to softirq, and steal
+  for (int column = 0; column < 8; ++column) stat >> ticks;  // columns user to softirq, then steal
   return ticks * 1000 / sysconf(_SC_CLK_TCK);
 }
 
@@ -92,8 +92,8 @@ TEST_P(RealtimeUnderLoadTest, MissesNothingAndGrowsNowhere) {
   const auto memory = MemoryIn(log);
   EXPECT_EQ(memory.size(), kRoles.size());
   for (const auto& [role, bytes] : memory) {
-    // Once everything has been in use; LCM's ring of received datagrams then still has pages to
-    // touch for the first time, of its 200 KiB.
+    // From this point on all parts of a role have been in use. LCM's ring of received datagrams
+    // (200 KiB) may still have pages that were never touched.
     constexpr std::int64_t kFlat = 512 * 1024;
     const std::size_t first = std::max<std::size_t>(10, bytes.size() / 10);
     ASSERT_GT(bytes.size(), first + 1) << role;

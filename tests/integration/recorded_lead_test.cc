@@ -1,4 +1,4 @@
-// A leader recorded on a road: the shipped scenario and the recording that is shipped with it.
+// A leader that was recorded on a road: the shipped scenario with its recording.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 class RecordedLeadTest : public testing::Test {
  protected:
-  /// Runs the scenario to its end and returns its measures.
+  /// Runs the scenario to its end. @return its measures
   static nlohmann::json Run(const std::vector<std::string>& more) {
     std::vector<std::string> command{Program("fogline"), "run", "scenario/recorded_lead.json",
                                      "--json", "--quiet"};
@@ -64,12 +64,13 @@ TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
   more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
   const nlohmann::json metrics = Run(more);
   EXPECT_EQ(metrics["collision"], 0);
-  // The fog really deceived the LiDAR: by far more than the noise of the sensors.
+  // The fog really deceived the LiDAR: the error is far larger than the noise of the sensors.
   EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
 }
 
 TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsHeadway) {
-  // GIVEN an ACC with the headway that a straight line through the real car's speeds and gaps has
+  // GIVEN an ACC with the headway and standstill distance of a straight line fitted to the real
+  // car's gaps
   const ScratchFolder folder;
   Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",
        "--set", "/acc/standstill_m=6.5", "--set", "/world/host_speed_mps=17.68", "--set",
@@ -81,14 +82,14 @@ TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsHeadway) {
   std::printf("behind the recorded leader: RMSE of speed %.3f m/s, of gap %.3f m\n",
               json["speed_rmse_mps"].get<double>(), json["gap_rmse_m"].get<double>());
   EXPECT_EQ(json["steps"], 7000);
-  // THEN they drive alike: within what car-following models that are fitted to a car leave, 11 to
-  // 29 % of the gap (Kesting & Treiber 2008)
+  // THEN they drive alike. Car-following models that are fitted to a car leave 11 to 29 % of the
+  // gap (Kesting & Treiber 2008).
   EXPECT_LT(json["gap_rmse_m"], 0.29 * json["recorded_mean_gap_m"].get<double>());
   EXPECT_LT(json["speed_rmse_mps"], 1);
 }
 
 TEST_F(RecordedLeadTest, TravelsWithTheScenarioSoThatOtherMachinesNeedNoFile) {
-  // The 7,000 speeds go over LCM in parts; the digest is that of the run in this process.
+  // The 7,000 speeds travel over LCM in parts. The digest is that of a run in one process.
   const ScratchFolder folder;
   const auto digest = [&](const std::string& transport) {
     const Outcome outcome =

@@ -1,4 +1,4 @@
-// fogline-relay and clients that misbehave.
+// fogline-relay with clients that misbehave.
 #include <arpa/inet.h>
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -19,11 +19,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A bare connection that says what it likes.
+/// A plain TCP connection that sends arbitrary bytes.
 class RawSocket {
  public:
   explicit RawSocket(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    // What blocks for so long counts as blocked for ever.
+    // A call that blocks for so long counts as blocked for ever.
     const timeval limit{.tv_sec = kPatience.count(), .tv_usec = 0};
     setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
@@ -37,7 +37,7 @@ class RawSocket {
   RawSocket(const RawSocket&) = delete;
   RawSocket& operator=(const RawSocket&) = delete;
 
-  /// False when the other side is gone. @pre it is not blocked
+  /// Sends all bytes; the test fails if that blocks. @return false if the other side has closed
   bool Send(Bytes bytes) const {
     while (!bytes.empty()) {
       const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -49,7 +49,7 @@ class RawSocket {
     }
     return true;
   }
-  /// Reads until the other side closes; false if it does not.
+  /// Reads until the other side closes. @return false if it does not
   bool WaitForClose() const {
     Payload bytes(4096);
     ssize_t size = 0;
@@ -57,7 +57,7 @@ class RawSocket {
     }
     return size == 0 || errno == ECONNRESET;
   }
-  /// "127.0.0.1:PORT", as the relay sees it.
+  /// The name of this client in the relay's texts: "127.0.0.1:PORT".
   std::string Name() const {
     sockaddr_in address{};
     socklen_t size = sizeof(address);
@@ -94,14 +94,14 @@ TEST(HostileRelayClientTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTh
   Bus bus(relay.url());
   int heard = 0;
   bus.Subscribe("DATA", [&heard](Bytes) { ++heard; });
-  // WHEN more is published than a socket and its queue hold
+  // WHEN more messages are published than the client's socket and its queue hold
   const Payload payload(kMaxMessageBytes, 1);
   constexpr int kMessages = 17'000;
   for (int i = 0; i < kMessages; ++i) {
     bus.Publish("DATA", payload);
     bus.Drain();
   }
-  // THEN the others have everything, and the line says who does not read
+  // THEN the other client gets all messages, and the relay names the client that does not read
   ASSERT_TRUE(RoundTrip(bus));
   EXPECT_EQ(heard, kMessages);
   EXPECT_TRUE(relay.process().WaitForErr("disconnected: does not read: "));
@@ -116,7 +116,7 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   const Payload message = Message("ECHO", Payload(100'000));
   int sent = 0;
   while (sent < 1000 && publisher.Send(message)) ++sent;
-  // THEN it is disconnected before
+  // THEN the relay disconnects it before the end
   EXPECT_LT(sent, 1000);
   EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read: "));
 }
@@ -149,7 +149,7 @@ TEST(HostileRelayClientTest, DisconnectsWhoSendsGarbageByNameAndReason) {
         << reason << "\n"
         << relay.process().Err();
   }
-  // The others did not notice.
+  // The other client was not disturbed.
   EXPECT_TRUE(RoundTrip(bus));
   ASSERT_EQ(relay.End(), 0);
   EXPECT_THAT(relay.process().Err(), HasSubstr("6 disconnected; "));
@@ -173,8 +173,8 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
-  // GIVEN a client with an expression that takes long on some names, though not long enough to be
-  // given up (a long one may visit more), and one that wants everything
+  // GIVEN a client with an expression that is slow on some names, but not slow enough that the
+  // relay gives it up (long expressions may visit more), and a client that wants everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   Bus bus(relay.url());
@@ -182,11 +182,11 @@ TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   bus.Subscribe("LAST", [&heard](Bytes) { ++heard; });
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  // WHEN somebody publishes ever new names of that kind
+  // WHEN another client publishes more and more new names of that kind
   constexpr int kNames = 5000;
   for (int i = 0; i < kNames; ++i)
     bus.Publish(std::string(20, 'a') + std::to_string(i), Payload(1));
-  // THEN only the first is gone, and by name
+  // THEN the relay disconnects only the first client, and names it
   ASSERT_TRUE(RoundTrip(bus));
   EXPECT_TRUE(slow.WaitForClose());
   EXPECT_TRUE(

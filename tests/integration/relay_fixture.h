@@ -1,4 +1,4 @@
-// What tests of fogline-relay have in common.
+// Common parts of the tests of fogline-relay.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class Relay {
   const std::string& url() const { return url_; }
   std::uint16_t port() const { return tcpq::ResolveUrl(url_).port; }
   Background& process() { return process_; }
-  /// Ends it as a person does. @return its exit code
+  /// Ends the relay with Ctrl-C, as a person does. @return its exit code
   int End() {
     process_.Signal(SIGINT);
     return process_.Wait();
@@ -43,8 +43,8 @@ class Relay {
   std::string url_;
 };
 
-/// Publishes on a channel that this bus hears itself: what it hears has gone through the relay, and
-/// so has what it sent before.
+/// Publishes a message that this bus hears itself, and waits for it. When it comes, it and all
+/// earlier messages of this bus have passed the relay. @return false after kPatience
 [[nodiscard]] inline bool RoundTrip(Bus& bus) {
   static int trips = 0;
   const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);

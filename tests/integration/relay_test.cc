@@ -1,5 +1,5 @@
-// fogline-relay with real programs: ours and Debian's. (Clients that misbehave:
-// relay_clients_test.cc.)
+// fogline-relay with real programs: ours and Debian's. (relay_clients_test.cc has clients that
+// misbehave.)
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
@@ -67,17 +67,17 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
         (*static_cast<std::map<std::string, std::size_t>*>(user))[channel] = buffer->data_size;
       },
       &got);
-  // WHEN it publishes, and then hears itself
+  // WHEN it publishes, it hears itself
   const Payload large(100'000, 7);
   ASSERT_EQ(lcm_publish(stock, "FROM_STOCK", large.data(), static_cast<unsigned>(large.size())), 0);
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_STOCK"], large.size());
-  // THEN it hears ours too
+  // THEN it hears our messages too
   Bus bus(relay.url());
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
-  // AND after it has unsubscribed, with nothing else under way, only we hear it
+  // AND after it has unsubscribed (no other message is on its way), only our bus hears its message
   std::size_t heard = 0;
   bus.Subscribe("LAST", [&heard](Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
@@ -93,16 +93,16 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
 }
 
 TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
-  // GIVEN more than both sockets and the relay's queue hold
+  // GIVEN a relay with a queue that, together with both sockets, holds less than the burst
   Relay relay({"--max-queue", "4", "--quiet"});
   Bus bus(relay.url());
   int heard = 0;
   bus.Subscribe("BURST", [&heard](Bytes) { ++heard; });
-  // WHEN it is published in one go
+  // WHEN the whole burst is published at once
   const Payload payload(1000, 1);
   constexpr int kMessages = 20'000;
   for (int i = 0; i < kMessages; ++i) bus.Publish("BURST", payload);
-  // THEN nobody blocks, and all of it comes back
+  // THEN no process blocks, and every message comes back
   ASSERT_TRUE(RoundTrip(bus));
   EXPECT_EQ(heard, kMessages);
 }
@@ -174,16 +174,16 @@ TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
   int heard = 0;
   bus.Subscribe("A", [&heard](Bytes) { ++heard; });
   ASSERT_TRUE(RoundTrip(bus));
-  // GIVEN a relay that is killed: what is sent is lost, and counted
+  // GIVEN a relay that is killed: messages are lost, and the sender counts them
   relay->process().Signal(SIGKILL);
   relay->process().Wait();
   const TimePoint end = Clock::now() + kPatience;
   while (other.failed_sends().count == 0 && Clock::now() < end) other.Publish("A", Payload(1));
   EXPECT_THAT(other.failed_sends().error, HasSubstr("lost the relay " + url + ": "));
   EXPECT_TRUE(other.failed_sends().since);
-  // WHEN another one is there
+  // WHEN another relay listens on the same port
   Background next({Program("fogline-relay"), "--listen", url.substr(7)});
-  // THEN messages go as before
+  // THEN messages pass as before
   heard = 0;
   while (heard == 0 && Clock::now() < end) {
     other.Publish("A", Payload(1));
@@ -220,7 +220,7 @@ TEST(RelayTest, EndsARunWithOneClearLineWhenItIsKilled) {
   ASSERT_TRUE(GrowsTo(20'000, folder.File("run.lcm")));
   // WHEN its relay is killed
   relay.process().Signal(SIGKILL);
-  // THEN it ends with code 3 and that reason, and its log is readable
+  // THEN the run ends with code 3 and this reason, and its log is readable
   EXPECT_EQ(run.Wait(seconds(10)), 3);
   EXPECT_THAT(run.Err(), HasSubstr("lost the relay " + relay.url()));
   EXPECT_EQ(RunCommand({Program("fogline"), "digest", folder.File("run.lcm")}).code, 1);
@@ -247,18 +247,18 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
     return false;
   };
   ASSERT_TRUE(caught_up("BEFORE"));
-  // WHEN a run goes on
+  // WHEN a run takes place
   std::vector<std::string> command = RunCommandLine(relay.url(), folder.File("own.lcm"));
   command.insert(command.end(), {"--pace", "1", "--set", "/steps=30"});
   const std::string digest = DigestOf(RunCommand(command));
   ASSERT_TRUE(caught_up("AFTER"));
   logger.Signal(SIGINT);
   ASSERT_EQ(logger.Wait(), 0);
-  // THEN its log is a log of the whole run
+  // THEN lcm-logger's log is a log of the whole run
   const Outcome check = RunCommand({Program("fogline"), "digest", "--json", stock});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_THAT(check.out, HasSubstr(digest));
-  // AND it has every payload that ours has
+  // AND it has every payload that our log has
   const auto payloads = [](const std::string& log) {
     std::multimap<std::string, Payload> all;
     EventLogReader reader(log);
@@ -269,7 +269,7 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // Ours keeps one RUN, with another phase, and a seal, which no process says.
+    // These differ: our log keeps one RUN, in another phase, and a seal, which no process sends.
     if (channel == ChannelOf<run_t>().name || channel == kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))

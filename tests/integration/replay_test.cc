@@ -1,4 +1,4 @@
-// `fogline replay`: a role computes from a log's inputs what the log says that it has computed.
+// `fogline replay`: a role computes its outputs again from the inputs in a log, and compares them.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// All that roles read on demand, remember or draw.
+// All features with which roles read inputs on demand, remember or draw.
 const Words kEverything{"--set", "/human/loses_awareness=true",
                         "--set", "/human/misjudges=true",
                         "--set", "/human/sight=fog",
@@ -49,7 +49,7 @@ class ReplayTest : public testing::Test {
     return RunCommand(command);
   }
 
-  /// Expects that every role computes every step of a log again.
+  /// Expects that every role computes the same outputs as in the log in every step.
   static void ExpectSame(const std::string& log, int steps) {
     const Outcome replay = Replay({log, "--all", "--json"});
     EXPECT_EQ(replay.code, 0) << replay.out << replay.err;
@@ -60,8 +60,7 @@ class ReplayTest : public testing::Test {
     for (const auto& role : json["roles"]) EXPECT_EQ(role["same"], true) << role;
   }
 
-  /// A copy of a log in which the track of a step has a distance that is 0.25 m larger; without its
-  /// seal.
+  /// A copy of a log without its seal. In step `step`, the distance in TRACK is 0.25 m larger.
   std::string Altered(const std::string& log, std::int64_t step) const {
     const std::string altered = folder_.File("altered.lcm");
     EventLogReader reader(log);
@@ -91,12 +90,12 @@ TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
 }
 
 TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
-  // bayes: the arbitrator reads the truth on demand; oracle: the fusion. The driver reads who
-  // drives.
+  // With bayes the arbitrator reads TRUTH on demand; with oracle the fusion does. The driver reads
+  // who drives.
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;
-    // No longer than until the cars meet, with the one of these policies.
+    // With one of these policies the cars collide later, so the runs end here.
     more.insert(more.end(), {"--transport", "direct", "--force", "--set", "/steps=500", "--set",
                              std::string("/arbitrator/policy=") + policy});
     ExpectSame(Log("scenario/dense_fog.json", more), 500);
@@ -106,8 +105,8 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
 TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
   const std::string log =
       Altered(Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=250"}), 200);
-  // The fusion's output is not what it computes; that the next steps are shows that its inputs are
-  // the log's.
+  // In this step the log differs from what the fusion computes. The next steps agree, because the
+  // replay takes its inputs from the log.
   const Outcome fusion = Replay({log, "--role", "fusion", "--json"});
   EXPECT_EQ(fusion.code, 1);
   const auto role = nlohmann::json::parse(fusion.out)["roles"][0];
@@ -117,11 +116,11 @@ TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
   EXPECT_EQ(role["first"]["field"], "state[0]");
   EXPECT_NEAR(std::stod(role["first"]["log"].get<std::string>()),
               std::stod(role["first"]["replay"].get<std::string>()) + 0.25, 1e-9);
-  // The ACC reads it, and computes another command from it.
+  // The ACC reads TRACK and so computes another command.
   const Outcome acc = Replay({log, "--role", "acc"});
   EXPECT_EQ(acc.code, 1);
   EXPECT_THAT(acc.out, HasSubstr("first in step 200: ACC_COMMAND acceleration_mps2: "));
-  // The radar does not.
+  // The radar does not read TRACK.
   EXPECT_EQ(Replay({log, "--role", "radar"}).code, 0);
 }
 

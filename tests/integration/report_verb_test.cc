@@ -1,4 +1,4 @@
-// `fogline report` as a person uses it: pages of logs, and curves that need none.
+// `fogline report` as a person uses it: pages of logs, and pages of curves, which need no log.
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -30,14 +30,14 @@ std::string Read(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// What the page's script is given.
+/// The data that the page gives to its script.
 nlohmann::json DataOf(const std::string& page) {
   constexpr std::string_view kBegin = "id=\"report-data\">";
   const std::size_t from = page.find(kBegin) + kBegin.size();
   return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
 }
 
-/// A short run of the paper's scenario, as a log.
+/// Makes the log of a short run of the paper's scenario. @return its path
 std::string Log(const ScratchFolder& folder, const std::string& name,
                 const std::vector<std::string>& more) {
   std::vector<std::string> command{Program("fogline"), "run",     "scenario/paper.json",
@@ -117,13 +117,13 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
   const std::string page = folder.File("report.html");
   const Outcome report = Report({whole, cut, "--output", page});
-  // THEN the page is there, and the exit code says that a check failed
+  // THEN the page is written, and the exit code says that a check failed
   EXPECT_EQ(report.code, 1);
   EXPECT_EQ(report.out, page + "\n");
   // AND stderr says what the log lacks
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
-  // AND the page says it at that run, and at no other
+  // AND the page says so at that run only
   const nlohmann::json runs = DataOf(Read(page))["runs"];
   EXPECT_EQ(runs[0]["badge"], "");
   const std::string badge = runs[1]["badge"];
@@ -131,7 +131,7 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   EXPECT_THAT(Read(page), HasSubstr(">" + badge + "</span>"));
   EXPECT_THAT(Read(page), ContainsRegex("<span class=\"origin\">cut off after event [^<]*; ends "
                                         "after step [0-9]+ of 220"));
-  // AND a page of the whole log alone is a success
+  // AND a page of the whole log alone succeeds
   EXPECT_EQ(Report({whole, "--output", page}).code, 0);
 }
 
@@ -168,7 +168,7 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
 }
 
 TEST(ReportVerbTest, TriesItsOutputsBeforeItComputes) {
-  // GIVEN curves that take minutes
+  // GIVEN curves that would take minutes
   const auto error_of = [](std::vector<std::string> more) {
     more.insert(more.end(), {"--curves", "scenario/paper.json", "--seeds", "1:1000000"});
     const Outcome outcome = Report(more);
@@ -205,8 +205,8 @@ TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
-  // GIVEN a log that is cut off, which the report says before it computes, and curves that take
-  // minutes
+  // GIVEN a log that is cut off, which the report reports before it computes, and curves that would
+  // take minutes
   const ScratchFolder folder;
   const std::string log = folder.File("cut.lcm");
   RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log",
@@ -216,9 +216,9 @@ TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
   Background report({Program("fogline"), "report", log, "--curves", "scenario/paper.json",
                      "--seeds", "1:1000000", "--output", file});
   ASSERT_TRUE(report.WaitForErr(log)) << report.Err();
-  // WHEN
+  // WHEN a person presses Ctrl-C
   report.Signal(SIGINT);
-  // THEN it says so and leaves nothing behind
+  // THEN the report says so and leaves no file
   EXPECT_EQ(report.Wait(), 130);
   EXPECT_THAT(report.Err(), HasSubstr("fogline report: interrupted"));
   EXPECT_FALSE(std::filesystem::exists(file));

@@ -1,4 +1,4 @@
-// A run whose runner has died, or was interrupted, goes on from its log: `fogline run --resume`.
+// A run continues from its log after its runner died or was interrupted: `fogline run --resume`.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -29,9 +29,9 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-// Far longer than anything here takes on a busy machine.
+// Far longer than any wait here, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
-// Steps of a run, and its pace: a millisecond a step.
+// Steps of a run. Runs over the network take a millisecond for each.
 constexpr int kSteps = 300;
 const Words kPaced{"--pace", "100"};
 
@@ -46,7 +46,7 @@ class ResumeTest : public testing::Test {
     return {Program("fogline"), "run",   "scenario/paper.json",
             "--json",           "--set", "/steps=" + std::to_string(steps)};
   }
-  /// The result of the run that nothing happens to, and its log in whole.lcm.
+  /// The result of an undisturbed run. Its log is whole.lcm.
   nlohmann::json Undisturbed(int steps = kSteps) const {
     const Outcome outcome = RunCommand(
         Paper(steps) + Words{"--transport", "direct", "--force", "--log", File("whole.lcm")});
@@ -56,7 +56,7 @@ class ResumeTest : public testing::Test {
   Outcome Resume(const Words& more = {}) const {
     return RunCommand(Words{Program("fogline"), "run", "--json", "--resume", log_} + more);
   }
-  /// Resumes it to its end. @return the result, which must be that of the undisturbed run
+  /// Resumes the run to its end. @return the result, which must be that of the undisturbed run
   nlohmann::json ExpectSameEnd(const nlohmann::json& whole, const Words& more = {}) const {
     const Outcome outcome = Resume(more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -65,21 +65,21 @@ class ResumeTest : public testing::Test {
     EXPECT_EQ(result.value("steps", 0), whole["steps"]);
     EXPECT_EQ(result.value("seed", 0), whole["seed"]);
     EXPECT_EQ(result["metrics"], whole["metrics"]);
-    // The log has the same events, and nothing else; they differ in the run id, and a key signs the
-    // last one.
+    // The resumed log has the same events as the whole one, and no others. Only their run ids
+    // differ. With a key, the last event has a signature.
     const bool is_signed = std::ranges::find(more, "--key") != more.end();
     EXPECT_EQ(std::filesystem::file_size(log_),
               std::filesystem::file_size(File("whole.lcm")) + (is_signed ? kSealBytes : 0));
     return result;
   }
-  /// Kills the runner, not its roles, as soon as there are so many bytes in the log.
+  /// Kills the runner (not its roles) as soon as the log has so many bytes.
   void KillAt(std::uintmax_t bytes, const Words& command) const {
     Background run(command + Words{"--log", log_});
     ASSERT_TRUE(GrowsTo(bytes, log_)) << run.Err();
     run.Signal(SIGKILL);
     run.Wait();
   }
-  /// What a log has in which another run cannot go on.
+  /// Expects that the run is refused with this text and leaves the log as it is.
   void ExpectRefusal(const Words& command, const std::string& err) const {
     const std::string before = Content(log_);
     const Outcome outcome = RunCommand(command);
@@ -97,13 +97,13 @@ class ResumeTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-/// A run over the network, whose steps this test sees.
+/// A run over the network. This test hears its steps.
 class SeenRun {
  public:
   SeenRun(const Words& command, const std::string& log)
       : bus_(FreshMulticastUrl()), run_(command + Words{"--lcm-url", bus_.url(), "--log", log}) {
     bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
-      step_ = std::max(step_, ReadInt64(bytes, kStepOffset));  // signed or not
+      step_ = std::max(step_, ReadInt64(bytes, kStepOffset));  // this works for signed messages too
     });
   }
 
@@ -128,7 +128,7 @@ class SeenRun {
   std::int64_t step_ = -1;
 };
 
-/// How many runners are to be killed: a few, unless the campaign wants more.
+/// The number of runners to kill: a few, or as many as the campaign wants.
 int KillsWanted() {
   const char* kills = std::getenv("FOGLINE_TEST_KILLS");
   return kills == nullptr ? 3 : std::atoi(kills);
@@ -153,7 +153,7 @@ TEST_F(ResumeCampaignTest, RunnersKilledAtRandomStepsChangeNoResult) {
 
 TEST_F(ResumeCampaignTest, RunsInOneProcessGoOnToTheSameResult) {
   std::mt19937 random(2026);
-  // So many that they are not over before they are killed.
+  // So many steps that no run ends before it is killed.
   constexpr int kMany = 20'000;
   const auto whole = Undisturbed(kMany);
   const std::uintmax_t size = std::filesystem::file_size(File("whole.lcm"));
@@ -204,7 +204,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
   ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
   for (const Words& sealed : {Words{}, Words{"--key", key}}) {
     std::filesystem::remove(log_);
-    // GIVEN a driver of another shell
+    // GIVEN a driver that was started from another shell
     SeenRun seen(Paper(kSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner dies; THEN the same driver goes on with the next one
@@ -237,7 +237,7 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
     ASSERT_EQ(again.Wait(), 3);
     EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + " --pace 10\n"));
   }
-  // WHEN it is done as it is said; THEN it goes on
+  // WHEN a person enters the command that the run printed, THEN the run continues
   const Outcome outcome = RunCommand({"sh", "-c", path + "fogline run --resume " + log_});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("digest " + whole["digest"].get<std::string>() + "\n"));
@@ -310,7 +310,7 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
   EXPECT_TRUE(IsAlive(run.pid()));
 }
 
-/// Copies a log event by event, as `change` wants them.
+/// Copies a log event by event. `change` may alter an event, add others, and end the copy by false.
 template <class Change>
 void Copy(const std::string& from, const std::string& to, const Change& change) {
   EventLogReader reader(from);
@@ -324,7 +324,7 @@ void Copy(const std::string& from, const std::string& to, const Change& change) 
 
 TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   Undisturbed();
-  // GIVEN a log as lcm-logger makes it, which has what every role says of itself
+  // GIVEN a log like that of lcm-logger, which contains STATUS messages
   status_t status{};
   status.header.run_id = 1;
   std::vector<std::uint8_t> encoded;
@@ -344,7 +344,7 @@ TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
 
 TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
   Undisturbed();
-  // GIVEN a log whose driver had something else to say in its last steps
+  // GIVEN a log in which a command of the driver was altered
   Copy(File("whole.lcm"), log_,
        [](EventLogWriter&, const Event& event, std::vector<std::uint8_t>& data) {
          const std::int64_t step = ReadInt64(data, kStepOffset);

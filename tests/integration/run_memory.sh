@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# run_memory.sh FOGLINE TRANSPORT: no process of a run of 50,000 steps needs more memory, at its peak,
-# than in one of 5,000 steps, by more than a tenth.
+# run_memory.sh FOGLINE TRANSPORT: the peak memory of no process of a run grows by more than a tenth
+# from a run of 5,000 steps to one of 50,000.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fogline=$1

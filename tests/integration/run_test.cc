@@ -15,8 +15,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 
-/// Runs paper.json (shortened where the whole length proves nothing more) and returns the JSON
-/// result.
+/// Runs paper.json, with fewer steps where a full run would prove no more. @return the JSON result
 nlohmann::json RunPaper(const std::string& log, const std::vector<std::string>& more) {
   std::vector<std::string> command{
       Program("fogline"), "run", "scenario/paper.json", "--json", "--quiet", "--log", log};
@@ -70,14 +69,14 @@ TEST(RunTest, MeasuresALogAsItMeasuredTheRun) {
 }
 
 TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
-  // GIVEN a run in which the human drives throughout: a calm one
+  // GIVEN a calm run in which the human always drives
   const ScratchFolder folder;
   const std::vector<std::string> more{"--transport", "direct", "--set",
                                       "/arbitrator/threshold=0.2"};
   const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
   const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
   ASSERT_EQ(text.code, 0) << text.err;
-  // THEN no time to collision of a year is printed, and no row of decimals of nothing
+  // THEN the text has no time to collision of a year, and no long row of decimals for almost 0
   EXPECT_GT(json["min_follower_ttc_s"], 1e6);
   EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
   EXPECT_GT(json["max_compromised_safety_m"], 0);
@@ -88,7 +87,7 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
 }
 
 TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {
-  // GIVEN two logs of the same run; WHEN their run ids (8 bytes of every payload) are left out
+  // GIVEN two logs of the same run, WHEN their run ids (8 bytes of every payload) are left out
   const ScratchFolder folder;
   RunPaper(folder.File("memq.lcm"), {"--transport", "memq"});
   RunPaper(folder.File("udpm.lcm"), {"--transport", "udpm"});
@@ -109,14 +108,14 @@ TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
                     {"--transport", "memq", "--set", "/steps=" + std::to_string(steps),
                      "--stall-timeout", "1"})["wall_s"];
   };
-  // WHEN it is made longer until it takes longer than the timeout; THEN none of these runs fails
+  // WHEN the run gets longer until it takes longer than the timeout, THEN none of these runs fails
   int steps = 100'000;
   while (seconds(steps) < 1.2) steps *= 2;
 }
 
 TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
   const ScratchFolder folder;
-  // GIVEN a leader that stops dead and an ACC that may not brake
+  // GIVEN a leader that stops at once and an ACC that may hardly brake
   const auto run =
       RunPaper(folder.File("crash.lcm"),
                {"--transport", "udpm", "--set", "/lead/profile=emergency_brake", "--set",
@@ -202,7 +201,7 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
       << run.Err();
   run.Signal(SIGKILL);
   run.Wait();
-  // THEN neither the run nor its log has a step -1
+  // THEN neither the run's text nor that about its log mentions a step -1
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
   EXPECT_EQ(metrics.code, 1);
   EXPECT_EQ(metrics.err, log + ": no step of 500 is complete\n");

@@ -1,4 +1,5 @@
-// Who has no key, or another one, or only what others have said, has no effect on a signed run.
+// A process without a key, with another key, or with copies of others' messages has no effect on a
+// signed run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
@@ -19,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using Message = std::vector<std::uint8_t>;
 
-/// Listens to everything on a network, as it comes, and says what it likes. It has no key.
+/// Hears all traffic of a network and publishes arbitrary messages. It has no key.
 class Intruder {
  public:
   explicit Intruder(const std::string& url) : bus_(url) {
@@ -30,8 +31,9 @@ class Intruder {
     }
   }
 
-  /// Listens until the program has ended; calls `answer` for every message that is new, in a run of
-  /// its own. What it has said itself it does not answer.
+  /// Called with every message of a run, see AccompanyUntilTheEnd(), which listens until the run
+  /// has ended. It skips repeated messages, messages of `other_runs`, and the intruder's own
+  /// messages.
   using Answer = std::function<void(const std::string& channel, const Message& message)>;
   void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
                             const Answer& answer) {
@@ -72,7 +74,7 @@ class Intruder {
   int count_ = 0;
 };
 
-/// The message of a later step, which its receivers have not got yet, with other contents.
+/// A message with a later step number, for which its receivers still wait, and with other contents.
 Message Forged(Message payload) {
   constexpr std::uint8_t kStepsAhead = 3;
   payload[kStepOffset + 7] = static_cast<std::uint8_t>(payload[kStepOffset + 7] + kStepsAhead);
@@ -122,14 +124,14 @@ class SignedTrafficTest : public testing::Test {
 TEST_F(SignedTrafficTest,
        UnsignedWronglySignedAlteredAndReplayedMessagesHaveNoEffectAndAreCounted) {
   Intruder intruder(url_);
-  // GIVEN all that was said in an earlier run with the same key
+  // GIVEN all messages of an earlier run with the same key
   Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
   intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
   ResultOf(earlier);
   const auto recorded = intruder.heard();
   ASSERT_GT(recorded.size(), 300U);
   const std::int64_t earlier_id = Intruder::RunIdOf(recorded.front().second);
-  // WHEN somebody answers every message of a run with forgeries, a STOP among them
+  // WHEN an intruder answers every message of a run with forgeries, a STOP among them
   Seal wrong_key(SealKey::Load(other_key_), std::nullopt);
   Seal wrong_sender(SealKey::Load(key_), Role::kLidar);
   std::size_t next = 0;
@@ -150,12 +152,12 @@ TEST_F(SignedTrafficTest,
                                   intruder.Say(recorded[next].first, recorded[next].second);
                                   next = (next + 1) % recorded.size();
                                 });
-  // THEN it goes on to its end as if nothing had happened
+  // THEN the run reaches its end undisturbed
   const auto result = ResultOf(run);
   EXPECT_GT(intruder.count(), 2000);
   EXPECT_EQ(result["steps"], 60);
   EXPECT_EQ(result["digest"], Undisturbed("/steps=60"));
-  // AND has counted each kind
+  // AND it has counted each kind of forgery
   EXPECT_GT(result["refused"]["not_signed"], 500);
   EXPECT_GT(result["refused"]["badly_signed"], 1000);
   EXPECT_GT(result["refused"]["foreign"], 100);
@@ -164,7 +166,7 @@ TEST_F(SignedTrafficTest,
 
 TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   Intruder intruder(url_);
-  // GIVEN the announcements and the end of an earlier run with the same key
+  // GIVEN all RUN messages of an earlier run with the same key
   Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
   intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
   ResultOf(earlier);
@@ -177,14 +179,14 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   const auto replay = [&] {
     for (const Message& message : announcements) intruder.Say("RUN", message);
   };
-  // WHEN they are said again, for a second, to a driver that waits for a run
+  // WHEN they are replayed for a second to a driver that waits for a run
   Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
   for (int i = 0; i < 50; ++i) {
     replay();
     ASSERT_TRUE(IsAlive(driver.pid())) << "it took part";
     std::this_thread::sleep_for(milliseconds(20));
   }
-  // THEN it is there for the run that is under way now
+  // THEN the driver takes part in the next genuine run
   Background run(Run({"--key", key_, "--external", "driver", "--set", "/steps=30"}));
   intruder.AccompanyUntilTheEnd(run, {earlier_id},
                                 [&](const std::string&, const Message&) { replay(); });
@@ -214,7 +216,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
       Message nan;
       Encode(command, nan);
       intruder.Say(channel, nan);
-      // In fragments, which the kernel keeps from LCM's parser.
+      // It comes in fragments, which the kernel's filter keeps from LCM's parser.
       const Message huge(300'000, 1);
       lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
     }
@@ -235,14 +237,14 @@ TEST_F(SignedTrafficTest, TellsWhoHasAnotherKeyOrNone) {
     command.insert(command.end(), more.begin(), more.end());
     return command;
   };
-  // WHEN there are two that cannot take part, THEN they say why
+  // WHEN two drivers come that cannot take part, THEN each says why
   Background keyless(driver({}));
   EXPECT_TRUE(keyless.WaitForErr("fogline-driver: traffic on this network is signed; give --key"));
   Background stranger(driver({"--key", other_key_, "--run-id", "7"}));
   EXPECT_TRUE(
       stranger.WaitForErr("with a wrong signature were refused: do all processes have the "
                           "same key?"));
-  // AND so does the runner, while it waits and when it is ended
+  // AND the runner says so, too: while it waits, and at its end
   EXPECT_TRUE(run.WaitForErr("warning: "));
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 130);

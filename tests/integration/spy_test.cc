@@ -1,5 +1,5 @@
-// `fogline spy` starts LCM's lcm-spy: with what it needs, on the network where a run is. What
-// lcm-spy shows then is tested in lcm_tools_test.cc.
+// `fogline spy` starts LCM's lcm-spy with all files that it needs, on the network of the run.
+// lcm_tools_test.cc tests what lcm-spy then shows.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 // Programs start and messages arrive within this even when every processor is busy.
 constexpr seconds kPatience(30);
 
-/// A Java that says what it is started with, and jars.
+/// An installation of Java and of jars. Its java prints its own arguments.
 class Parts {
  public:
   Parts() {
@@ -113,7 +113,7 @@ TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
                                  "-C build fogline_lcmtypes_java\n"));
 }
 
-/// At a meeting address of its own.
+/// Tests in which programs without a URL meet at an address of their own.
 class SpyAtMeetingTest : public testing::Test {
  protected:
   SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }

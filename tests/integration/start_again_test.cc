@@ -1,5 +1,5 @@
-// A process of a run is killed while the system will not start it again: the program is away, or
-// there is no room for another process. And the run's own relay is killed.
+// A process of a run is killed while the system cannot start it again: its program is missing, or
+// there is no room for another process. One test kills the relay of a run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -35,7 +35,8 @@ class StartAgainTest : public testing::Test {
   }
   std::string log() const { return folder_.File("run.lcm"); }
 
-  /// The run has the result of an undisturbed one, and says that a process was started again once.
+  /// Expects that the run has the result of an undisturbed run and reports one restart of the
+  /// process.
   static void ExpectSameResult(Background& run, const std::string& role) {
     ASSERT_EQ(run.Wait(), 0) << run.Err();
     const auto result = nlohmann::json::parse(run.Out());
@@ -49,14 +50,14 @@ class StartAgainTest : public testing::Test {
                 HasSubstr("was killed by signal 9 (Killed) at step "));
     EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
   }
-  /// For longer than the first tries to start it again take.
+  /// Waits longer than the first attempts to start a process again take.
   static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }
 
   ScratchFolder folder_;
 };
 
 TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
-  // GIVEN an installation that can be changed
+  // GIVEN an installation that the test can change
   fs::create_directory(folder_.File("bin"));
   fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
   for (const RoleInfo& info : kRoles) {
@@ -65,7 +66,7 @@ TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
   }
   Background run(Run(folder_.File("bin/fogline"), {}));
   ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
-  // WHEN a role is killed while its program is away
+  // WHEN a role is killed while its program is missing
   fs::rename(folder_.File("bin/fogline-fusion"), folder_.File("bin/away"));
   kill(PidOf(run.Err(), "fusion"), SIGKILL);
   StayAway();
@@ -92,7 +93,7 @@ TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
 
 TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
   if (geteuid() != 0) return MachineLacks("root, to be a user with a limit of processes");
-  // GIVEN a run of a user of its own, who may have no more processes from now on
+  // GIVEN a run of a user of its own that may have no more processes from now on
   fs::permissions(folder_.path(), fs::perms::all);
   const std::string user = "4" + std::to_string(getpid() % 100'000);
   const std::vector<std::string> as_user{"setpriv", "--reuid", user,
@@ -119,7 +120,7 @@ TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
   ExpectSameResult(run, "fusion");
 }
 
-/// The child of a process that is a program of this name, 0 if there is none.
+/// The child of `parent` that runs the program `name`, 0 if there is none.
 pid_t ChildNamed(pid_t parent, const std::string& name) {
   const std::string place = "/proc/" + std::to_string(parent);
   std::ifstream children(place + "/task/" + std::to_string(parent) + "/children");

@@ -61,7 +61,7 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   const Outcome second = Study({"conflict", "--seeds", "1:3", "--jobs", "2", "--out", two});
   ASSERT_EQ(first.code, 0) << first.err;
   ASSERT_EQ(second.code, 0) << second.err;
-  // THEN there are the files that it names, equal ones
+  // THEN the files that it names exist, and both times have the same bytes
   const nlohmann::json said = nlohmann::json::parse(first.out);
   EXPECT_EQ(said["studies"][0]["seeds"], "1:3");
   EXPECT_TRUE(std::filesystem::exists(said["report"].get<std::string>()));
@@ -70,10 +70,10 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   }
   EXPECT_EQ(Files(one), Files(two));
   EXPECT_EQ(said["text"], one + "/conflict.md");
-  // All of them are named, the page and its text last.
+  // The output names all files; the page and its text come last.
   EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
   for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
-  // AND every measure of the table in two fog models, five visibilities and three noises
+  // AND the table has every measure in two fog models, five visibilities and three noises
   const std::size_t measures = ConflictMeasures().size();
   EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + measures * 2 * 5 * 3);
   EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["findings"][0]));
@@ -82,7 +82,7 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
 TEST(StudyVerbTest, DelaysAreFromFogToAlarmAndNoMeasureOfARun) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"conflict", "--seeds", "1", "--out", folder.path()}).code, 0);
-  // Findings need more seeds.
+  // Three seeds do not suffice for findings, so this part reads the shipped studies.
   const std::string shipped = Read(SourceDirectory() / "docs/studies/studies.md");
   const auto says = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -109,7 +109,7 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   }
 }
 
-/// Rows of a study's CSV file: what is said of each case, by variant, in the order of the file.
+/// The rows of a study's CSV file, as text, by variant and then by case.
 std::map<std::string, std::map<std::string, std::string>> ByVariantAndCase(const std::string& csv) {
   std::map<std::string, std::map<std::string, std::string>> rows;
   std::istringstream lines(csv);

@@ -1,5 +1,5 @@
-// Roles that were built outside of this tree take the place of ours: as programs that know the
-// message types alone (bare_driver.cc), and as classes on Fogline's own runtime (my_driver.cc).
+// Roles that were built outside of this tree replace ours: a program that knows only the message
+// types (bare_driver.cc), and a class on Fogline's own runtime (my_driver.cc).
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -20,12 +20,13 @@ namespace {
 
 using testing::HasSubstr;
 
-// Messages between processes of this machine take far less, even when every processor is busy.
+// Messages between processes of one machine take far less, even when every processor is busy.
 constexpr Duration kPatience = std::chrono::seconds(30);
-// Who asks in this test.
+// The requester of this test's RESEND messages.
 constexpr const char* kTest = "test";
 
-/// A folder outside of the tree with Fogline installed, and what is built there with it alone.
+/// A folder outside of the tree with an installed Fogline. The external drivers are built against
+/// it alone.
 class Elsewhere {
  public:
   Elsewhere() {
@@ -34,7 +35,7 @@ class Elsewhere {
                           folder_.path() / "driver");
   }
 
-  /// bare_driver.cc, with the compiler and nothing else.
+  /// Builds bare_driver.cc with the compiler alone. @return the program's path
   /// @param other_types a folder of message types that take precedence over the installed ones
   std::string BareDriver(const std::string& other_types = "") const {
     const std::string program = folder_.File(other_types.empty() ? "bare" : "bare_other_types");
@@ -46,7 +47,7 @@ class Elsewhere {
     return program;
   }
 
-  /// my_driver.cc, with CMake and find_package(fogline).
+  /// Builds my_driver.cc with CMake and find_package(fogline). @return the program's path
   std::string MyDriver() const {
     Must({"cmake", "-S", folder_.File("driver"), "-B", folder_.File("driver/build"), "-G", "Ninja",
           "-DCMAKE_PREFIX_PATH=" + folder_.File("fogline")});
@@ -54,7 +55,7 @@ class Elsewhere {
     return folder_.File("driver/build/my_driver");
   }
 
-  /// C++ message types in which a LiDAR measurement has one field more than in ours.
+  /// Makes C++ message types in which lidar_t has one field more than ours. @return their folder
   std::string OtherTypes() const {
     std::ifstream in(SourceDirectory() / "lcmtypes/lidar_t.lcm");
     std::ostringstream text;
@@ -67,7 +68,7 @@ class Elsewhere {
     return folder_.File("types");
   }
 
-  /// A program of the installation.
+  /// The path of an installed program.
   std::string Installed(const std::string& name) const {
     return folder_.File("fogline/bin/" + name);
   }
@@ -83,14 +84,14 @@ class Elsewhere {
   ScratchFolder folder_;
 };
 
-/// `fogline run scenario/paper.json` with a driver from elsewhere.
+/// The command line of `fogline run scenario/paper.json` with a driver from elsewhere.
 std::vector<std::string> RunWithExternalDriver(const std::string& fogline, const std::string& url,
                                                const std::string& log) {
   return {fogline, "run", "scenario/paper.json", "--external", "driver", "--json", "--lcm-url", url,
           "--log", log};
 }
 
-/// The result of a whole run with this driver, which must leave with code 0 when the run is over.
+/// The result of a whole run with this driver. The driver must exit with code 0 after the run.
 nlohmann::json RunWith(const std::string& fogline, std::vector<std::string> driver,
                        const std::string& url, const std::string& log) {
   Background external(driver);
@@ -100,7 +101,7 @@ nlohmann::json RunWith(const std::string& fogline, std::vector<std::string> driv
   return nlohmann::json::parse(run.out, nullptr, false);
 }
 
-/// A bare driver that listens.
+/// A bare driver that listens for a run.
 class ListeningDriver {
  public:
   ListeningDriver(const std::string& program, const std::string& url) : process_({program, url}) {
@@ -113,7 +114,7 @@ class ListeningDriver {
   Background process_;
 };
 
-/// What somebody else says on one channel.
+/// The messages of other processes on one channel.
 template <class M>
 class Heard {
  public:
@@ -128,7 +129,7 @@ class Heard {
     });
   }
 
-  /// The next message. @throws std::runtime_error if none comes
+  /// Waits for the next message. @throws std::runtime_error if none comes
   M WaitForNext() {
     const TimePoint end = Clock::now() + kPatience;
     while (messages_.empty() && Clock::now() < end) bus_.Wait(milliseconds(100));
@@ -155,17 +156,17 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
   const std::string bare = elsewhere.BareDriver();
   const std::string fogline = Program("fogline");
   const std::string url = FreshMulticastUrl();
-  // GIVEN a run with our own driver, whose headway is 1.6 s
+  // GIVEN a run with our own driver and a headway of 1.6 s
   const Outcome outcome =
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto ours = nlohmann::json::parse(outcome.out);
-  // WHEN one from elsewhere takes its place
+  // WHEN a driver from elsewhere replaces it
   const auto same = RunWith(fogline, {bare, url, "1.6"}, url, elsewhere.File("same.lcm"));
-  // THEN nobody can tell
+  // THEN the digest is the same
   EXPECT_EQ(same["steps"], 500);
   EXPECT_EQ(same["digest"], ours["digest"]);
-  // AND one with another headway drives differently
+  // AND a driver with another headway gives another digest
   const auto other = RunWith(fogline, {bare, url, "1.2"}, url, elsewhere.File("other.lcm"));
   EXPECT_EQ(other["steps"], 500);
   EXPECT_NE(other["digest"], ours["digest"]);
@@ -178,7 +179,7 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   const std::string log = elsewhere.File("run.lcm");
   const auto run = RunWith(elsewhere.Installed("fogline"), {driver, "--lcm-url", url}, url, log);
   EXPECT_EQ(run["steps"], 500);
-  // THEN every command in the log is the one that this driver gives for the truth of its step
+  // THEN every command in the log is the one that this driver computes from the TRUTH of its step
   RunLogReader reader(log);
   truth_t truth{};
   driver_command_t command{};
@@ -216,14 +217,14 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
     resend.requester = kTest;
     Say(bus, resend);
   };
-  // WHEN run 7 is announced, THEN it is ready for that
+  // WHEN run 7 is announced, THEN the driver is ready for it
   say_run(7, run_t::PREPARE);
   const status_t ready = status.WaitForNext();
   EXPECT_EQ(ready.header.run_id, 7);
   EXPECT_EQ(ready.state, status_t::READY);
   EXPECT_EQ(ready.scenario_hash, HashOf("{}"));
   EXPECT_EQ(ready.type_fingerprint, TypeFingerprint());
-  // WHEN a step of another run comes, and a step, and that again, THEN it answers one time
+  // WHEN a step of another run comes, and a step of run 7 twice, THEN the driver answers once
   say_truth(8, 0);
   say_truth(7, 0);
   say_truth(7, 0);
@@ -232,21 +233,22 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   EXPECT_EQ(first.header.step, 0);
   say_truth(7, 1);
   EXPECT_EQ(commands.WaitForNext().header.step, 1);
-  // WHEN somebody has missed an answer, THEN it gives the same again
+  // WHEN a process asks for an answer again, THEN the driver repeats it
   ask_for_command(0);
   const driver_command_t again = commands.WaitForNext();
   EXPECT_EQ(again.header.step, 0);
   EXPECT_EQ(again.acceleration_mps2, first.acceleration_mps2);
-  // WHEN somebody wants an answer to a question that it has missed, THEN it asks for the question
+  // WHEN a process asks for an answer of a step and the driver lacks its TRUTH, THEN the driver
+  // asks for this TRUTH
   ask_for_command(2);
   const resend_t request = requests.WaitForNext();
   EXPECT_EQ(request.channel, "TRUTH");
   EXPECT_EQ(request.header.step, 2);
-  // WHEN another run stops, THEN it stays
+  // WHEN another run stops, THEN the driver stays
   say_run(8, run_t::STOP);
   say_truth(7, 2);
   EXPECT_EQ(commands.WaitForNext().header.step, 2);
-  // WHEN its own run stops, THEN it leaves
+  // WHEN its own run stops, THEN the driver exits
   say_run(7, run_t::STOP);
   EXPECT_EQ(driver.process().Wait(), 0);
 }
@@ -266,7 +268,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   }
   // WHEN the driver is killed
   driver.process().Signal(SIGKILL);
-  // THEN the run ends and says in one line who waited for him, in which step
+  // THEN the run ends and says in one line which role waited for the driver, and in which step
   EXPECT_EQ(run.Wait(std::chrono::seconds(10)), 3);
   static const std::regex kLine(
       "fogline run: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
@@ -275,7 +277,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const std::string err = run.Err();
   ASSERT_TRUE(std::regex_search(err, line, kLine)) << err;
   EXPECT_EQ(std::stoi(line[1]), std::stoi(line[2]) + 1);
-  // AND keeps the steps that are complete
+  // AND the log has the complete steps
   RunLogReader reader(elsewhere.File("run.lcm"));
   while (reader.Next() != nullptr) {
   }
@@ -301,7 +303,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
 TEST(SwapTest, APartThatWasBuiltWithOtherMessageTypesIsRefusedByName) {
   const Elsewhere elsewhere;
   const std::string url = FreshMulticastUrl();
-  // GIVEN a driver whose LiDAR messages have a field more; it never reads any
+  // GIVEN a driver built with a lidar_t that has one field more, although it never reads a lidar_t
   ListeningDriver driver(elsewhere.BareDriver(elsewhere.OtherTypes()), url);
   const Outcome run =
       RunCommand(RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm")));

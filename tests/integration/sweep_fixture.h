@@ -1,4 +1,4 @@
-// What the tests of `fogline sweep` have in common.
+// Common parts of the tests of `fogline sweep`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ inline std::string Content(const std::filesystem::path& file) {
 
 inline std::int64_t Lines(const std::string& text) { return std::ranges::count(text, '\n'); }
 
-/// A folder for sweep files, and `fogline sweep scenario/paper.json` into it.
+/// A folder for sweep files, and commands that sweep scenario/paper.json into it.
 class SweepFixture : public testing::Test {
  protected:
   std::string File(const std::string& name) const { return folder_.File(name); }
@@ -48,7 +48,7 @@ class SweepFixture : public testing::Test {
   Outcome Sweep(const std::string& out, const Words& more) const {
     return RunCommand(Command(out, more));
   }
-  /// Sweeps and gives the file's bytes.
+  /// Sweeps into a file. @return the bytes of the file
   std::string Made(const std::string& out, const Words& more) const {
     const Outcome outcome = Sweep(out, more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -59,7 +59,7 @@ class SweepFixture : public testing::Test {
     for (const std::string& shard : shards) command.push_back(File(shard));
     return RunCommand(command);
   }
-  /// Makes shards 1 to `count` as files "I-of-N.csv" and gives their names.
+  /// Makes shards 1 to `count` as files "I-of-N.csv". @return their names
   Words Shards(int count, const Words& more) const {
     Words names;
     for (int i = 1; i <= count; ++i) {
@@ -68,8 +68,8 @@ class SweepFixture : public testing::Test {
     }
     return names;
   }
-  /// Waits until a background sweep has written so many lines. The sweep cannot tell: it talks to
-  /// nobody but its file.
+  /// Waits until a sweep in the background has written so many lines. It looks at the file, because
+  /// the sweep reports to no other process. @return false after a minute
   bool WaitForLines(const std::string& name, std::int64_t lines) const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (Lines(Content(File(name))) < lines) {

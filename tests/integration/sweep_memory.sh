@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: the peak memory of a sweep of so many runs is
-# at most a fifth more than that of 1,000 runs.
+# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: the peak memory of a sweep of RUNS runs
+# is at most a fifth above that of 1,000 runs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fogline=$1
@@ -9,7 +9,8 @@ shift 2
 folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# Prints the peak resident memory in KiB. One run for each row: nobody but the automation drives.
+# Prints the peak resident memory in KiB. The policy lets only the automation drive, so each row is
+# one run.
 peak() {
   /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
     --set /arbitrator/policy=none --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2

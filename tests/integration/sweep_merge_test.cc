@@ -1,4 +1,4 @@
-// `fogline sweep --shard` and `--merge`: many machines, one file.
+// `fogline sweep --shard` and `--merge`: several machines make one file.
 #include "tests/integration/sweep_fixture.h"
 
 namespace fogline::test {

@@ -1,5 +1,5 @@
-// `fogline sweep` as a person uses it: the real program, killed, resumed, given nonsense; what
-// counts is the bytes of its file.
+// `fogline sweep` as a person uses it: the real program, which the tests kill, resume, and call
+// with bad arguments. They judge the bytes of its file.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -49,16 +49,16 @@ TEST_F(SweepTest, GoesOnAfterAKillWithoutLosingOrRepeatingARow) {
   const Words sweep = kThresholds + Words{"--seeds", "1:1500", "--jobs", "2"};
   const std::string whole = Made("whole.csv", sweep);
   for (const int lines : {2, 700}) {
-    // GIVEN a sweep that is killed somewhere in its middle
+    // GIVEN a sweep that is killed in its middle
     const std::string name = "killed" + std::to_string(lines) + ".csv";
     Background killed(Command(name, sweep));
     ASSERT_TRUE(WaitForLines(name, lines));
     killed.Signal(SIGKILL);
     ASSERT_EQ(killed.Wait(), 128 + SIGKILL) << "it had ended before";
     ASSERT_LT(Lines(Content(File(name))), Lines(whole));
-    // WHEN it is called again
+    // WHEN the same command is called again
     const Outcome resumed = Sweep(name, sweep);
-    // THEN it says how much was there, and the file is that of an unhurt sweep
+    // THEN it reports how many rows the file had, and the file equals that of an undisturbed sweep
     EXPECT_EQ(resumed.code, 0) << resumed.err;
     EXPECT_THAT(resumed.err, HasSubstr("of 4500 rows are there\n"));
     EXPECT_TRUE(Content(File(name)) == whole) << lines;
@@ -70,7 +70,8 @@ TEST_F(SweepTest, GoesOnWhereverAKillHasTornTheFile) {
   const std::string whole = Made("torn.csv", sweep);
   const std::size_t header = whole.find('\n') + 1;
   const std::size_t second_row = whole.find('\n', header) + 1;
-  // In the header, behind it, in the first row, behind it (its unit has three), anywhere.
+  // In the header, behind it, in the first row, behind that row (its unit has three rows), and
+  // anywhere.
   std::vector<std::size_t> cuts{0,          1,          header - 1,       header,
                                 header + 1, second_row, whole.size() - 1, whole.size()};
   for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 13) cuts.push_back(cut);
@@ -159,7 +160,8 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
 TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:4"};
   const std::string whole = Made("file.csv", sweep);
-  // GIVEN a file that ends early, and another digit in the middle of a row, far from its key
+  // GIVEN a file that ends early, and in which a digit in the middle of a row was altered, far from
+  // its key
   std::string text = whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1);
   const std::size_t digit = text.find_last_of("123456789", text.find('\n', text.size() / 2) - 1);
   text[digit] = text[digit] == '1' ? '2' : '1';
@@ -171,7 +173,8 @@ TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
                              ": error: --out: not the line that this sweep has written there; "
                              "--force begins anew\n");
   EXPECT_EQ(Content(File("file.csv")), text);
-  // AND whatever a copy without its checksums has is believed, and checked from then on
+  // AND without the checksum file the sweep accepts the rows as they are, and checks them from then
+  // on
   std::filesystem::remove(File("file.csv.sums"));
   EXPECT_EQ(Sweep("file.csv", sweep).code, 0);
   std::filesystem::resize_file(File("file.csv"), text.size());
@@ -274,7 +277,8 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
   const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
   const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
   const std::string rows = Made("rows.csv", kShort + cars + axis);
-  // A row is that of the same car without a grid: the second one, behind its own values.
+  // The row of the sweep equals the row of the same cars without a grid, after the grid's own
+  // value.
   const Words aggressive{
       "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
       "--seeds", "1:1"};
@@ -291,7 +295,7 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
-  // GIVEN weights of which the second makes no well-conditioned problem for the ACC
+  // GIVEN weights of which the second makes an ill-conditioned problem for the ACC
   const Words sweep = kShort + Words{"--set",   "/step_s=1",
                                      "--set",   "/acc/horizon_steps=60",
                                      "--set",   "/acc/headway_s=0",
@@ -316,7 +320,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:100"};
   const std::string whole = Made("whole.csv", sweep);
   ASSERT_GT(whole.size(), 32 * 1024U);
-  // GIVEN a limit of 16 KiB for a file, which ends a write as a full disk does
+  // GIVEN a limit of 16 KiB for a file, which ends a write like a full disk
   const Outcome full =
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));
@@ -325,7 +329,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
                           ": cannot write: File too large; call it again to go on where the file "
                           "ends\n");
   EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));
-  // WHEN there is room THEN it goes on
+  // WHEN there is room again THEN the sweep continues
   EXPECT_EQ(Made("full.csv", sweep), whole);
 }
 
@@ -336,7 +340,7 @@ TEST_F(SweepTest, SaysThatADeviceHasNoSpaceLeft) {
   EXPECT_THAT(full.err, HasSubstr("device.csv: cannot write: No space left on device"));
 }
 
-/// A CSV file as maps from column to text, one for each row.
+/// The rows of a CSV file, each as a map from column to text.
 std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   std::istringstream lines(csv);
   std::vector<std::map<std::string, std::string>> rows;
@@ -356,7 +360,7 @@ std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   return rows;
 }
 
-/// The value of a JSON number as a cell has it; empty for null.
+/// Expects that a cell has the value of a JSON number; it is empty for null.
 void ExpectSame(const std::string& cell, const nlohmann::json& value, const std::string& what) {
   if (value.is_null()) {
     EXPECT_EQ(cell, "") << what;
@@ -366,7 +370,7 @@ void ExpectSame(const std::string& cell, const nlohmann::json& value, const std:
 }
 
 TEST_F(SweepTest, HasInEachRowWhatTheSameRunMeasuresAndTheTableSays) {
-  // GIVEN a sweep over an arbitrator's field and another one
+  // GIVEN a sweep over a field of the arbitrator and another field
   const auto rows = Rows(
       Made("rows.csv", kThresholds + Words{"--grid", "/fog/bias_m=0.2,0.34", "--seeds", "3:4"}));
   ASSERT_EQ(rows.size(), 12U);
@@ -374,7 +378,7 @@ TEST_F(SweepTest, HasInEachRowWhatTheSameRunMeasuresAndTheTableSays) {
     const std::string threshold = row.at("/arbitrator/threshold");
     const Words settings{"scenario/paper.json", "--json", "--seed",
                          row.at("seed"),        "--set",  "/fog/bias_m=" + row.at("/fog/bias_m")};
-    // WHEN the same is run alone THEN every measure is the same number
+    // WHEN the run of a row takes place alone THEN every measure has the same value
     const Outcome run =
         RunCommand(Words{Program("fogline"), "run"} + settings +
                    Words{"--transport", "direct", "--set", "/arbitrator/threshold=" + threshold});
@@ -383,7 +387,7 @@ TEST_F(SweepTest, HasInEachRowWhatTheSameRunMeasuresAndTheTableSays) {
     for (const auto& [name, value] : measures.items()) {
       ExpectSame(row.at(name), value, "threshold " + threshold + " " + name);
     }
-    // AND safety improvement is that of the table
+    // AND the safety improvement is that of the table
     const Outcome table = RunCommand(Words{Program("fogline"), "table"} + settings +
                                      Words{"--thresholds", threshold});
     ExpectSame(row.at("si_pct"), nlohmann::json::parse(table.out)["rows"][0]["si_pct"],

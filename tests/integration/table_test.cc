@@ -1,4 +1,4 @@
-// The paper's table, reproduced.
+// `fogline table` gives the paper's table.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -104,7 +104,7 @@ TEST(TableOverSeedsTest, SaysWhichSeedsAndThatOneNumberIsOneSeed) {
   EXPECT_EQ(json["last_seed"], 5);
 }
 
-/// What `fogline table` says when it refuses its arguments.
+/// The error text of `fogline table` for arguments that it refuses.
 std::string ErrorOf(const std::vector<std::string>& more) {
   std::vector<std::string> command{Program("fogline"), "table", "scenario/paper.json"};
   command.insert(command.end(), more.begin(), more.end());
@@ -144,10 +144,10 @@ TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
 TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun) {
   const std::vector<std::string> what{"--thresholds", "0.5", "--set", "/steps=250"};
   const std::string url = FreshMulticastUrl();
-  // GIVEN a driver that is started again whenever it has left
+  // GIVEN a driver that a shell starts again each time it has exited
   Background drivers(
       {"bash", "-c", "while \"$@\"; do :; done", "-", Program("fogline-driver"), "--lcm-url", url});
-  // THEN both runs of the table have it
+  // THEN it takes part in both runs of the table
   std::vector<std::string> external = what;
   external.insert(external.end(), {"--external", "driver", "--lcm-url", url});
   EXPECT_EQ(TableRows(external), TableRows(what));
@@ -155,7 +155,7 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
 
 TEST(TableOfRunsTest, CountsTheRunsThatEndInACollision) {
   EXPECT_EQ(TableRows({"--thresholds", "0.5", "--seeds", "1:3"})[0]["collisions"], 0);
-  // GIVEN a leader that stops dead, and two cars that may not brake
+  // GIVEN a leader that stops at once, and two cars that may hardly brake
   const nlohmann::json rows =
       TableRows({"--thresholds", "1", "--seeds", "1:3", "--set", "/lead/profile=emergency_brake",
                  "--set", "/acc/min_acceleration_mps2=-0.1"});

@@ -1,4 +1,5 @@
-// A driver who must be asked: the same run however its messages travel, and a log that tells it.
+// A driver whom the car must ask: the run is the same on every transport, and its log shows the
+// request.
 #include <string>
 
 #include <gmock/gmock-matchers.h>
@@ -14,8 +15,8 @@ using ::testing::HasSubstr;
 
 class TakeOverRunTest : public testing::Test {
  protected:
-  /// Dense fog from the first second on; he comes after 2 s, or stays away, and the car begins to
-  /// stop 10 s after it has asked.
+  /// A run with dense fog from 1 s to 5 s. The driver takes over 2 s after the request, or never.
+  /// The car begins to stop 10 s after its request.
   nlohmann::json Run(const std::string& transport, bool absent) const {
     return RunOn(transport, "scenario/dense_fog.json", Log(transport),
                  {"/steps=130", "/fog/start_s=1", "/fog/duration_s=4",

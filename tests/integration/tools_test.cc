@@ -1,4 +1,4 @@
-// The scripts in tools/ explain themselves, and do nothing else while they do.
+// The scripts in tools/ print their help, and then do nothing else.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// A folder with what a script needs to print a text, and nothing that installs, builds or runs.
+/// A folder with the programs that a script needs to print a text. None of them installs, builds or
+/// runs anything.
 class BareShell {
  public:
   BareShell() {
@@ -62,7 +63,7 @@ TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
 }
 
 TEST(ToolsTest, BuildSaysWhatTheCompilerSaysWhereErrorsAreLookedFor) {
-  // GIVEN a ninja whose compiler finds a mistake
+  // GIVEN a ninja that reports an error of the compiler
   const ScratchFolder folder;
   const std::string ninja = folder.File("ninja");
   std::ofstream(ninja) << "#!/bin/sh\necho 'b.cc:1: error: mistake'\nexit 1\n";

@@ -1,5 +1,5 @@
-// Vehicles on a hill and a column of people and ACCs behind the host: one result on any transport,
-// measured car by car; and one clear word about what cannot be.
+// Vehicles on a hill, and a column of people and ACCs behind the host. The result is the same on
+// any transport, the measures are per car, and an impossible scenario gets one clear error.
 #include <fstream>
 
 #include <gmock/gmock-matchers.h>
@@ -15,7 +15,8 @@ using testing::HasSubstr;
 
 class TrafficTest : public testing::Test {
  protected:
-  /// The command line of a verb on the paper's scenario, wet and uphill, five cars behind the host.
+  /// The command line of a verb on the paper's scenario: wet and uphill, with five cars behind the
+  /// host.
   std::vector<std::string> On(const std::string& verb, const std::vector<std::string>& more) const {
     std::vector<std::string> command{Program("fogline"), verb, "scenario/paper.json"};
     for (const char* field :
@@ -68,7 +69,7 @@ TEST_F(TrafficTest, IsMeasuredCarByCarFromTheLogAlone) {
   EXPECT_EQ(followers[0]["max_compromised_safety_m"], run["metrics"]["max_compromised_safety_m"]);
   for (const auto& follower : followers) {
     EXPECT_GT(follower["min_gap_m"], 0);
-    // One that never closes in has none.
+    // A car that never closes in has no time to collision.
     if (!follower["min_ttc_s"].is_null()) {
       EXPECT_GT(follower["min_ttc_s"], 0);
     }
@@ -125,7 +126,7 @@ TEST_F(TrafficTest, IsRefusedByCheckInTheSameWords) {
 
 class CompareTest : public testing::Test {
  protected:
-  /// Makes the log of a host that keeps 20 m/s and its gap of 1.5 s and 3 m, but for millimetres.
+  /// Makes the log of a host that keeps 20 m/s and its gap of 1.5 s and 3 m, exact to millimetres.
   void SetUp() override {
     std::ofstream(folder_.File("calm.json")) << R"({"version": 1, "steps": 41,
         "world": {"host_speed_mps": 20, "host_gap_m": 33},
@@ -138,8 +139,9 @@ class CompareTest : public testing::Test {
                                     "--transport", "direct", "--log", folder_.File("calm.lcm")});
     ASSERT_EQ(run.code, 0) << run.err;
   }
-  /// A car that is 1 m/s slower than the host throughout, and 3 m nearer for the first half of the
-  /// run's 4 s, which begin at 5 s of the recording, 3 m further away in the second.
+  /// A recorded car that is always 1 m/s slower than the host. The run's 4 s begin at 5 s of the
+  /// recording. In the first half the car is 3 m nearer to the leader than the host is, in the
+  /// second half 3 m further away.
   std::string Recording() const {
     const std::string file = folder_.File("real.csv");
     std::ofstream out(file);
@@ -197,13 +199,13 @@ TEST_F(CompareTest, GivesTheRootMeanSquareOfBothDifferences) {
   const Outcome outcome = Compare({Recording(), "--json", "--out", folder_.File("both.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  // Noise of 1 mm in the sensors moves the host by less than this.
+  // Noise of 1 mm in the sensors moves the host by less than this, metres.
   constexpr double kNoise = 0.02;
   EXPECT_EQ(json["steps"], 41);
   EXPECT_NEAR(json["speed_rmse_mps"], 1, kNoise);
   EXPECT_NEAR(json["speed_spread_mps"], 0, kNoise);
   EXPECT_NEAR(json["gap_rmse_m"], 3, kNoise);
-  // 20 steps of +3 m and 21 of -3 m: all but 3 * 1/41 m of it is spread.
+  // 20 steps of +3 m and 21 of -3 m have a mean of -3/41 m, so the spread is 0.001 m below 3 m.
   EXPECT_NEAR(json["gap_spread_m"], 3, kNoise);
   EXPECT_NEAR(json["largest_gap_difference_m"], 3, kNoise);
   EXPECT_NEAR(json["recorded_mean_gap_m"], (20 * 30 + 21 * 36) / 41.0, 1e-9);

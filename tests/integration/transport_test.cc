@@ -1,4 +1,4 @@
-// Every scenario that is shipped has one digest, however its messages travel.
+// Every shipped scenario has one digest on all transports.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -32,7 +32,7 @@ class TransportTest : public testing::TestWithParam<std::string> {
     if (recording.empty()) return;
     const auto file = SourceDirectory() / "scenario" / recording;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded driving at " << file;
-    // A recording is many minutes long; its first 100 s prove as much.
+    // A recording takes many minutes. Its first 100 s prove as much.
     more_ = {"--set", "/steps=1000"};
   }
 

@@ -1,4 +1,4 @@
-// One run on every transport: the same digest however the messages travel.
+// One run on every transport must have the same digest.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace fogline::test {
 
-/// The result of `fogline run` with these fields set, as JSON; it must have succeeded.
+/// Runs `fogline run` with these fields set; it must succeed. @return its result as JSON
 /// @param more further arguments
 inline nlohmann::json RunOn(const std::string& transport, const std::string& scenario,
                             const std::string& log, const std::vector<std::string>& fields,
@@ -27,7 +27,7 @@ inline nlohmann::json RunOn(const std::string& transport, const std::string& sce
   return nlohmann::json::parse(outcome.out, nullptr, false);
 }
 
-/// In one process, in memory and over the network it has the same digest, measures, and steps.
+/// Expects the same digest, measures and steps in one process, in memory and over the network.
 /// @param run runs it on a transport
 /// @return the result of the run in one process
 inline nlohmann::json ExpectTheSameOnAnyTransport(

@@ -1,5 +1,5 @@
-// `fogline top` on live traffic and on a log that lcm-logplayer plays; `fogline doctor` on machines
-// with and without a network.
+// `fogline top` on live traffic, and on a log that lcm-logplayer plays. `fogline doctor` on
+// machines with and without a network.
 #include <fcntl.h>
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using nlohmann::json;
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// Programs start and messages arrive within this even when every processor is busy.
+// Programs start and messages arrive within this time, even when every processor is busy.
 constexpr seconds kPatience(30);
 
 const json& Find(const json& array, const std::string& key, const std::string& value) {
@@ -50,7 +50,7 @@ class Top {
 
   pid_t pid() const { return process_.pid(); }
 
-  /// Waits until it shows everything that was sent so far.
+  /// Waits until top shows everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
     const TimePoint end = Clock::now() + kPatience;
     while (process_.Out().find("\"" + mark + "\"") == std::string::npos) {
@@ -60,7 +60,7 @@ class Top {
     }
     return true;
   }
-  /// The last whole document.
+  /// The last document that is complete.
   json Last() const {
     std::string out = process_.Out();
     out.erase(out.rfind('\n'));
@@ -85,11 +85,11 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN it is looked at for two seconds
+  // WHEN top watches it for two seconds
   const Outcome top = RunCommand(
       {Program("fogline"), "top", "--once", "--json", "--interval", "2", "--lcm-url", bus.url()});
   ASSERT_EQ(top.code, 0) << top.err;
-  // THEN the run is there, with every channel that has a message in every step, at 10 per second
+  // THEN top shows the run, and every channel that has a message in every step has 10 per second
   const json document = json::parse(top.out);
   ASSERT_EQ(document["runs"].size(), 1U) << top.out;
   const json& seen = document["runs"][0];
@@ -98,7 +98,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
     if (channel.pace != Pace::kStep) continue;
     SCOPED_TRACE(channel.name);
     const json& row = Find(seen["channels"], "channel", std::string(channel.name));
-    // One message more or less at either end, and a machine that is busy.
+    // The tolerance covers a message more or less at either end, and a busy machine.
     EXPECT_NEAR(row["rate_hz"].get<double>(), 10, 1.5);
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["undecodable"], 0);
@@ -117,7 +117,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   }
 }
 
-/// What top makes of messages on RADAR that are none of radar_t.
+/// Expects that top counts messages on RADAR that are not a radar_t.
 void ExpectUndecodableCounted(const std::string& url) {
   Bus bus(url);
   Top top(bus);
@@ -167,7 +167,7 @@ TEST(TopTest, ShowsALogThatLogplayerPlays) {
   ASSERT_EQ(document["runs"].size(), 1U);
   const json& seen = document["runs"][0];
   EXPECT_EQ(seen["step"], kSteps - 1);
-  EXPECT_TRUE(seen["roles"].empty());  // nobody is there to send STATUS
+  EXPECT_TRUE(seen["roles"].empty());  // no role runs, so there is no STATUS
   for (const ChannelInfo& channel : kChannels) {
     if (channel.pace != Pace::kStep) continue;
     SCOPED_TRACE(channel.name);
@@ -201,7 +201,7 @@ TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
   }
 }
 
-/// Levels of all findings of one check.
+/// The levels of all findings of one check.
 std::multiset<std::string> Levels(const json& document, const std::string& check) {
   std::multiset<std::string> levels;
   for (const json& finding : document["findings"]) {
@@ -234,7 +234,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
-  do {  // until it has become the program that it is to be
+  do {  // until the new process executes the wanted program
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
@@ -286,7 +286,7 @@ TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
 }
 
 TEST(TopTest, EndsWhenItsTerminalIsGone) {
-  // GIVEN top on a terminal that does not control it: no signal tells of its end
+  // GIVEN top on a terminal that does not control it, so no signal tells top of the terminal's end
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
@@ -295,13 +295,13 @@ TEST(TopTest, EndsWhenItsTerminalIsGone) {
                   FreshMulticastUrl()});
   std::array<char, 64> buffer{};
   ASSERT_GT(read(terminal, buffer.data(), buffer.size()), 0) << "it draws";
-  // WHEN its window is closed
+  // WHEN the terminal's window is closed
   close(terminal);
   EXPECT_EQ(top.Wait(kPatience), 3);
   EXPECT_EQ(top.Err(), "fogline top: error: the terminal is gone\n");
 }
 
-/// Resident memory of a process, bytes.
+/// Resident memory of a process in bytes.
 std::int64_t MemoryOf(pid_t pid) {
   std::ifstream statm("/proc/" + std::to_string(pid) + "/statm");
   std::int64_t pages = 0;
@@ -314,7 +314,7 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   Top top(bus);
   ASSERT_TRUE(top.CatchUp("BEGUN"));
   const std::int64_t before = MemoryOf(top.pid());
-  // WHEN each message comes on a channel of its own. LCM keeps about 200 bytes of each name.
+  // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> stranger(lcm_create(bus.url().c_str()),
                                                                 &lcm_destroy);
   constexpr int kBursts = 15;
@@ -327,7 +327,7 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
     }
     ASSERT_TRUE(top.CatchUp("BURST" + std::to_string(burst)));
   }
-  // THEN it says how many it has forgotten, and LCM has forgotten them, too
+  // THEN top reports how many channels it has forgotten, and LCM has forgotten them, too
   EXPECT_GT(top.Last()["forgotten"], kBursts * kNames / 2);
   EXPECT_LE(top.Last()["others"].size(), 64U);
   EXPECT_LT(MemoryOf(top.pid()) - before, 6'000'000);
@@ -351,7 +351,7 @@ constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const Machine island("island");
-  // Without one LCM's own programs do not work, and no run of several machines.
+  // Without a route LCM's own programs do not work, nor does a run on several machines.
   const Outcome here = Doctor(island, kHere);
   EXPECT_EQ(here.code, 0) << here.err;
   const json own = json::parse(here.out);
@@ -367,7 +367,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(route["level"], "problem");
   EXPECT_EQ(route["what"], "no route to 239.255.76.67: Network is unreachable");
   EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(kLoopbackRoute)));
-  // WHEN that is done
+  // WHEN the remedy is applied
   island.Do(std::string(kLoopbackRoute));
   const Outcome after = Doctor(island, kHere);
   EXPECT_EQ(after.code, 0) << after.out << after.err;
@@ -375,7 +375,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(Find(mended["findings"], "check", "multicast_route")["what"],
             "239.255.76.67 goes over loopback and stays on this machine (ttl=0)");
   EXPECT_EQ(Levels(mended, "multicast_loopback"), std::multiset<std::string>{"ok"});
-  // THEN it is enough for this machine, but not for others
+  // THEN it suffices for this machine, but not for others
   const Outcome wider = Doctor(island, kEverywhere);
   EXPECT_EQ(wider.code, 1);
   EXPECT_THAT(wider.out, HasSubstr("no other machine hears it"));
@@ -392,7 +392,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const json document = json::parse(doctor.out);
   const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
-  // Processes are those of this computer, whatever network they are on.
+  // doctor sees the processes of this computer in every network namespace.
   EXPECT_THAT(doctor.out, HasSubstr("fogline (pid " + std::to_string(run.pid()) +
                                     ") has a run with 9 processes on " + kEverywhere));
   for (const RoleInfo& info : kRoles) {

@@ -2,8 +2,9 @@
 % in fog, an extended Kalman filter, MPC cruise control in host and follower, a human driver (IDM),
 % and an arbitrator that trades control by the Degree of Conflict.
 %
-% A judge that shares no code with Fogline: the same equations and parameters in another language,
-% by another QP solver. Its random numbers are its own, so tables agree only without sensor noise.
+% It judges Fogline's results and shares no code with Fogline: the same equations and parameters in
+% another language, with another QP solver. It has random numbers of its own, so its tables agree
+% with Fogline's only without sensor noise.
 %
 %   octave-cli tests/peers/paper.m SCENARIO.json            the table, as JSON
 %   octave-cli tests/peers/paper.m SCENARIO.json RUNS       seconds for so many runs, as JSON
@@ -13,7 +14,7 @@
 
 % ---- vehicles -----------------------------------------------------------------------------------
 
-% A point mass under a constant acceleration; one that brakes to a stop stays there.
+% A point mass with a constant acceleration. When it has braked to a stop it stays there.
 function car = drive(car, command, h)
   v = car.speed;
   if command < 0 && v / -command <= h
@@ -52,8 +53,8 @@ end
 
 % ---- extended Kalman filter ---------------------------------------------------------------------
 
-% State [distance; relative speed; acceleration of the preceding car], white-noise jerk. The host's
-% own acceleration is known and enters as an input.
+% State [distance; relative speed; acceleration of the preceding car], with white-noise jerk. The
+% host's own acceleration is known, so it is an input.
 function kf = make_filter(fusion, h)
   kf.F = [1 h h^2/2; 0 1 h; 0 0 1];
   kf.B = [-h^2/2; -h; 0];
@@ -87,8 +88,8 @@ end
 
 % ---- adaptive cruise control --------------------------------------------------------------------
 
-% Everything of the model predictive controller that does not change: prediction
-% x_1..x_N = F x + G u, cost, and the rows of the limits on z = [u_0; ...; u_{N-1}; s].
+% The constant parts of the model predictive controller: the prediction x_1..x_N = F x + G u, the
+% cost, and the rows of the limits on z = [u_0; ...; u_{N-1}; s].
 function mpc = make_mpc(acc, h)
   N = acc.horizon_steps;
   A = [0 1 -acc.headway_s; 0 0 -1; 0 0 -1/acc.engine_time_constant_s];
@@ -133,7 +134,8 @@ function mpc = make_mpc(acc, h)
   mpc.u = 0;
 end
 
-% u of the plan that brakes as gently as it may and always exists.
+% The next u of the fall-back plan, which always exists: u moves to the fall-back deceleration at
+% its fastest change.
 function u = fallback(mpc, u_before)
   target = min(mpc.acc.fallback_deceleration_mps2 / mpc.acc.engine_gain, mpc.u_max);
   u = min(max(target, u_before - mpc.du_max), u_before + mpc.du_max);
@@ -142,7 +144,7 @@ end
 function [mpc, command] = acc_step(mpc, distance, relative_speed, speed, acceleration)
   acc = mpc.acc;
   N = mpc.N;
-  % The change of u counts from what the car really does, if somebody else drove it.
+  % The change of u counts from the car's real acceleration, in case the driver controlled it.
   if abs(acceleration - mpc.command) <= 1e-6
     u_before = mpc.u;
   else
@@ -195,7 +197,8 @@ end
 
 % ---- one run ------------------------------------------------------------------------------------
 
-% Fields of the result, one row for each step: compromised safety (m), fog, human in control.
+% The fields of the result have one row for each step: compromised safety (m), fog, human in
+% control.
 function run = experiment(s, threshold, traded)
   h = s.step_s;
   preceding = struct('position', s.world.host_gap_m + s.world.vehicle_length_m, ...
@@ -216,17 +219,17 @@ function run = experiment(s, threshold, traded)
     follower_gap = gap(follower, host, s.world);
     [run.fog(k), level] = fog_at(s.fog, (k - 1) * h);
 
-    % What the sensors say: fog makes the LiDAR's range too short.
+    % The measurements: fog makes the LiDAR's range too short.
     radar = max(0, host_gap + s.radar.bias_m + s.radar.range_std_m * randn());
     rate = preceding.speed - host.speed + s.radar.range_rate_std_mps * randn();
     lidar = max(0, host_gap - s.fog.bias_m * level + s.lidar.bias_m + s.lidar.range_std_m * randn());
     kf = filter_step(kf, [radar; rate; lidar], host.acceleration);
 
-    % What automation and driver would do.
+    % The offers of the automation and of the driver.
     [host_mpc, a_automation] = acc_step(host_mpc, kf.x(1), kf.x(2), host.speed, host.acceleration);
     a_human = idm(s.driver, host.speed, preceding.speed, host_gap);
 
-    % Who does it: Degree of Conflict over the last differences.
+    % The decision who drives, by the Degree of Conflict over the last differences.
     differences(end + 1) = radar - lidar;
     window = differences(max(1, end - s.arbitrator.window_steps + 1):end);
     if strcmp(s.arbitrator.conflict, 'mean_of_absolute')
@@ -265,7 +268,7 @@ function rows = make_table(s)
   end
 end
 
-% Stops at whatever a scenario may ask for and this script would silently get wrong.
+% count of fragments
 function refuse_what_is_missing(s)
   assert(strcmp(s.lead.profile, 'constant'), 'only a preceding car at constant speed');
   assert(any(strcmp(s.fog.model, {'none', 'bias'})), 'only fog models none and bias');

@@ -1,9 +1,9 @@
-"""Fogline's table and that of the Octave script agree, given the same scenario without sensor noise.
+"""Checks that Fogline's table and the Octave script's table agree for a scenario without sensor noise.
 
     table_agreement.py build/bin/fogline tests/peers/paper.m scenario/paper.json
 
-Two cases: the paper's experiment, and thick fog that switches on at once, in which the host's ACC
-runs into its limits and its quadratic program has work to do.
+There are two cases: the paper's experiment, and thick fog that begins at once. In thick fog the host's
+ACC reaches its limits, so its quadratic program has active constraints.
 """
 
 import json
@@ -20,7 +20,7 @@ CASES = {
 
 
 def run(*command):
-    # Octave's last words ("ignoring const execution_exception& ...") are about its own exit.
+    # Octave may print "ignoring const execution_exception& ..." at its exit. The script did not fail then.
     return subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout
 
 

@@ -16,11 +16,11 @@ using Random = std::mt19937_64;
 double Uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution(low, high)(random);
 }
-/// Between two positive values, as likely in each of their decades.
+/// A positive value between two others; every decade is equally likely.
 double LogUniform(Random& random, double low, double high) {
   return std::exp(Uniform(random, std::log(low), std::log(high)));
 }
-/// The fault lasts so long.
+/// Waits: the fault lasts so long.
 void Last(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 const Machine& AMachine(const SoakedRun& run, Random& random) {
@@ -41,7 +41,7 @@ void LoseInput(SoakedRun& run, Random& random, const Limits&) {
   for (const Machine* machine : run.machines()) machine->LoseUdp(per_cent);
 }
 
-/// Has the kernel refuse to send a share of the datagrams for a while: sendto() fails with EPERM.
+/// For some time the kernel refuses to send a share of the datagrams: sendto() fails with EPERM.
 void RefuseToSend(const Machine& machine, double share, double seconds) {
   const int of_1000 = std::max(1, static_cast<int>(1000 * share));
   const std::string which = share < 1 ? fmt::format("numgen random mod 1000 < {}", of_1000) : "";
@@ -94,7 +94,8 @@ void Kill(SoakedRun& run, Random& random, const Limits&) { run.KillARole(random)
 void Stop(SoakedRun& run, Random& random, const Limits&) { run.StopARole(random); }
 void Resume(SoakedRun& run, Random&, const Limits&) { run.KillTheRunnerAndResume(); }
 
-/// As Ctrl-Z, a frozen container or a sleeping machine: everything stands still, one after another.
+/// All processes stop, one after another, as by Ctrl-Z, in a frozen container or on a sleeping
+/// machine.
 void Freeze(SoakedRun& run, Random& random, const Limits& limits) {
   std::vector<pid_t> processes = run.Processes();
   std::ranges::shuffle(processes, random);

@@ -11,7 +11,7 @@
 
 namespace fogline::test {
 
-/// Limits of what is drawn.
+/// Limits of the random parameters.
 struct Limits {
   double freeze_s = 60;     // longest time for which all processes stand still
   double partition_s = 20;  // longest time for which a machine is cut off
@@ -20,13 +20,13 @@ struct Limits {
 struct FaultKind {
   std::string_view name;
   std::string_view what;
-  bool three_machines;  // it needs them; the others are on one machine or three
+  bool three_machines;  // it needs three machines; the other kinds run on one machine or on three
   bool one_machine;
-  /// Options of `fogline run` that make it; empty if Strike does.
+  /// Options of `fogline run` that make the fault; empty if `strike` makes it.
   std::vector<std::string> (*options)(std::mt19937_64& random);
-  /// Strikes once. @pre the run goes on
+  /// Makes the fault once. @pre the run still goes on
   void (*strike)(SoakedRun& run, std::mt19937_64& random, const Limits& limits);
-  int most_strikes;  // in one run
+  int most_strikes;  // in a run
 };
 
 std::span<const FaultKind> FaultKinds();

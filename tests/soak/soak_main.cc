@@ -1,5 +1,5 @@
-// Run after run of real processes under random faults; every digest must be that of the run that
-// nothing happens to.
+// Real processes run under random faults, one run after the other. Every digest must be that of the
+// undisturbed run.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -36,7 +36,7 @@ volatile std::sig_atomic_t interrupted = 0;
 
 struct Options {
   double minutes = 60;
-  std::int64_t runs = 0;  // 0: as many as the time lets
+  std::int64_t runs = 0;  // 0: as many as fit into the time
   std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::string only;
@@ -44,10 +44,10 @@ struct Options {
   Limits limits;
 };
 
-/// How the runs of one kind went.
+/// The results of the runs of one kind.
 struct Tally {
   std::int64_t runs = 0;
-  std::int64_t struck = 0;  // faults that the runs lived to see
+  std::int64_t struck = 0;  // faults that happened before their run ended
   std::int64_t failed = 0;
   std::int64_t repairs = 0;
   std::int64_t restarts = 0;
@@ -58,7 +58,7 @@ struct Ended {
   std::int64_t struck = 0;
   std::int64_t repairs = 0;
   std::int64_t restarts = 0;
-  std::string failure;  // "" if the digest is the one that it must be
+  std::string failure;  // "" if the digest is right
 };
 
 Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
@@ -68,7 +68,7 @@ Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
   const Experiment experiment = Experiment::Draw(random);
   const Undisturbed undisturbed = RunUndisturbed(experiment);
   std::vector<std::string> options = kind.options(random);
-  // Slow enough that a fault of a tenth of a second is one of many steps.
+  // Slow enough that a fault of a tenth of a second covers many steps.
   options.insert(options.end(), {"--pace", "10", "--stall-timeout", "90"});
   const bool three = kind.three_machines && (!kind.one_machine || random() % 3 == 0);
   std::vector<double> shares;
@@ -186,7 +186,7 @@ class Soak {
   const SteadyClock::time_point began_ = SteadyClock::now();
   std::vector<const FaultKind*> kinds_;
   std::atomic<std::int64_t> next_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // of the members below
   std::vector<Tally> tallies_;
   std::int64_t done_ = 0;
   std::int64_t failed_ = 0;

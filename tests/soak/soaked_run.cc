@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::chrono::seconds kPatience(300);
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-// Roles that are started by hand, with their machines; the runner has the recorder on the first
-// one.
+// The roles that this program starts itself, with their machines. The runner starts the recorder on
+// the first machine.
 constexpr std::pair<Role, std::size_t> kByHand[] = {
     {Role::kWorld, 1}, {Role::kRadar, 2},  {Role::kLidar, 1},      {Role::kFusion, 2},
     {Role::kAcc, 0},   {Role::kDriver, 1}, {Role::kArbitrator, 2}, {Role::kFollower, 0}};
@@ -30,7 +30,7 @@ std::vector<std::string> RunCommandLine(const Experiment& experiment) {
   return command;
 }
 
-/// Processes whose parent is `parent`.
+/// The child processes of `parent`.
 std::vector<pid_t> ChildrenOf(pid_t parent) {
   std::vector<pid_t> children;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -39,7 +39,7 @@ std::vector<pid_t> ChildrenOf(pid_t parent) {
     std::ifstream stat(entry.path() / "stat");
     std::string line;
     std::getline(stat, line);
-    const std::size_t end = line.rfind(')');  // "pid (name) S parent ..."
+    const std::size_t end = line.rfind(')');  // format: "pid (name) S parent ..."
     if (end == std::string::npos || end + 4 >= line.size() || line[end + 2] == 'Z') continue;
     if (std::atoi(line.c_str() + end + 4) == parent) children.push_back(std::stoi(name));
   }

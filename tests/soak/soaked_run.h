@@ -1,4 +1,4 @@
-// One run of real processes on machines of its own, for faults to strike.
+// One run of real processes on machines of its own, in which faults happen.
 #pragma once
 
 #include <sys/types.h>
@@ -16,7 +16,7 @@
 
 namespace fogline::test {
 
-/// What a run is: drawn at random, the same for the same seed and number.
+/// The parameters of a run. They are random, but the same for the same seed and number.
 struct Experiment {
   std::string scenario;
   int steps = 0;
@@ -25,7 +25,7 @@ struct Experiment {
   static Experiment Draw(std::mt19937_64& random);
 };
 
-/// How it goes without any fault and any message.
+/// The result of the run without any fault and without messages.
 struct Undisturbed {
   std::string digest;
   std::uintmax_t log_bytes = 0;
@@ -33,8 +33,8 @@ struct Undisturbed {
 /// @throws std::runtime_error if the program fails
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
-/// A run that is under way: on one machine that has a default route to elsewhere, as most have, or
-/// with its roles on three machines of one network.
+/// A run in progress. It is on one machine that has a default route to elsewhere, as most machines
+/// have, or its roles are on three machines of one network.
 class SoakedRun {
  public:
   enum class Place { kOneMachine, kThreeMachines };
@@ -45,23 +45,23 @@ class SoakedRun {
   bool WaitForShare(double share, const Undisturbed& whole);
   bool Running() const { return IsAlive(run_->pid()); }
 
-  /// The machines that the run is on.
+  /// The machines of the run.
   std::vector<const Machine*> machines() const;
   /// @pre it is on three machines
   const Lab& lab() const { return *lab_; }
 
-  /// The runner, and every process of the run on all machines, the runner first.
+  /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
-  /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
+  /// Kills the process of a random role by SIGKILL, and starts it again if the runner does not.
   void KillARole(std::mt19937_64& random);
-  /// Stops one that the runner has started.
+  /// Stops the process of a random role that the runner has started.
   void StopARole(std::mt19937_64& random);
-  /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
+  /// Kills the runner by SIGKILL, waits for it, and starts another one that resumes its log.
   void KillTheRunnerAndResume();
 
-  /// Waits for the end. @return the exit code and what the runner has printed
+  /// Waits for the end. @return the exit code and the output of the runner
   Outcome Finish();
-  /// What was started last as the runner.
+  /// The command line of the last runner.
   const std::string& command() const { return command_; }
 
  private:
@@ -77,7 +77,7 @@ class SoakedRun {
   std::optional<Lab> lab_;
   std::vector<std::string> options_;
   std::string command_;
-  std::deque<std::unique_ptr<Background>> roles_;  // that this program has started
+  std::deque<std::unique_ptr<Background>> roles_;  // the roles that this program has started
   std::unique_ptr<Background> run_;
 };
 

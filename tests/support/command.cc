@@ -17,11 +17,11 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run of a test has a port of its own, whatever the shell says in which the tests were started. A
-// test that wants the variable sets it.
+// A run of a test has a port of its own, whatever the shell that starts the tests has set. A test
+// that needs the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
-/// A new folder below the build's, so that what a killed test leaves behind is found and removed.
+/// A new folder below the build's, so that tools/test finds and removes the files of a killed test.
 std::filesystem::path FreshFolder(const std::string& kind) {
   const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
   std::filesystem::create_directories(scratch);
@@ -140,7 +140,7 @@ bool IsAlive(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
   if (!std::getline(stat, line)) return false;
-  // "pid (name) S ...": the state stands behind the last parenthesis.
+  // The format is "pid (name) S ...": the state comes after the last parenthesis.
   const std::size_t end = line.rfind(')');
   return end != std::string::npos && end + 2 < line.size() && line[end + 2] != 'Z';
 }

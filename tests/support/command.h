@@ -1,4 +1,4 @@
-// Real programs in tests: run to the end, or in the background until the test ends.
+// Real programs in tests. They run to their end, or in the background until the test ends.
 #pragma once
 
 #include <sys/types.h>
@@ -11,19 +11,20 @@
 
 namespace fogline::test {
 
-/// How often a condition outside this process is looked at.
+/// The interval at which a test looks at a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
 
-/// Folder of the built programs, and of the sources.
+/// The folder of the built programs, and that of the sources.
 std::filesystem::path ProgramDirectory();
 std::filesystem::path SourceDirectory();
-/// A program of this build by name, such as "fogline".
+/// The path of a program of this build, such as "fogline".
 std::string Program(const std::string& name);
 
-/// A program that runs; it and its output are gone with this object.
+/// A program in the background. The destructor ends it and removes its output.
 class Background {
  public:
-  /// Starts it in its own process group, in the source folder, with stdout and stderr into files.
+  /// Starts the program in a process group of its own, in the source folder. stdout and stderr go
+  /// into files.
   explicit Background(const std::vector<std::string>& command);
   ~Background();
   Background(const Background&) = delete;
@@ -31,12 +32,13 @@ class Background {
 
   pid_t pid() const { return pid_; }
   void Signal(int signal) const;
-  /// Waits for the end: exit code, or 128 + signal; -1 after the time limit (it is then killed).
+  /// Waits for the end. @return the exit code, or 128 + signal; -1 after the time limit (the
+  /// program is then killed)
   int Wait(std::chrono::seconds limit = std::chrono::seconds(60));
   std::string Out() const;
   std::string Err() const;
-  /// Waits until stderr (or stdout) contains `text`; false after the time limit or when it has
-  /// ended.
+  /// Waits until stderr (or stdout) contains `text`. @return false after the time limit, or if the
+  /// program ends without it
   bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
   bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
 
@@ -56,7 +58,7 @@ struct Outcome {
   std::string err;
 };
 
-/// Waits until somebody has written so much into a file; false after the time limit.
+/// Waits until a file has so many bytes. @return false after the time limit
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = std::chrono::seconds(20));
 
@@ -70,11 +72,11 @@ Outcome RunCommand(const std::vector<std::string>& command,
 /// Whether a process with this id exists (a zombie does not count).
 bool IsAlive(pid_t pid);
 
-/// Numbers after "NAME " in "processes: world 4711, radar 4712": 0 if it is not there.
+/// The process id after "NAME " in "processes: world 4711, radar 4712". 0 if the name is missing.
 pid_t PidOf(const std::string& err, const std::string& role);
 
-/// An empty folder below the build's Testing/tmp that is removed with this object (tools/test
-/// removes what killed tests leave behind).
+/// An empty folder below the build's Testing/tmp. The destructor removes it; tools/test removes
+/// those of killed tests.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -88,8 +90,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// The beginning of a command line on a machine on which make fails, as a fresh Debian system has
-/// none.
+/// The beginning of a command line for a machine on which make fails. A fresh Debian system has no
+/// make.
 std::vector<std::string> WithoutMake(const ScratchFolder& folder);
 
 }  // namespace fogline::test

@@ -1,6 +1,6 @@
-// Throws datagrams at a multicast group that nobody there should take: noise, and what comes close
-// to the messages of a run, whose genuine ones it listens to. What it never makes is a message that
-// only a signature tells from a genuine one: right type, run, step and finite values.
+// Sends datagrams to a multicast group that no process there should accept: noise, and datagrams
+// that resemble the messages of a run, to whose genuine ones it listens. It never sends a message
+// that only a signature could tell from a genuine one (right type, run and step, finite values).
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -34,13 +34,13 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Buffer = std::vector<std::uint8_t>;
 
-// The beginning of LCM's datagrams: whole messages and fragments of messages (lcm/udp_util.h).
+// The first bytes of LCM's datagrams: whole messages, and fragments of messages (lcm/udp_util.h).
 constexpr std::string_view kWholeMagic = "LC02";
 constexpr std::string_view kFragmentMagic = "LC03";
 constexpr std::size_t kWholeHeader = 8;
-// Most noise is as large as messages are: what fits one Ethernet frame.
+// Most noise has the size of messages: it fits into one Ethernet frame.
 constexpr std::size_t kFrame = 1400;
-// Payload of the largest UDP datagram over IPv4.
+// The payload of the largest UDP datagram over IPv4, bytes.
 constexpr std::size_t kMaxDatagram = 65507;
 
 volatile std::sig_atomic_t stopped = 0;
@@ -59,7 +59,7 @@ void WriteInt64(Buffer& to, std::size_t offset, std::int64_t value) {
   std::ranges::copy(bytes, to.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-/// The group: sends to it, and hears what others send.
+/// The multicast group: it sends to the group and hears what others send.
 class Group {
  public:
   Group(const std::string& address, int port, int ttl)
@@ -85,7 +85,7 @@ class Group {
   Group& operator=(const Group&) = delete;
 
   bool Send(Bytes bytes) const { return send(out_, bytes.data(), bytes.size(), 0) >= 0; }
-  /// A datagram of somebody else; empty if there is none.
+  /// A datagram of another process, empty if there is none.
   Bytes Receive() {
     const ssize_t size = recv(in_, heard_.data(), heard_.size(), 0);
     return {heard_.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size))};
@@ -99,7 +99,8 @@ class Group {
   static void Set(int fd, int level, int option, const Value& value) {
     Check(setsockopt(fd, level, option, &value, sizeof(value)), "setsockopt");
   }
-  /// A socket filter sees the datagram from the UDP header on, which begins with the sender's port.
+  /// A socket filter sees a datagram from its UDP header on. The header begins with the sender's
+  /// port.
   void IgnoreOwn() const {
     sockaddr_in own{};
     socklen_t size = sizeof(own);
@@ -117,7 +118,8 @@ class Group {
   std::array<std::uint8_t, kMaxDatagram> heard_{};
 };
 
-/// A genuine message with one of its numbers made infinite or none. Of type M; false if `genuine`
+/// Makes one number of a genuine message of type M infinite or NaN. @return false if `genuine` is
+/// of another type or has no numbers
 /// is not, or has no numbers.
 template <class M>
 bool Poison(Bytes genuine, double value, std::uint64_t which, std::int64_t later, Buffer& payload) {
@@ -139,12 +141,12 @@ bool Poison(Bytes genuine, double value, std::uint64_t which, std::int64_t later
   return true;
 }
 
-/// Makes datagrams of every kind in turn, or of one.
+/// Makes datagrams of every kind in turn, or of one kind.
 class Attacker {
  public:
   Attacker(std::uint64_t seed, const std::string& only);
 
-  /// Takes note of what a genuine message looks like.
+  /// Remembers a genuine message as a template.
   void Learn(Bytes datagram) {
     const std::string_view text(reinterpret_cast<const char*>(datagram.data()), datagram.size());
     const std::size_t end = text.find('\0', kWholeHeader);
@@ -177,7 +179,7 @@ class Attacker {
  private:
   struct Kind {
     std::string_view name;
-    bool needs_genuine;  // is made from a genuine message of the channel, which payload_ then holds
+    bool needs_genuine;  // needs a genuine message of the channel in payload_
     void (Attacker::*make)();
   };
   static const std::vector<Kind> kKinds;
@@ -199,7 +201,7 @@ class Attacker {
   }
 
   void Noise() {
-    // Some of it looks like LCM's, with a channel name that is too long or has no end.
+    // Some of it looks like a datagram of LCM with a channel name that is too long or has no end.
     if (Below(2) == 0) Append(datagram_, OneOf(std::array{kWholeMagic, kFragmentMagic}));
     AppendNoise(datagram_, Below(kFrame));
   }
@@ -212,7 +214,7 @@ class Attacker {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double value =
         OneOf(std::array{kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()});
-    // Of the step that is under way, or of the next.
+    // It is of the current step or of the next one.
     const auto later = static_cast<std::int64_t>(Below(2));
     const Buffer genuine = payload_;
     const std::uint64_t which = random_();
@@ -227,7 +229,7 @@ class Attacker {
     made ? Wrap() : Noise();
   }
   void WrongStep() {
-    // STATUS tells its sender's step, RESEND one that is wanted: neither is wrong there.
+    // In STATUS the step is the sender's, in RESEND the wanted one. No step is wrong there.
     if (channel_ == ChannelOf<status_t>().name || channel_ == ChannelOf<resend_t>().name) {
       return Noise();
     }
@@ -256,16 +258,16 @@ class Attacker {
     Wrap();
   }
   void Fragment() {
-    // Sizes and places of fragments that do not fit together: beyond the message, beyond 2^32.
+    // Sizes and offsets of fragments that contradict each other: beyond the message, beyond 2^32.
     constexpr std::array<std::uint32_t, 7> kAbsurd{0,          1,          1000,      0x7fffffff,
                                                    0x80000000, 0xfffffc00, 0xffffffff};
     constexpr std::array<std::uint16_t, 5> kNumbers{0, 1, 2, 0x7fff, 0xffff};
     Append(datagram_, kFragmentMagic);
-    AppendBigEndian(datagram_, static_cast<std::uint32_t>(Below(4)));  // some are of one message
-    AppendBigEndian(datagram_, OneOf(kAbsurd));                        // its size
-    AppendBigEndian(datagram_, OneOf(kAbsurd));                        // where this one belongs
-    AppendBigEndian(datagram_, OneOf(kNumbers));                       // which one this is
-    AppendBigEndian(datagram_, OneOf(kNumbers));                       // of how many
+    AppendBigEndian(datagram_, static_cast<std::uint32_t>(Below(4)));  // some belong to one message
+    AppendBigEndian(datagram_, OneOf(kAbsurd));                        // size of the message
+    AppendBigEndian(datagram_, OneOf(kAbsurd));                        // offset of this fragment
+    AppendBigEndian(datagram_, OneOf(kNumbers));                       // number of this fragment
+    AppendBigEndian(datagram_, OneOf(kNumbers));                       // count of fragments
     Append(datagram_, channel_);
     datagram_.push_back(0);
     AppendNoise(datagram_, Below(kFrame));
@@ -344,7 +346,7 @@ int Main(int argc, char** argv) {
     for (Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
       attacker.Learn(heard);
     }
-    // Where the system gave this process no time, it catches up: the rate holds on average.
+    // The loop catches up when the system gave this process no time, so the rate holds on average.
     while (static_cast<double>(sent) < rate_hz * elapsed_s && stopped == 0) {
       network.Send(attacker.Next());
       ++sent;

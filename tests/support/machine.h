@@ -1,4 +1,4 @@
-// What a test needs of the machine that it runs on.
+// The requirements of a test on its machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 
 namespace fogline::test {
 
-/// Ends a test, or its SetUp(), on a machine without what it needs (root, namespaces, nftables):
-/// skipped, or failed if FOGLINE_TEST_NO_SKIP is set, as where all tests have to run.
+/// Ends a test, or its SetUp(), on a machine that lacks a requirement (root, namespaces, nftables).
+/// The test is skipped, or fails if FOGLINE_TEST_NO_SKIP is set because all tests must run.
 /// Usage: `if (geteuid() != 0) return MachineLacks("root");`
 inline void MachineLacks(const std::string& what) {
   if (std::getenv("FOGLINE_TEST_NO_SKIP") != nullptr) FAIL() << "this machine lacks " << what;

@@ -35,7 +35,7 @@ std::int64_t Counted(const std::string& counter) {
   return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));
 }
 
-/// A shell line from which on UDP datagrams that match are lost on a machine.
+/// A line of sh: from then on a machine loses the UDP datagrams that match.
 std::string LossOf(const std::string& match) {
   return "nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
          " meta l4proto udp " +
@@ -55,8 +55,8 @@ std::string WhyNoMachines() {
 }
 
 Machine::Machine(const std::string& name) : name_(name) {
-  // A thread may leave the namespaces of its process for new ones, which stay while a file of them
-  // is open.
+  // A thread may leave the namespaces of its process for new ones. These exist as long as a file of
+  // them is open.
   std::exception_ptr failed;
   std::thread([this, &failed] {
     try {
@@ -98,12 +98,12 @@ std::string Machine::Do(const std::string& script) const {
 }
 
 void Machine::LoseUdp(int per_cent) const {
-  // nft takes no comparison that is always true.
+  // nft does not accept a comparison that is always true.
   Do(LossOf(per_cent < 100 ? "numgen random mod 100 < " + std::to_string(per_cent) : ""));
 }
 
 void Machine::LoseChannel(const std::string& channel) const {
-  // Behind the headers of UDP and LCM, 8 bytes each.
+  // The name comes after the headers of UDP and LCM, 8 bytes each.
   std::ostringstream name;
   for (const char letter : channel + '\0') {
     name << std::hex << std::setw(2) << std::setfill('0') << static_cast<int>(letter);

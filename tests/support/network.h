@@ -1,8 +1,7 @@
-// Several machines on this one: network namespaces with addresses and host names of their own,
-// joined by veth pairs and a bridge. Their packets go through the kernel as those of real machines
-// do, and the kernel can be told to lose some. Nothing outside of them is touched, and they have no
-// name that could stay behind: the kernel takes them away when this process and its children have
-// ended.
+// Several machines within this one: network namespaces with their own addresses and host names,
+// joined by veth pairs and a bridge. The kernel handles their packets like those of real machines,
+// and can lose some on request. They change nothing outside. They have no name that could remain:
+// the kernel removes them when this process and its children have ended.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +13,15 @@
 
 namespace fogline::test {
 
-/// Why machines cannot be made here, such as "unshare: Operation not permitted"; "" if they can.
+/// The reason why machines cannot be made here, such as "unshare: Operation not permitted". "" if
+/// they can.
 std::string WhyNoMachines();
 
-/// A machine of its own: a network namespace and a host name. It has a loopback device and no
+/// A machine: a network namespace and a host name of its own. It has a loopback device and no
 /// route.
 class Machine {
  public:
-  /// @throws std::system_error where it is not permitted
+  /// @throws std::system_error if this process may not make one
   explicit Machine(const std::string& name);
   ~Machine();
   Machine(Machine&& other) noexcept;
@@ -30,24 +30,25 @@ class Machine {
   /// The command line that runs a command on this machine, for Background and RunCommand(). The
   /// process id is that of the command itself.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
-  /// Runs lines of sh there. @return what they print @throws std::runtime_error with what they say
-  ///     if one of them fails
+  /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with their
+  /// error text if one of them fails
   std::string Do(const std::string& script) const;
-  /// Path of the network namespace, as `ip link` takes it.
+  /// The path of the network namespace, as `ip link` expects it.
   std::string network() const;
   const std::string& name() const { return name_; }
 
-  /// Multicast of this machine stays on it.
+  /// Makes this machine's multicast stay on it.
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
-  /// From now on the kernel loses so many of 100 UDP datagrams that arrive here, its own included.
+  /// From now on the kernel loses so many of 100 UDP datagrams that arrive here, also those of this
+  /// machine.
   void LoseUdp(int per_cent) const;
-  /// From now on it loses those of one LCM channel.
+  /// From now on the kernel loses the datagrams of one LCM channel.
   void LoseChannel(const std::string& channel) const;
-  /// How many it has lost.
+  /// The number of lost datagrams.
   std::int64_t LostUdp() const;
-  /// From now on it loses none.
+  /// From now on the kernel loses none.
   void LoseNothing() const { Do("nft delete table inet loss"); }
-  /// Calls a function whose sockets are to be on this machine.
+  /// Calls a function. The sockets that it makes belong to this machine.
   void Enter(const std::function<void()>& function) const;
 
  private:
@@ -56,21 +57,22 @@ class Machine {
   int host_name_ = -1;
 };
 
-/// Machines lab1, lab2, ... on one switch, each with address 10.76.67.N and multicast routed there.
+/// Machines lab1, lab2, ... on one switch. Each has the address 10.76.67.N and a multicast route to
+/// the switch.
 class Lab {
  public:
   explicit Lab(int machines);
   const Machine& operator[](std::size_t i) const { return machines_[i]; }
   const std::vector<Machine>& machines() const { return machines_; }
 
-  /// Takes a machine's cable out of the switch, and puts it in again.
+  /// Unplugs the network cable of a machine from the switch, and plugs it in again.
   void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
   void Plug(std::size_t machine) const { SetPort(machine, "up"); }
 
-  /// From now on the switch sends so many of 100 UDP datagrams of each machine to the next machine
-  /// twice. @throws std::runtime_error where the kernel cannot
+  /// From now on the switch sends so many of 100 UDP datagrams from each machine to the next
+  /// machine twice. @throws std::runtime_error if the kernel cannot do this
   void RepeatUdp(int per_cent) const;
-  /// How many it has sent twice.
+  /// The number of datagrams that the switch has sent twice.
   std::int64_t RepeatedUdp() const;
 
  private:

@@ -1,4 +1,4 @@
-// What tests on machines of their own have in common.
+// Common parts of tests on machines of their own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace fogline::test {
 
-/// Not run, with the reason, where machines cannot be made.
+/// It is skipped, with the reason, if machines cannot be made.
 class NetworkTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -39,7 +39,7 @@ class NetworkTest : public testing::Test {
   /// The log of the last run.
   std::string Log() const { return folder_.File(std::to_string(logs_) + ".lcm"); }
 
-  /// What a run printed.
+  /// The JSON result that a run printed.
   static nlohmann::json Result(const Outcome& outcome) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out, nullptr, false);
@@ -49,7 +49,7 @@ class NetworkTest : public testing::Test {
     return Result({code, run.Out(), run.Err()});
   }
 
-  /// The digest of such a run in one process, without any message.
+  /// The digest of the same run in one process without messages.
   std::string Undisturbed(std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--transport", "direct"});
     return Result(RunCommand(Run(more)))["digest"];

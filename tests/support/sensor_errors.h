@@ -1,5 +1,5 @@
-// Judges of a sensor's random errors over many seeds and steps. Every bound is a quantile of the
-// exact distribution that leaves out one case in a million on a side.
+// Checks of a sensor's random errors over many seeds and steps. Every bound is a quantile of the
+// exact distribution and excludes one case in a million on each side.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace fogline::test {
 
 inline constexpr double kRare = 1e-6;
-inline constexpr double kRareSigmas = 4.75;  // normal quantile of kRare
+inline constexpr double kRareSigmas = 4.75;  // the quantile of the normal distribution for kRare
 inline constexpr int kSeeds = 40;
 inline constexpr int kSteps = 250;
 inline constexpr int kSamples = kSeeds * kSteps;
@@ -33,7 +33,7 @@ inline void ExpectStandardNormalMoments(const std::vector<double>& z) {
   EXPECT_LT(squares, quantile(complement(chi_squared, kRare)));
 }
 
-/// Expects values that are uniform in [0, 1): Pearson's test over 20 cells.
+/// Expects values that are uniform in [0, 1), by Pearson's test over 20 cells.
 inline void ExpectUniform(const std::vector<double>& shares) {
   constexpr int kCells = 20;
   std::vector<int> counts(kCells);
@@ -44,7 +44,7 @@ inline void ExpectUniform(const std::vector<double>& shares) {
   EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
 }
 
-/// Expects something that happens with `probability` to have happened `count` times in kSamples.
+/// Expects that an event of this probability has happened `count` times in kSamples.
 inline void ExpectShare(int count, double probability, const char* what) {
   const boost::math::binomial binomial(kSamples, probability);
   EXPECT_GE(count, quantile(binomial, kRare)) << what;

@@ -23,13 +23,15 @@
 namespace fogline {
 namespace {
 
-// Bytes of a typical per-step message (RADAR has 73, TRUTH 180). The first eight are the step.
+// Bytes of a typical per-step message (RADAR has 73, TRUTH 180). The first eight bytes are the
+// step.
 constexpr unsigned kPayloadBytes = 120;
 using Payload = std::array<std::uint8_t, kPayloadBytes>;
 
-// Steps before the clock starts: everybody has joined the network by then.
+// Steps before the measurement starts: after them every process has joined the network.
 constexpr int kWarmUpSteps = 200;
-// A bare network repairs nothing: the first process says again what has led to nothing for so long.
+// A bare network repairs no loss. The first process repeats a step's message after this time
+// without any message.
 constexpr int kRepeatAfter_ms = 100;
 
 /// One process of a bare network.
@@ -58,7 +60,7 @@ class BareProcess {
     return std::ranges::all_of(inputs_, [step](const auto& input) { return input->step == step; });
   }
 
-  /// Begins a step and waits until it has come round.
+  /// Begins a step and waits until all inputs of this process have it.
   void Lead(std::int64_t step) {
     answers_ = false;
     Publish(step);
@@ -67,7 +69,7 @@ class BareProcess {
     }
   }
 
-  /// Answers messages for good.
+  /// Answers messages forever.
   [[noreturn]] void Follow() {
     while (lcm_handle(lcm_) == 0) {
     }
@@ -94,7 +96,7 @@ class BareProcess {
   bool answers_ = true;
 };
 
-/// Processes that end with this object.
+/// Child processes; the destructor kills them.
 class Children {
  public:
   Children() = default;
@@ -147,7 +149,8 @@ std::vector<BareRole> BareGraph() {
 }
 
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps) {
-  // The URL as Fogline opens it: a private port, and a receive buffer that bursts do not overflow.
+  // The URL in the form in which Fogline opens it: with a private port and a receive buffer that
+  // bursts do not overflow.
   const std::string url = Bus(FreshMulticastUrl()).url();
   Children children;
   for (std::size_t i = 1; i < roles.size(); ++i) children.Start(url, roles[i]);

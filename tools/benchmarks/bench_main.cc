@@ -1,5 +1,5 @@
-// fogline-bench: Fogline beside what it is compared with, all in one run on this machine. What a
-// single Step costs is measured by fogline-bench-steps.
+// fogline-bench: measures Fogline and its references in one run on this machine.
+// fogline-bench-steps measures the cost of a single Step.
 #include <algorithm>
 #include <cstdio>
 #include <exception>

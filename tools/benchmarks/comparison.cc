@@ -8,7 +8,7 @@
 namespace fogline {
 namespace {
 
-/// Between the two nearest values, by the distance to each.
+/// Linear interpolation between the two nearest values.
 double Quantile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

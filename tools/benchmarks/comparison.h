@@ -1,5 +1,5 @@
-// A side-by-side measurement: two ways to do something, in one run, in alternating rounds, so that
-// whatever else the machine does hits both. What counts is the ratio of each round.
+// A side-by-side measurement: two ways to do one thing, in one run, in alternating rounds, so that
+// a disturbance of the machine affects both. The result is the ratio of each round.
 #pragma once
 
 #include <functional>
@@ -9,25 +9,25 @@
 
 namespace fogline {
 
-/// On which side of its goal a ratio has to be.
+/// The side of its goal on which a ratio has to lie.
 enum class Bound { kAtMost, kAtLeast };
 
-/// What is compared, and what should come out. Both functions measure once and return the same
-/// quantity; they may throw, which ends this comparison with a note and no other.
+/// The two sides of a comparison, and the expected result. Both functions measure once and return
+/// the same quantity. An exception from one of them ends only this comparison, with a note.
 struct Comparison {
   std::string name;       // short, for --only
-  std::string quantity;   // what both return, such as "time per step"
-  std::string unit;       // of both, such as "us"
-  std::string ours;       // what of Fogline is measured
-  std::string reference;  // what it is compared with
+  std::string quantity;   // returned by both functions, such as "time per step"
+  std::string unit;       // of the quantity, such as "us"
+  std::string ours;       // Fogline's side
+  std::string reference;  // the other side
   Bound bound = Bound::kAtMost;
   double goal = 1;
-  std::optional<double> bar;  // what has to be reached on the way to the goal
+  std::optional<double> bar;  // an intermediate goal
   std::function<double()> measure_ours;
   std::function<double()> measure_reference;
 };
 
-/// Median and quartiles of some measurements.
+/// Median and quartiles of measurements.
 struct Spread {
   double median = 0;
   double lower_quartile = 0;
@@ -37,13 +37,13 @@ struct Spread {
 /// @pre `values` is not empty
 Spread SpreadOf(std::vector<double> values);
 
-/// What came out of a comparison.
+/// Result of a comparison.
 struct Finding {
   Comparison comparison;
   Spread ours;
   Spread reference;
-  Spread ratio;      // ours / reference, round by round
-  std::string note;  // why there is no result; "" if there is one
+  Spread ratio;      // ours / reference of each round
+  std::string note;  // reason for a missing result; "" if there is a result
 
   bool Meets(double limit) const;
   bool met() const { return note.empty() && Meets(comparison.goal); }
@@ -51,7 +51,7 @@ struct Finding {
   std::string Verdict() const;
 };
 
-/// Measures. Who goes first changes from round to round.
+/// Measures. The side that goes first changes from round to round.
 Finding Compare(const Comparison& comparison, int rounds);
 
 }  // namespace fogline

@@ -1,4 +1,4 @@
-// Everything that is compared. A file for each family of comparisons.
+// All comparisons, with one file for each family.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace fogline {
 
-/// How much is measured.
+/// How long the measurements take.
 enum class Effort { kQuick, kFull };
 
-/// The lockstep over udpm and memq beside bare LCM processes and hops.
+/// The lockstep over udpm and memq, compared with bare LCM processes and hops.
 std::vector<Comparison> LockstepComparisons(Effort effort);
 
-/// Runs in one process, beside programs that others use for the same.
+/// Runs in one process, compared with programs that others use for the same purpose.
 std::vector<Comparison> PeerComparisons(Effort effort);
 
 /// Sweeps and logs: cores, memory, reading speed.

@@ -1,4 +1,4 @@
-// Sweeps and logs: how a second core, the number of runs and the size of a log show.
+// Sweeps and logs: the effect of a second core, of the number of runs and of the size of a log.
 #include <nlohmann/json.hpp>
 
 #include "tools/benchmarks/bare_lcm.h"
@@ -8,7 +8,7 @@
 namespace fogline {
 namespace {
 
-// Nine messages a step: a million messages and eight.
+// A step has nine messages: this is a million messages and eight.
 constexpr int kLogSteps = 111'112;
 
 ProgramResult Sweep(int rows, int jobs) {
@@ -18,8 +18,8 @@ ProgramResult Sweep(int rows, int jobs) {
                      ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
 }
 
-/// Rows (a run and its pair without traded control) per second. A file that is there would be
-/// gone on with, so it goes first.
+/// Rows (a run and its pair without traded control) per second. It first removes old sweep files,
+/// because a sweep would resume them.
 double SweepRowsPerSecond(int rows, int jobs) {
   for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {
     if (entry.path().filename().string().starts_with("sweep-")) {
@@ -30,12 +30,12 @@ double SweepRowsPerSecond(int rows, int jobs) {
 }
 
 double SweepPeakMemory_mb(int rows) {
-  SweepRowsPerSecond(1, 1);  // clears
+  SweepRowsPerSecond(1, 1);  // removes the old files
   return Sweep(rows, 2).peak_memory_mb;
 }
 
-/// A log of a run of a million messages, made once. It is read once too, so that both sides find it
-/// in the page cache.
+/// A log of a run of a million messages, made once. This function also reads it once, so that it is
+/// in the page cache for both sides.
 const std::filesystem::path& LargeLog() {
   static const std::filesystem::path file = [] {
     const std::filesystem::path log = ScratchFolder() / "large.lcm";

@@ -1,19 +1,19 @@
-// How much the lockstep costs over what LCM itself costs.
+// Cost of the lockstep compared with the cost of LCM itself.
 //
-// What is a fair bare chain? A step of Fogline sends nine messages, and five of them must follow
-// one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND, HOST_COMMAND. So the least that a step
-// can take is a message that goes round a ring of five processes. That ring is the reference that
-// the goal is for. It is a hard one, because it sends four messages less, wakes five processes
-// instead of nine, and on a machine with few cores that is most of the work: LCM's multicast wakes
-// every process for every message on the network, whether it has subscribed or not.
+// Which bare chain is a fair reference? A step of Fogline sends nine messages. Five of them must
+// follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND, HOST_COMMAND. So the shortest
+// possible step is a message that goes round a ring of five processes. The goal refers to this
+// ring. It is a hard reference, because it sends four messages less and wakes five processes
+// instead of nine. On a machine with few cores that is most of the work: LCM's multicast wakes
+// every process for every message on the network, whether the process has subscribed or not.
 //
-// Two references more say where the time goes. The ring of nine hops sends as many messages as a
+// Two more references show where the time goes. The ring of nine hops sends as many messages as a
 // step, but all one after another. The bare graph has Fogline's own wiring, recorder included, with
-// processes that count steps and do nothing else: what remains is the lockstep's own work
-// (decoding, checking, remembering, computing, logging).
+// processes that only count steps. The difference to it is the lockstep's own work (decoding,
+// checking, remembering, computing, logging).
 //
-// memq has no processes and nothing in parallel: all nine messages are handled one after another,
-// so nine bare hops are what a step costs LCM.
+// memq has one process and no parallel work. It handles all nine messages one after another, so
+// nine bare hops are the cost of a step in LCM.
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -35,10 +35,10 @@ constexpr int StepMessages() {
   return count;
 }
 
-/// How a run is to be made: options of `fogline run`.
+/// Options of `fogline run` for a measurement.
 using Options = std::vector<std::string>;
 
-/// Wall-clock seconds that `fogline run` reports for so many steps.
+/// Wall-clock seconds that `fogline run` reports for a run of `steps` steps.
 double RunSeconds(const Options& options, int steps) {
   Options command{ProgramPath("fogline"),
                   "run",
@@ -54,7 +54,8 @@ double RunSeconds(const Options& options, int steps) {
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
-/// A run of so many steps beside one of so many more: what starting and ending costs cancels out.
+/// Microseconds per step, from the difference of a short and a long run. So the cost of starting
+/// and ending cancels out.
 double LockstepStepMicros(const Options& options, int steps) {
   constexpr int kShort = 500;
   const double more_s = RunSeconds(options, kShort + steps) - RunSeconds(options, kShort);
@@ -81,7 +82,7 @@ Comparison OverUdpm(int steps, const std::string& name, const std::string& refer
   return comparison;
 }
 
-/// Every message signed by its sender and verified by each of its readers.
+/// Each sender signs its messages, and each reader verifies them.
 Comparison SignedOverUdpm(int steps) {
   Comparison comparison = OverUdpm(steps);
   comparison.name = "key";
@@ -101,7 +102,7 @@ Comparison SignedOverUdpm(int steps) {
 
 std::vector<Comparison> LockstepComparisons(Effort effort) {
   const int steps = effort == Effort::kFull ? 10'000 : 3'000;
-  constexpr int kMemqFactor = 5;  // as much faster as memq is, at least
+  constexpr int kMemqFactor = 5;  // memq is faster at least by this factor
   const int messages = StepMessages();
   return {
       OverUdpm(steps, "udpm", "ring of 5 bare LCM processes (longest path of a step)",

@@ -1,5 +1,5 @@
-// Runs in one process beside programs that others would use: a GNU Octave script of the paper, and
-// SUMO with three cars. Both peers are made in tests/peers.
+// Runs in one process, compared with programs that others would use: a GNU Octave script of the
+// paper, and SUMO with three cars. tests/peers makes both peers.
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCars = 3;
 
-/// Runs of the paper's experiment per second, measured, on the one core of this thread.
+/// Runs of the paper's experiment per second, measured on the single core of this thread.
 double ClosedLoopRunsPerSecond(double duration_s) {
   Scenario scenario = LoadScenario("scenario/paper.json");
   ClosedLoop loop(scenario);
@@ -41,7 +41,7 @@ double ClosedLoopRunsPerSecond(double duration_s) {
   return static_cast<double>(runs) / wall_s;
 }
 
-/// Runs of the same scenario per second by the Octave script, without its start.
+/// Runs of the same scenario per second by the Octave script, without its start-up time.
 double OctaveRunsPerSecond(int runs) {
   const std::filesystem::path scenario = ScratchFolder() / "paper.json";
   std::ofstream(scenario) << PrintScenario(LoadScenario("scenario/paper.json"));
@@ -51,7 +51,7 @@ double OctaveRunsPerSecond(int runs) {
   return json["runs"].get<double>() / json["wall_s"].get<double>();
 }
 
-/// Seconds of SUMO for so many steps of 0.1 s with three cars.
+/// Seconds that SUMO takes for `steps` steps of 0.1 s with three cars.
 double SumoSeconds(int steps) {
   const std::filesystem::path folder = ScratchFolder() / "sumo";
   if (!std::filesystem::exists(folder)) {
@@ -62,7 +62,7 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Two lengths: what loading costs cancels out.
+/// Takes the difference of two lengths, so that the cost of loading cancels out.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

@@ -1,4 +1,4 @@
-// Findings for people and programs.
+// Writes findings as text for people and as JSON for programs.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace fogline {
 
-/// Where and when something was measured.
+/// Place and time of a measurement.
 struct Occasion {
-  std::string cpu;  // model name, as the kernel tells it
+  std::string cpu;  // model name, as the kernel gives it
   unsigned cores = 0;
   std::string date;  // 2024-12-31, UTC
   int rounds = 0;

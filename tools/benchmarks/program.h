@@ -1,4 +1,4 @@
-// Programs that a benchmark runs, and where their files go.
+// Programs that a benchmark runs, and the folder for their files.
 #pragma once
 
 #include <chrono>
@@ -11,18 +11,18 @@ namespace fogline {
 /// A program of this build, such as "fogline".
 std::string ProgramPath(const std::string& name);
 
-/// What a program that ended well leaves behind.
+/// Result of a program that ended with exit code 0.
 struct ProgramResult {
   std::string out;
   double wall_s;          // from its start to its end
   double peak_memory_mb;  // largest resident set, in MB of 10^6 bytes
 };
 
-/// Runs a program to its end; found by PATH if its name has no slash.
+/// Runs a program to its end. A name without a slash is looked up in PATH.
 /// @throws std::runtime_error with the end of its stderr if it cannot start or does not exit with 0
 ProgramResult RunProgram(const std::vector<std::string>& command);
 
-/// A folder of this process, removed at its end.
+/// A folder of this process, removed when the process ends.
 const std::filesystem::path& ScratchFolder();
 
 /// Wall-clock seconds that `work` takes.

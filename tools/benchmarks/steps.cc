@@ -1,5 +1,6 @@
-// fogline-bench-steps: what each Step function costs, and the closed loop of all of them. The
-// inputs are those of a recorded run, over and over; the algorithms keep their state meanwhile.
+// fogline-bench-steps: cost of each Step function, and of the closed loop of all of them. The
+// inputs are those of a recorded run, repeated in a loop. The algorithms keep their state between
+// the calls.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -10,7 +11,7 @@
 namespace fogline {
 namespace {
 
-/// The messages of a step, copied.
+/// Copies of the messages of a step.
 struct Recorded {
   truth_t truth;
   ego_t ego;
@@ -37,7 +38,7 @@ const Scenario& Paper() {
   return scenario;
 }
 
-/// Fog as physics, with a LiDAR of many beams.
+/// Fog as a physical model, with a LiDAR of many beams.
 const Scenario& DenseFog() {
   static const Scenario scenario = LoadScenario("scenario/dense_fog.json");
   return scenario;
@@ -48,7 +49,7 @@ const std::vector<Recorded>& PaperSteps() {
   return steps;
 }
 
-/// Steps in which the ACC's solver worked: behind a car that brakes hard, then stands.
+/// Steps in which the ACC's solver had to work: the car ahead brakes hard and then stands.
 const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   static const std::vector<Recorded> steps = [&scenario] {
     std::vector<Recorded> hard = Record(scenario);
@@ -60,7 +61,7 @@ const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   return steps;
 }
 
-/// Times `call` on one recorded step after the other.
+/// Times `call` on one recorded step after another, in a loop.
 template <class Call>
 void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& call) {
   if (steps.empty()) return state.SkipWithError("no such step in the recorded run");
@@ -71,7 +72,7 @@ void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& 
   }
 }
 
-// Without commands the cars keep their distances, however long it takes.
+// Without commands the cars keep their distances, so the benchmark may take any number of steps.
 void WorldStep(benchmark::State& state) {
   World world(Paper());
   world.Start(0);

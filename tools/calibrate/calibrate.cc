@@ -13,40 +13,41 @@
 namespace fogline {
 namespace {
 
-// The part of the evaluations that goes into the search of the whole range.
+// The search of the whole range gets this share of the evaluations.
 constexpr double kGlobalPart = 0.6;
-// The table is met: every number within a thousandth of a point.
+// The table counts as met when every number is within a thousandth of a point.
 constexpr double kMet = 1e-6;
-// The local search begins with steps of this share of each range, and ends when they are as small
-// as values are rounded.
+// The local search begins with steps of this share of each range. It ends when its steps are as
+// small as the rounding of the values.
 constexpr double kLocalStep = 0.05;
 constexpr double kSmallestStep = 1e-6;
-// Of a range, to either side, for a sensitivity.
+// A sensitivity varies a field by this share of its range to either side.
 constexpr double kHalfStep = 0.005;
 
-/// One search: evaluates points, each field as its share of the range, and keeps the best one.
+/// One search. It evaluates points, which give each field as its share of the range, and keeps the
+/// best point.
 class Search {
  public:
   Search(const Objective& objective, const GoOn& go_on, const SearchProgress& progress)
       : objective_(objective), go_on_(go_on), progress_(progress) {}
 
   bool found() const { return !result_.values.empty(); }
-  /// Why the first scenario that could not run could not.
+  /// Reason of the first scenario that cannot run; "" if there is none.
   const std::string& refusal() const { return refusal_; }
   Calibration TakeResult() { return std::move(result_); }
 
-  /// Evaluates the point from which Run() goes on while there is no better one.
+  /// Evaluates the point at which Run() starts as long as no better point is known.
   void Begin(std::vector<double> shares) {
     best_shares_ = std::move(shares);
     try {
       Try(best_shares_);
     } catch (const nlopt::forced_stop&) {
-      // Noted in the result.
+      // The result already says that the search was interrupted.
     }
   }
 
-  /// Lets an algorithm of NLopt go on from the best point until there have been `until` evaluations
-  /// in all.
+  /// Lets an algorithm of NLopt continue from the best point until `until` evaluations have been
+  /// made in total.
   void Run(nlopt::algorithm algorithm, int until) {
     const bool met = found() && result_.best.objective <= kMet;
     if (result_.interrupted || met || until <= result_.evaluations) return;
@@ -69,7 +70,7 @@ class Search {
     } catch (const nlopt::forced_stop&) {
       if (failure_) std::rethrow_exception(failure_);
     } catch (const nlopt::roundoff_limited&) {
-      // As near as the numbers allow: what was best is kept.
+      // The precision of the numbers allows no further progress. The best point so far stays.
     }
   }
 
@@ -101,7 +102,7 @@ class Search {
     return reached;
   }
 
-  /// NLopt lets no exception pass but its own.
+  /// NLopt lets only its own exceptions pass. This function stores any other exception in failure_.
   double Guarded(const std::vector<double>& shares) {
     try {
       return Try(shares);
@@ -133,8 +134,8 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
   }
   Search search(objective, go_on, progress);
   search.Begin(std::move(start));
-  // DIRECT-L (Gablonsky & Kelley 2001) divides the range without chance; Subplex (Rowan 1990) bears
-  // the steps that J makes where one time step more or less is the human's.
+  // DIRECT-L (Gablonsky & Kelley 2001) divides the range and uses no random numbers. Subplex (Rowan
+  // 1990) copes with the jumps of J where the human drives one time step more or less.
   search.Run(nlopt::GN_DIRECT_L, static_cast<int>(kGlobalPart * max_evaluations));
   search.Run(nlopt::LN_SBPLX, max_evaluations);
   if (search.found()) return search.TakeResult();
@@ -144,7 +145,7 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
 
 namespace {
 
-/// The values around one, half a percent of the range or one integer to either side.
+/// The value below and the value above: half a percent of the range away, or one for an integer.
 std::pair<double, double> Around(const FreeField& field, double value) {
   if (field.is_integer()) {
     return {std::max(field.lowest(), value - 1), std::min(field.highest(), value + 1)};

@@ -1,4 +1,5 @@
-// Finds the values of a scenario's free fields that meet a table best, and how much each matters.
+// Finds the values of a scenario's free fields with which its table comes nearest to a target, and
+// the influence of each field on the table.
 #pragma once
 
 #include <functional>
@@ -9,10 +10,10 @@
 
 namespace fogline {
 
-/// How far a search is: evaluations so far, and the smallest objective among them.
+/// Progress of a search: evaluations so far, and the smallest objective among them.
 using SearchProgress = std::function<void(int evaluations, double best)>;
 
-/// What a search found.
+/// Result of a search.
 struct Calibration {
   std::vector<double> values;  // of the free fields, the best so far
   Evaluation best;
@@ -21,27 +22,27 @@ struct Calibration {
   bool interrupted = false;
 };
 
-/// Searches from the scenario's own values (moved into the bounds where they are outside), first
-/// in the whole range, then about the best point; ends early when the table is met. The result
-/// depends on the problem and on the number of evaluations alone. None if `go_on` said no before
-/// the first evaluation was complete.
+/// Searches from the scenario's own values (moved into the bounds where they are outside): first in
+/// the whole range, then around the best point. It ends early when the table is met. The result
+/// depends only on the problem and on the number of evaluations. It is empty if `go_on` returned
+/// false before the first evaluation was complete.
 /// @param max_evaluations at least 1
-/// @throws InputError if the scenario runs nowhere
+/// @throws InputError if the scenario can run at no evaluated point
 std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluations,
                                      const GoOn& go_on, const SearchProgress& progress);
 
-/// What 1 % of a field's range changes in a row of the table, in points.
+/// Change of a row of the table, in points, when a field changes by 1 % of its range.
 struct Change {
   std::optional<double> si_pct;
   std::optional<double> rhe_pct;
 };
 
-/// Of each free field the change of each row.
+/// For each free field the change of each row.
 using SensitivityTable = std::vector<std::vector<Change>>;
 
-/// By the difference between half a
-/// percent of its range below and above `values`; one whole step to either side for an integer,
-/// scaled; to one side only at a bound. None if `go_on` said no.
+/// Central differences between half a percent of a field's range below and above `values`. An
+/// integer changes by one to either side, and the difference is scaled to 1 %. At a bound the
+/// difference is one-sided. The result is empty if `go_on` returned false.
 std::optional<SensitivityTable> Sensitivities(const Objective& objective,
                                               const std::vector<double>& values, const GoOn& go_on);
 

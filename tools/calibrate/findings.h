@@ -1,4 +1,4 @@
-// What a calibration found, for a person and for programs.
+// Results of a calibration, as text for people and as JSON for programs.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@ namespace fogline {
 
 struct Findings {
   Calibration calibration;
-  std::optional<SensitivityTable> sensitivities;  // none where it was interrupted
+  std::optional<SensitivityTable> sensitivities;  // empty if the search was interrupted
 };
 
 /// Values, residuals and sensitivities as tables.
 std::string FindingsText(const CalibrationProblem& problem, const Findings& findings);
 
-/// The same as JSON; "rows" are those of `fogline table --json` with the target beside them.
+/// The same as JSON. "rows" are those of `fogline table --json`, each with the target added.
 /// @param scenario name of the scenario's file
 std::string FindingsJson(const CalibrationProblem& problem, const Findings& findings,
                          const std::string& scenario);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kForm =
     "neither /pointer=lowest:highest nor /pointer=lowest:highest:log";
-// A linear range is divided into 10^5 values at least.
+// A linear range is divided into at least 10^5 values.
 constexpr int kLinearDigits = 5;
 constexpr int kLogarithmicDigits = 6;
 
@@ -34,7 +34,7 @@ std::optional<double> ParseNumber(std::string_view text) {
   return number;
 }
 
-/// A number or integer of a scenario, and what it may be.
+/// Value, bounds and unit of a number or integer field of a scenario.
 struct NumericField {
   double value;
   double min;
@@ -156,7 +156,8 @@ double FreeField::ValueAt(double share) const {
   const double exact = is_logarithmic_ ? lowest_ * std::pow(highest_ / lowest_, share)
                                        : lowest_ + share * (highest_ - lowest_);
   if (is_integer_) return std::clamp(std::round(exact), lowest_, highest_);
-  // By way of decimal digits: the nearest number to a short text is one that prints as that text.
+  // Goes through decimal digits, so that the number is the nearest one to a short text and prints
+  // as that text.
   const int decimals = kLinearDigits - static_cast<int>(std::floor(std::log10(highest_ - lowest_)));
   const std::string rounded = is_logarithmic_
                                   ? fmt::format("{:.{}g}", exact, kLogarithmicDigits)

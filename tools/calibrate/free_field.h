@@ -1,4 +1,4 @@
-// A field of a scenario that a calibration may change, and the range in which it looks.
+// A field of a scenario that a calibration may change, and its range.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace fogline {
 
-/// A number or integer outside lists, its bounds and its scale. A search sees a field as its share
-/// of the range, in [0, 1]; on a logarithmic scale equal shares are equal factors.
+/// A number or integer outside lists, with its bounds and its scale. A search gives a value as its
+/// share of the range, in [0, 1]. On a logarithmic scale equal shares are equal factors.
 class FreeField {
  public:
   /// "/pointer=lowest:highest", or "/pointer=lowest:highest:log" for a field that spans orders of
   /// magnitude.
-  /// @throws InputError if the pointer names no such field, or the bounds are not in order or not
-  /// in the field's own range
+  /// @throws InputError if the pointer names no such field, if the bounds are not in ascending
+  /// order, or if they are outside the field's own range
   explicit FreeField(const std::string& text);
 
   const std::string& pointer() const { return assignment_.pointer(); }
@@ -27,11 +27,11 @@ class FreeField {
   bool is_integer() const { return is_integer_; }
   bool is_logarithmic() const { return is_logarithmic_; }
 
-  /// The value at a share of the range, rounded: integers to integers, others to a 10^5th of the
-  /// range or finer on a linear scale and to six digits on a logarithmic one, so that a file that
-  /// holds the value is fit to be read, and says exactly what was tried.
+  /// The rounded value at a share of the range. An integer is rounded to an integer. A number on a
+  /// linear scale is rounded to 1e-5 of the range or finer, on a logarithmic scale to six digits.
+  /// So the value in a file is short, and it is exactly the value of the evaluation.
   double ValueAt(double share) const;
-  /// The share at which a value lies; 0 or 1 if it is beyond the bounds.
+  /// The share at which a value lies; 0 or 1 if the value is outside the bounds.
   double ShareOf(double value) const;
 
   double Get(const Scenario& scenario) const;
@@ -55,7 +55,7 @@ class FreeField {
   std::string_view unit_;
 };
 
-/// The free fields of a command line. @throws InputError, also if one is given twice
+/// The free fields of a command line. @throws InputError, also if a field is given twice
 std::vector<FreeField> ParseFreeFields(const std::vector<std::string>& texts);
 
 }  // namespace fogline

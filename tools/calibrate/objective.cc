@@ -14,12 +14,12 @@
 namespace fogline {
 namespace {
 
-// Of a seed whose runs do not have the measure: the range of a published SI is [-1000, 100] %.
+// Residual of a seed whose runs do not have the measure: the published SI lies in [-1000, 100] %.
 constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }
 
-/// Squared residual of the mean, seeds without the measure included.
+/// Squared residual of the mean. A seed without the measure counts with kMissingResidualPts.
 double Residual(const Statistics& reached, const std::optional<double>& target,
                 std::int64_t seeds) {
   if (!target) return 0;
@@ -70,7 +70,8 @@ std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                return complete = go_on();
              });
   } catch (const InputError& error) {
-    // Fields that are fine one by one can be impossible together, such as the weights of an ACC.
+    // Fields whose values are valid one by one can be invalid together, such as the weights of an
+    // ACC.
     return Evaluation{.rows = {},
                       .objective = std::numeric_limits<double>::max(),
                       .refusal = fmt::format("{} with {}", error.what(), NameOf(values))};

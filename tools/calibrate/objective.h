@@ -1,4 +1,4 @@
-// How far a scenario's table is from a target's: what a calibration makes small.
+// Distance of a scenario's table from a target table. A calibration minimises it.
 #pragma once
 
 #include <functional>
@@ -15,51 +15,51 @@
 
 namespace fogline {
 
-/// What a calibration starts from.
+/// Input of a calibration.
 struct CalibrationProblem {
-  std::string file = "scenario";  // where it comes from, for messages
+  std::string file = "scenario";  // source of the scenario, for messages
   Scenario scenario;
   std::vector<FreeField> fields;
   std::vector<TargetRow> target;
   SeedRange seeds;
-  /// Weight of a squared residual of RHE, and of the variance of SI over the seeds, where that of a
+  /// Weight of a squared residual of RHE, and of the variance of SI over the seeds. The weight of a
   /// squared residual of SI is 1.
   double rhe_weight = 1;
   double spread_weight = 0.01;
-  /// Threads. They change no result.
+  /// Number of threads. It does not change the result.
   int jobs = 1;
 };
 
 /// A row of the table over all seeds.
 struct TableRow {
-  Statistics si_pct;  // of the seeds that have one: SI needs compromised safety in the paired run
+  Statistics si_pct;  // only of seeds that have SI: it needs compromised safety in the paired run
   Statistics rhe_pct;
 };
 
 struct Evaluation {
   std::vector<TableRow> rows;  // as many as the target has
   double objective = 0;        // square points
-  std::string refusal;         // why the scenario cannot run; then there are no rows
+  std::string refusal;         // why the scenario cannot run; then `rows` is empty
 };
 
-/// Asked now and then while there is work: false stops it.
+/// Called from time to time during the work; it returns false to stop the work.
 using GoOn = std::function<bool()>;
 
 /// The objective
 ///
 ///   J = sum over rows of (mean SI - SI*)^2 + w_s var SI + w_r (mean RHE - RHE*)^2
 ///
-/// in square points, with the target's values starred. Every evaluation uses the same seeds (common
-/// random numbers), so that J differs only by what the fields do. A seed without SI stands for a
-/// residual of 1000 points, SI's whole range: fields that let no compromised safety arise are no
-/// way out.
+/// in square points; a star marks the target's values. Every evaluation uses the same seeds (common
+/// random numbers), so J changes only with the fields. A seed without SI counts with a residual of
+/// 1000 points, the largest magnitude of SI. So the search gains nothing from fields that let no
+/// compromised safety arise.
 class Objective {
  public:
-  /// @throws InputError if no threshold matters to the scenario's policy
+  /// @throws InputError if the scenario's policy does not use the threshold
   explicit Objective(CalibrationProblem problem);
 
-  /// The table with these values of the free fields, each within its bounds; none if `go_on` said
-  /// no.
+  /// The table with these values of the free fields, each within its bounds. The result is empty if
+  /// `go_on` returned false.
   std::optional<Evaluation> Evaluate(std::span<const double> values, const GoOn& go_on) const;
 
   /// The scenario with these values.

@@ -39,7 +39,7 @@ std::size_t EndOfValue(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// What stands between the byte before a key (a brace or comma) and the key.
+/// The blanks between the byte before a key (a brace or comma) and the key.
 std::string_view BlanksBefore(std::string_view text, std::size_t key) {
   const std::size_t last = text.find_last_not_of(kBlank, key - 1);
   return text.substr(last + 1, key - last - 1);
@@ -66,7 +66,7 @@ std::string Appended(std::string_view text, const JsonValue& object, std::string
       fmt::format(",{}{}: {}", BlanksBefore(text, last.place.offset), Quote(key), json));
 }
 
-/// `json` within objects with the keys of a pointer, the first one outermost.
+/// Wraps `json` into objects with the keys of a pointer; the first key is the outermost one.
 std::string Wrapped(std::string_view pointer, std::string_view json) {
   if (pointer.empty()) return std::string(json);
   const std::size_t end = std::min(pointer.find('/', 1), pointer.size());

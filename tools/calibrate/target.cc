@@ -24,8 +24,8 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Visits the fields of a published row, whose ranges are those of a target's row too. What is not
-/// there becomes NaN.
+/// Reads the fields of a published row; a target's row has the same ranges. A missing number
+/// becomes NaN.
 class RowReader {
  public:
   RowReader(const JsonObject& object, std::string pointer, MistakeList& mistakes)
@@ -93,7 +93,8 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, MistakeList& mistakes) {
   return target;
 }
 
-/// Each mistake with its place, as of a scenario, but without what is said of scenarios' fields.
+/// Throws all mistakes, each with its place as in a scenario, but without the hints about fields of
+/// scenarios.
 [[noreturn]] void Throw(MistakeList& mistakes, const std::vector<Source>& sources) {
   std::string text;
   try {

@@ -1,4 +1,4 @@
-// The table that a calibration is to meet.
+// The target table of a calibration.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@
 
 namespace fogline {
 
-/// What a row of the table shall be; a number that is not there does not matter.
+/// A target row. A missing number does not count in the objective.
 struct TargetRow {
   double threshold = 0;
   std::optional<double> si_pct;
   std::optional<double> rhe_pct;
 };
 
-/// The rows of {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}, which is also what
-/// `fogline table --json` prints. Other keys are passed over; null stands for a number that is not
-/// there.
+/// The rows of {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}, which is also the
+/// form that `fogline table --json` prints. Other keys are ignored. null stands for a missing
+/// number.
 /// @throws InputError with every mistake and its place
 std::vector<TargetRow> ReadTarget(const std::filesystem::path& file);
 

@@ -1,5 +1,5 @@
-# For the scripts beside it: N OUT.csv SCENARIO ... as $count, $out, $stem, $shards; the rest stays in
-# "$@". Sets FOGLINE.
+# Parses the arguments N OUT.csv SCENARIO ... of the scripts in this folder. Sets $count, $out, $stem,
+# $shards and FOGLINE; the arguments from SCENARIO on stay in "$@".
 if [ $# -lt 3 ] || ! [[ $1 =~ ^[1-9][0-9]*$ ]]; then
   echo "usage: $0 N OUT.csv SCENARIO [options of fogline sweep]" >&2
   exit 2

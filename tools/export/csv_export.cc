@@ -16,7 +16,7 @@ namespace fogline {
 namespace {
 
 constexpr std::string_view kScenarioFile = "scenario.json";
-// Text is handed over in pieces of about this size, so that it takes little memory.
+// Text goes to the file in pieces of about this size, so that it takes little memory.
 constexpr std::size_t kPieceBytes = 1 << 16;
 
 std::filesystem::path FileOf(std::string_view channel, const std::filesystem::path& folder) {
@@ -83,14 +83,16 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 }
 
 bool IsCsvExport(const std::filesystem::path& file) {
-  // A channel's columns begin with those of its messages' header, a scenario with its version.
+  // A channel's columns begin with those of its messages' header. A scenario begins with its
+  // version.
   const std::string_view begin =
       file.filename() == kScenarioFile ? "{\n  \"version\": " : "header.run_id,header.step,";
   return HeadOf(file, begin.size()) == begin;
 }
 
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
-  // Named only when all of them are there, so that no folder has files of two logs.
+  // The files get their names only when all of them are complete, so that no folder has files of
+  // two logs.
   std::deque<WholeFile> files;
   for (const ChannelTable& table : tables.channels) {
     WriteChannel(table, files.emplace_back(FileOf(table.name, folder)));

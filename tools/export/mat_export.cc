@@ -24,10 +24,10 @@
 namespace fogline {
 namespace {
 
-// What a level 5 file begins with; readers look at its first word alone. Without the time of day,
-// which matio would put there.
+// Beginning of a file of level 5. Readers evaluate only its first word. It has no time of day,
+// which matio would add.
 constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
-// Sizes are 32 bits there, and readers take them as signed.
+// MAT-files have sizes of 32 bits, and readers take them as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kHeaderStruct = "header";
 
@@ -64,7 +64,7 @@ struct MatType<std::int64_t> {
   static constexpr matio_types kType = MAT_T_INT64;
 };
 
-/// A field as a matrix with a row for each message; MAT-files have it column by column.
+/// A field as a matrix with one row for each message. MAT-files store matrices column by column.
 Variable MatrixOf(const FieldTable& field, std::size_t messages) {
   return std::visit(
       [&]<class T>(const std::vector<T>& values) {
@@ -79,7 +79,7 @@ Variable MatrixOf(const FieldTable& field, std::size_t messages) {
       field.values);
 }
 
-/// A struct with these fields; those of the header are named by what follows "header.".
+/// A struct with these fields. The names of the header's fields lose the prefix "header.".
 Variable StructOf(const char* name, const std::vector<std::string>& names) {
   std::vector<const char*> pointers;
   for (const std::string& one : names) pointers.push_back(one.c_str());
@@ -126,8 +126,8 @@ Variable TextVariable(const char* name, std::string text) {
       Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
 }
 
-/// Whether so many variables are there, each whole: their sizes lead from the first to the end. A
-/// write to a full disk that fails is not always reported to whoever calls matio.
+/// Whether the file has this number of variables and each is whole: the sizes lead from the first
+/// variable to the end. matio does not report every failed write to a full disk.
 bool IsWhole(const std::filesystem::path& file, std::size_t variables) {
   constexpr std::streamoff kHeaderBytes = 128;
   std::ifstream in(file, std::ios::binary);

@@ -1,4 +1,4 @@
-// Tables as a MAT-file of level 5, which MATLAB, Octave and scipy.io read (by libmatio).
+// Writes tables as a MAT-file of level 5 (by libmatio), which MATLAB, Octave and scipy.io read.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,16 @@
 
 namespace fogline {
 
-/// Whether a file is one that WriteMat() has written, by its beginning.
+/// Whether WriteMat() has written the file, judged by its beginning.
 bool IsMatExport(const std::filesystem::path& file);
 
-/// Writes the file, whole or not at all: for each channel one struct, such as TRUTH, with a column
-/// for each field, and a matrix with a row for each message where the field is a list; the header
-/// is a struct within it (TRUTH.header.step). Types are those of the fields: int64, int32, int8 and
-/// double. The variable `scenario` is the scenario's text. Equal logs give equal files.
-/// @throws InputError if no file can be there, or a channel is larger than the format can hold;
+/// Writes the file, whole or not at all. Each channel is one struct, such as TRUTH, with one column
+/// vector for each field. A field that is a list is a matrix with one row for each message. The
+/// header is a struct within the struct (TRUTH.header.step). Types are those of the fields: int64,
+/// int32, int8 and double. The variable `scenario` is the scenario's text. Equal logs give equal
+/// files.
+/// @throws InputError if the file cannot be created, or a channel is larger than the format can
+/// hold;
 ///     std::runtime_error when the disk is full; Interrupted
 void WriteMat(const RunTables& tables, const std::filesystem::path& file);
 

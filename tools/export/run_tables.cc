@@ -20,9 +20,9 @@ namespace {
 template <class M>
 class Tabulator {
  public:
-  /// @throws InputError without the log's name
+  /// @throws InputError whose text lacks the log's name; the caller adds it
   void Add(Bytes bytes) {
-    if (bytes.empty()) return;  // in real time
+    if (bytes.empty()) return;  // a run in real time may lack a message
     if (!Decode(bytes, message_)) {
       throw InputError(
           fmt::format("message {} of {} does not decode: was it recorded with other "
@@ -64,7 +64,7 @@ class Tabulator {
 
   ChannelTable table_{.name = ChannelOf<M>().name};
   M message_{};
-  std::size_t next_ = 0;  // field of the message
+  std::size_t next_ = 0;  // index of the message's next field
 };
 
 template <class Graph>

@@ -1,5 +1,6 @@
-// A log as tables: one for each channel that carries a message in every step, with a row for each
-// message and a column for each field. For files that other programs read; our own read the log.
+// A log as tables: one for each channel with a message in every step, with one row for each message
+// and one column for each field. The tables are for files that other programs read. Fogline's own
+// programs read the log.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +15,11 @@ namespace fogline {
 
 /// One field of a channel's messages.
 struct FieldTable {
-  std::string name;  // as in lcmtypes; dotted where a message is within the message: "header.step"
+  std::string name;  // as in lcmtypes; a dot leads into a nested message: "header.step"
   bool is_list = false;
-  std::size_t width = 1;  // values in a message, the same in all; a matrix counts row by row
-  /// Message by message, in the type that the field has.
+  std::size_t width = 1;  // values in a message, the same in all messages; a matrix is stored row
+                          // by row
+  /// The values of all messages one after another, in the type of the field.
   std::variant<std::vector<double>, std::vector<std::int8_t>, std::vector<std::int32_t>,
                std::vector<std::int64_t>>
       values;
@@ -31,14 +33,15 @@ struct ChannelTable {
 
 struct RunTables {
   std::vector<ChannelTable> channels;  // in the order of the graph table
-  std::string scenario;                // JSON, ASCII alone
+  std::string scenario;                // JSON, ASCII only
   std::int64_t steps = 0;
   bool complete = false;
-  std::string note;  // why it is not complete, or what was ignored; "" if nothing
+  std::string note;  // why the log is not complete, or what the reader ignored; "" if nothing
 };
 
 /// Reads a whole log into memory: 0.8 kB for each step with one following car.
-/// @throws InputError if it is none, or has messages that do not fit their channel; Interrupted
+/// @throws InputError if the file is no log, or has messages that do not fit their channel;
+/// Interrupted
 RunTables ReadRunTables(const std::filesystem::path& log);
 
 }  // namespace fogline

@@ -25,7 +25,7 @@ namespace fogline {
 
 namespace {
 
-/// Makes an empty file that was not there; false if it is there. @throws InputError
+/// Makes an empty file. @return false if a file of this name exists @throws InputError
 bool Reserve(const std::filesystem::path& log) {
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST) return false;
@@ -53,8 +53,8 @@ LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
-  // Makes the file if it is missing. Of two runs that begin at once one has it, whichever made it;
-  // where another run is writing it, --force is of no use.
+  // Makes the file if it is missing. If two runs start at once, only one of them gets the lock,
+  // whichever made the file. --force does not help while another run is writing the file.
   auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
   if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {
@@ -71,7 +71,7 @@ LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
 
 LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
-  std::error_code ignored;  // Reserve() says what is wrong
+  std::error_code ignored;  // Reserve() reports the error
   std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {
     std::filesystem::path log =
@@ -125,7 +125,7 @@ std::string NetworkArguments::Url() const {
 
 namespace {
 
-/// Puts every measure that it visits into a JSON object.
+/// Returns a visitor that puts every measure into a JSON object.
 auto Into(nlohmann::ordered_json& json) {
   return
       [&json]<class V>(std::string_view name, const V& value, std::string_view, std::string_view) {
@@ -142,7 +142,7 @@ std::string Cell(std::string_view name, std::optional<double> value, std::string
   return value ? MeasureText(name, *value, unit) : "-";
 }
 
-/// One line for each following car, under a line of names.
+/// A line of column names, then one line for each following car.
 std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
   std::string text = fmt::format("  {:<10}", "follower");
   VisitFollowerMeasures(FollowerMeasures(),

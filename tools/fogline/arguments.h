@@ -41,27 +41,28 @@ class ScenarioArguments {
   }
   const std::filesystem::path& file() const { return file_; }
 
-  /// For a verb that varies a field itself: refuses to have it set. `why` says what sets it.
+  /// For a verb that varies a field itself: refuses a --set of this field. `why` says what sets the
+  /// field.
   /// @throws InputError
   void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
 
  private:
   std::filesystem::path file_;
   std::vector<std::string> overrides_;
-  std::string seed_;  // checked where all fields are
+  std::string seed_;  // checked together with all other fields
 };
 
-/// A log file to write: refuses one that another run is writing, one that has something in it
-/// unless `force`, and with it whatever is no event log; requires its folder as RequireFolderOf()
-/// does.
+/// Prepares a log file for writing. It refuses a log that another run is writing, and a non-empty
+/// file unless `force` is true. Even with `force` it refuses a file that is no event log. It
+/// requires the folder as RequireFolderOf() does.
 /// @throws InputError
 LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
 /// "logs/STEM-1.lcm", or the first number that is free.
 LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
-/// Calls `work(log)` for each; one that is no log is named on stderr and left out, and the others
-/// are worked on all the same. Returns whether there was none of that kind.
+/// Calls `work(log)` for each log. A log that cannot be read is named on stderr and left out; the
+/// work continues with the others. @return whether all logs could be read
 template <class Work>
 bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work& work) {
   bool readable = true;
@@ -76,45 +77,44 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
   return readable;
 }
 
-/// The seeds of --seeds. One number alone, which may be meant for so many seeds, is explained on
+/// The seeds of --seeds. A single number, which the user may have meant as a count, is explained on
 /// stderr.
 /// @throws InputError
 SeedRange ReadSeeds(const std::string& text);
 
-/// --json output: a document and a newline on stdout. Names that are no UTF-8, which JSON cannot
-/// carry, have U+FFFD there; what a terminal would obey is escaped.
+/// Prints --json output: a document and a newline on stdout. Names that are not UTF-8 contain
+/// U+FFFD, because JSON cannot carry them. Control characters for terminals are escaped.
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
-/// 16 hexadecimal digits, or null for a build that is not known.
+/// 16 hexadecimal digits, or null for an unknown build.
 nlohmann::ordered_json BuildJson(BuildId build);
 
-/// --lcm-url of a verb that looks at a network from outside.
+/// --lcm-url of a verb that observes a network from outside.
 class NetworkArguments {
  public:
   /// @param what completes "LCM network ..."
   NetworkArguments(CLI::App& verb, std::string_view what);
 
-  /// The network to look at, by the rule of every program (lcm_url.h).
-  /// @throws InputError if the URL names no network that others can look into
+  /// The network to observe, by the rule that every program uses (lcm_url.h).
+  /// @throws InputError if other processes cannot observe the network of the URL
   std::string Url() const;
-  /// Whether the verb is to follow the runs that are announced there, because the command line
-  /// names no network.
+  /// Whether the verb should follow announced runs, because the command line names no network.
   bool Follows() const { return url_.empty(); }
 
  private:
   std::string url_;
 };
 
-/// {"name": value, ...} of a run's measures, to stand in a larger JSON text. With more than one
-/// following car "followers" is the list of theirs.
+/// {"name": value, ...} of a run's measures, as part of a larger JSON text. With more than one
+/// following car, "followers" is the list of their measures.
 std::string MeasuresJson(const ExperimentResult& result);
 
-/// The measures of a run as lines "name  value unit", and a table of the following cars' where
-/// there is more than one.
+/// The measures of a run as lines "name  value unit". If there is more than one following car, a
+/// table of their measures follows.
 std::string MeasuresText(const ExperimentResult& result);
 
-/// The same of the figures of a run in real time, and its fallbacks.
+/// The same for the figures of a run in real time, and its fallbacks.
 nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures);
 std::string RealtimeText(const RealtimeFigures& figures);
 

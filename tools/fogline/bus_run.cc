@@ -44,19 +44,19 @@
 namespace fogline {
 namespace {
 
-// How long a role may take to be ready.
+// Time in which a role has to be ready.
 constexpr Duration kJoinLimit = milliseconds(10'000);
-// How often the runner looks after its processes while no message comes.
+// Interval at which the runner checks its processes while no message arrives.
 constexpr Duration kLookEvery = milliseconds(20);
-// How often it looks whether roles that it waits for are in other runs.
+// Interval at which the runner checks whether awaited roles belong to other runs.
 constexpr Duration kLookForExternal = milliseconds(100);
-// A process that is silent for so long hangs: ten of its signs of life.
+// A process that is silent for this long hangs: ten of its signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time half of that: whoever needs the process has done without it for long, and a sign of
-// life that is lost is no repair's business.
+// In real time half of that, because by then the readers of the process have long worked without
+// it. It still covers five signs of life, because no repair brings back a lost one.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
-/// The builds of the programs that take part if none comes from elsewhere.
+/// The builds of the runner's own programs; a role that is started elsewhere may have another one.
 RoleBuilds OwnBuilds(bool in_memory) {
   RoleBuilds builds{};
   for (const RoleInfo& info : kRoles) {
@@ -66,8 +66,9 @@ RoleBuilds OwnBuilds(bool in_memory) {
   return builds;
 }
 
-/// What a runner counts from that takes the place of another one, whose roles may still be there:
-/// they believe the newest. A runner says less than a thing in a microsecond.
+/// First sequence number of a runner that replaces another one. Roles of the old runner may still
+/// be alive, and they obey the newest runner. A runner sends less than one message per microsecond,
+/// so the time in microseconds exceeds every number of the old runner.
 std::int64_t NewerThanEveryRunner() {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -76,7 +77,7 @@ std::int64_t NewerThanEveryRunner() {
 
 ConductorOptions MakeConductorOptions(const Scenario& scenario, const ExperimentOptions& options,
                                       bool in_memory) {
-  // A slow pace is no stall: a step is expected to take its time.
+  // A slow pace is no stall: a step may take this time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
   return {.run_id = resume ? resume->front.run_id : DrawRunId(),
@@ -117,7 +118,7 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
     const TimePoint now = Clock::now();
     TimePoint next = conductor.Poll(now);
     for (const auto& node : nodes) next = std::min(next, node->Poll(now));
-    // Messages first: while there are any, nothing is due by the clock.
+    // Messages come first: nothing is due by the clock while there are any.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(conductor.step());
     if (WasInterrupted()) break;
@@ -126,7 +127,7 @@ void RunInMemory(Bus& bus, Conductor& conductor, std::int64_t run_id, const Scen
   bus.Drain();
 }
 
-/// What each process of a role has said last.
+/// The last STATUS of each process of a role.
 std::vector<status_t> LastWords(const Conductor& conductor, Role role) {
   const Conductor::Member& member = conductor.member(role);
   std::vector<status_t> words = member.dead;
@@ -134,7 +135,7 @@ std::vector<status_t> LastWords(const Conductor& conductor, Role role) {
   return words;
 }
 
-/// The processes that are, or were, of another build than the runner's.
+/// The processes, dead ones included, whose build differs from the runner's.
 std::vector<OtherBuild> OtherBuilds(const Conductor& conductor) {
   std::vector<OtherBuild> others;
   for (const RoleInfo& info : kRoles) {
@@ -155,7 +156,7 @@ void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& 
   if (!external.empty()) Notice(external);
 }
 
-/// Names once each process that has a role for which the run waits, but is in another run.
+/// Reports, once each, the processes that have an awaited role but belong to another run.
 class BusyElsewhere {
  public:
   explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
@@ -202,7 +203,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
                          .arguments = ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,
-                         // Whoever hangs is found before the run counts as stalled.
+                         // A hanging process is found before the run counts as stalled.
                          .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
                                              options.stall_limit / 2),
                          .say = say});
@@ -210,7 +211,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
   std::string trouble;
-  bool compared = false;  // the builds
+  bool compared = false;  // the builds of the roles, once
   FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     conductor.OnEveryStatus([&](const status_t& status) {
@@ -248,14 +249,14 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
-    conductor.Fail(error.what());  // the processes are still ended in order
+    conductor.Fail(error.what());  // the processes below still end in order
   }
   supervisor.End();
   return supervisor.restarts();
 }
 
-/// What the recorders of a run, of which all but the last are dead, have told of the log. In real
-/// time a recorder leaves out what its predecessor had begun.
+/// What the recorders of a run have reported about the log. All but the last recorder are dead. In
+/// real time a recorder drops the part that its predecessor wrote, so only the last report counts.
 std::vector<WrittenLog> WrittenBy(const Conductor& conductor, bool realtime) {
   std::vector<WrittenLog> written;
   for (const status_t& status : LastWords(conductor, Role::kRecorder)) {
@@ -282,7 +283,7 @@ std::string UrlOf(const std::string& transport) {
 std::int64_t DrawRunId() {
   std::uint64_t id = 0;
   randombytes_buf(&id, sizeof(id));
-  return static_cast<std::int64_t>(id >> 2) + 1;  // positive, so that it reads well
+  return static_cast<std::int64_t>(id >> 2) + 1;  // positive, for easier reading
 }
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
@@ -324,7 +325,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
-  // Said whatever the end: a role that is missing may be one that is bound to another run.
+  // Printed for every outcome: a missing role may be bound to another run.
   const std::string strangers = conductor.strangers().Text();
   if (options.announce && !strangers.empty()) Notice(strangers);
   if (conductor.phase() == Conductor::Phase::kFailed) {

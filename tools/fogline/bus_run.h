@@ -1,4 +1,4 @@
-// A run over LCM: every role a node, in one process (memq) or as a process of its own (any URL).
+// A run over LCM: every role is a node in one process (memq), or a process of its own (any URL).
 #pragma once
 
 #include <filesystem>
@@ -20,16 +20,16 @@ struct BusRun {
   std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;
   std::vector<Restarts> restarts;
-  RoleBuilds builds{};                   // what each role has said of its build
-  std::vector<OtherBuild> other_builds;  // those that are not the runner's
-  std::vector<WrittenLog> written;       // what each recorder has told last of the log
+  RoleBuilds builds{};                   // as each role has reported its own
+  std::vector<OtherBuild> other_builds;  // the builds that differ from the runner's
+  std::vector<WrittenLog> written;       // the last report of each recorder about the log
 };
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
 
 /// Runs a scenario to its end and leaves its log.
-/// @param keeper seals the log of a run that is cut off
+/// @param keeper seals the log of a run that ends early
 /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper);

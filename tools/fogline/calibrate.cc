@@ -1,5 +1,5 @@
-// fogline calibrate, a program of its own: finds the values of fields with which a scenario's table
-// meets another.
+// fogline calibrate, a program of its own: finds values of fields with which a scenario's table
+// comes nearest to a target table.
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -105,7 +105,7 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
   return problem;
 }
 
-/// Whether a file is a scenario by its form, whatever its values are.
+/// Whether a file has the form of a scenario; its values may be invalid.
 bool IsScenario(const std::filesystem::path& file) {
   const FileText read = ReadFile(file, kMaxFileBytes);
   MistakeList mistakes;
@@ -114,8 +114,8 @@ bool IsScenario(const std::filesystem::path& file) {
   return object != nullptr && FindMember(*object, "version") != nullptr;
 }
 
-/// Finds out before the search, not after it, that its result could not be kept. Returns the text
-/// of the scenario file with the overrides in it, all else as it stands.
+/// Checks before the search that its result can be written. @return the text of the scenario file
+/// with the overrides in it and everything else unchanged
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   namespace fs = std::filesystem;
   const auto refuse = [&](std::string_view why) {
@@ -128,7 +128,7 @@ std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scen
   if (!read.error.empty()) refuse(fmt::format("{} {}", PathText(arguments.scenario), read.error));
   std::string text = read.text;
   for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
-  // A recorded leader's file is named relative to the scenario's folder.
+  // The path of a recorded leader's file is relative to the scenario's folder.
   const fs::path recorded = scenario.lead.recorded.file;
   if (scenario.lead.profile == LeadProfile::kRecorded && !recorded.empty() &&
       recorded.is_relative()) {
@@ -150,7 +150,7 @@ void WriteOut(const std::filesystem::path& file, std::string text,
   Notice(fmt::format("{}: written", PathText(file)));
 }
 
-/// @throws Interrupted if nothing was found before the interrupt
+/// @throws Interrupted if the interrupt came before the first result
 Findings Search(const CalibrateArguments& arguments, const Objective& objective) {
   const auto go_on = [] { return !WasInterrupted(); };
   std::optional<Calibration> found;

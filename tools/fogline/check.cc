@@ -1,4 +1,4 @@
-// fogline check: is this scenario fine, what does it mean in full, what may a field be?
+// fogline check: checks a scenario, prints it in full, and explains its fields.
 #include <memory>
 #include <optional>
 #include <string>

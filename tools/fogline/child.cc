@@ -20,8 +20,8 @@
 namespace fogline {
 namespace {
 
-/// In the child, between fork and exec: only async-signal-safe calls. Says on `failure` why the
-/// program cannot be started.
+/// Runs in the child between fork and exec, so it makes only async-signal-safe calls. If the
+/// program cannot be started, it writes errno to `failure`.
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, int error_output,
                          int failure, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -30,7 +30,7 @@ namespace {
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   if (error_output >= 0) dup2(error_output, STDERR_FILENO);
-  // LCM's sockets and pipes are not marked to be closed. A kernel before 5.11 leaves them open.
+  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves them open.
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   execv(program, arguments);
   const int error = errno;
@@ -38,7 +38,7 @@ namespace {
   _exit(127);
 }
 
-/// What Become() says, 0 if the program runs.
+/// The errno that Become() has written; 0 if the program runs.
 int FailureOf(int failure) {
   int error = 0;
   ssize_t size = 0;
@@ -68,7 +68,7 @@ Pipe::~Pipe() {
 
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  int output, int error_output) {
-  // Inherited as ignored, it would keep the ends of processes from us.
+  // If SIGCHLD is inherited as ignored, waitpid() cannot report how processes end.
   std::signal(SIGCHLD, SIG_DFL);
   const auto fail = [&program](int error) {
     throw std::runtime_error(

@@ -1,4 +1,4 @@
-// Other programs of Fogline, started as processes that belong to this one.
+// Starts other programs of Fogline as child processes.
 #pragma once
 
 #include <sys/types.h>
@@ -12,16 +12,16 @@
 
 namespace fogline {
 
-/// Starts a program of Fogline. It dies with the runner, however that dies; it is out of reach of
-/// the terminal's Ctrl-C, which the runner turns into an orderly end; it reads nothing, prints to
-/// `output`, and has no other file of the runner but stderr.
-/// @param error_output where its stderr goes; -1: to that of the runner
-/// @return its process id @throws std::runtime_error if the system will not start it: for now, if
-///     it is short of processes or the program is being replaced
+/// Starts a program of Fogline. The kernel kills it when the runner dies. The terminal's Ctrl-C
+/// does not reach it; the runner turns Ctrl-C into an orderly end. Its stdin is /dev/null, its
+/// stdout is `output`, and it inherits no other file of the runner but stderr.
+/// @param error_output its stderr; -1: the runner's
+/// @return its process id @throws std::runtime_error if the system cannot start it. This may be
+///     temporary: the system is short of processes, or the program is being replaced
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  int output, int error_output = -1);
 
-/// A pipe whose ends no child inherits. It closes those that are not -1.
+/// A pipe whose ends no child inherits. The destructor closes the ends that are not -1.
 struct Pipe {
   /// @throws std::runtime_error
   Pipe();
@@ -32,12 +32,12 @@ struct Pipe {
   int write = -1;
 };
 
-/// How a process has ended, by the status that waitpid() gives.
+/// How a process ended, from the status of waitpid().
 std::string HowItEnded(int status);
 
-/// The program of this name in the folder of the running one.
+/// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
-/// The program of a role there.
+/// The program of a role in that folder.
 std::filesystem::path ProgramOf(Role role);
 
 }  // namespace fogline

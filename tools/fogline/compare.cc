@@ -1,4 +1,4 @@
-// fogline compare: how a run's host drove beside a real car that was recorded behind the same
+// fogline compare: compares the host of a run with a real car that was recorded behind the same
 // leader.
 #include <algorithm>
 #include <charconv>
@@ -35,7 +35,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// What was recorded of the real car, and of the leader if the file has him.
+/// Recorded data of the real car, and of its leader if the file has them.
 struct Recording {
   std::vector<CsvNumber> times_s;
   std::vector<CsvNumber> speeds_mps;
@@ -43,10 +43,11 @@ struct Recording {
   std::vector<CsvNumber> leader_mps;
 };
 
-// What a car on a road can have; anything else is another quantity or unit, or a marker of nothing.
+// Limits for a car on a road. A value beyond them is another quantity or unit, or marks a missing
+// value.
 constexpr double kFastest_mps = 150;
 constexpr double kFarthest_m = 10'000;
-// The run's leader is the recorded one if they differ by no more, at any time.
+// The run's leader counts as the recorded one if their speeds never differ by more than this.
 constexpr double kSameLeader_mps = 0.5;
 
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
@@ -75,7 +76,7 @@ bool IsNumber(std::string_view text) {
   throw InputError(fmt::format("{}:{}: error: {}", PathText(file), line, why));
 }
 
-/// @throws InputError for the first value of the column that is not between the two
+/// @throws InputError for the first value of the column outside [least, most]
 void RequireBetween(double least, double most, const std::string& column,
                     const std::vector<CsvNumber>& numbers, const std::filesystem::path& file,
                     const std::string& text) {
@@ -119,7 +120,7 @@ Recording ReadRecording(const CompareArguments& arguments, const RecordedSection
           std::move(numbers[3])};
 }
 
-/// @throws InputError unless the recording's times ascend and span those of the run
+/// @throws InputError unless the recording's times ascend and cover those of the run
 void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double end_s,
                 const std::filesystem::path& file) {
   if (times_s.empty()) Refuse(file, "no rows");
@@ -154,7 +155,7 @@ void CheckLeader(const LoggedRun& run, const Recording& recording,
   }
 }
 
-/// Ours beside the recorded, of one quantity over all steps.
+/// Differences between the run and the recording, of one quantity over all steps.
 class Differences {
  public:
   void Add(double ours, double recorded) {
@@ -169,7 +170,8 @@ class Differences {
   double mean() const { return ours_ / Count(); }
   double recorded_mean() const { return recorded_ / Count(); }
   double rmse() const { return std::sqrt(squares_ / Count()); }
-  /// Root mean square without the mean difference, which a choice of headway makes.
+  /// Root mean square without the mean difference. The choice of a headway causes the mean
+  /// difference.
   double spread() const {
     const double bias = mean() - recorded_mean();
     return std::sqrt(std::max(0.0, squares_ / Count() - bias * bias));
@@ -191,7 +193,7 @@ struct Comparison {
   Differences gap_m;
 };
 
-/// @param out gets the values step by step as CSV; nullptr: nobody wants them
+/// @param out gets the values of each step as CSV; nullptr: no such output
 Comparison Compare(const LoggedRun& run, const Recording& recording, std::ostream* out) {
   const double start_s = run.scenario.lead.recorded.start_s;
   CsvSeries speed_mps(recording.times_s, recording.speeds_mps);
@@ -263,7 +265,7 @@ int RunCompare(const CompareArguments& arguments) {
   std::ostringstream out;
   const Comparison comparison = Compare(run, recording, has_out ? &out : nullptr);
   if (has_out) {
-    WatchInterrupts();  // no half of a file is left
+    WatchInterrupts();  // an interrupt leaves no partial file
     WholeFile file(arguments.out);
     file.Write(out.str());
     file.Finish();

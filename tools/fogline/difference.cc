@@ -42,7 +42,8 @@ std::vector<Field> FieldsOf(const M& message) {
   return fields;
 }
 
-/// Bytes of a message without the run id: what the digest looks at. In real time there may be none.
+/// Whether two messages are equal except for the run id, as in the digest. In real time a message
+/// may be missing.
 bool SameRunAside(Bytes a, Bytes b) {
   if (a.empty() || b.empty()) return a.empty() == b.empty();
   return std::ranges::equal(a.first(kRunIdOffset), b.first(kRunIdOffset)) &&

@@ -32,7 +32,7 @@ struct Signature {
   std::string trouble;  // "" if there is none
 };
 
-/// @param key that a log must be signed with; nullptr: whichever
+/// @param key with which a log must be signed; nullptr: any key or none
 Signature SignatureOf(const RunLog& run, const SealKey* key) {
   const bool is_signed = run.seal && LooksSealed(run.seal->event);
   if (key == nullptr) return {is_signed ? "not checked" : "none", ""};
@@ -48,7 +48,8 @@ Signature SignatureOf(const RunLog& run, const SealKey* key) {
   return {"wrong", "signed with another key, or altered since"};
 }
 
-/// {"world": "0123456789abcdef", ...}, null where the role has not said it; null without a seal.
+/// {"world": "0123456789abcdef", ...}, with null for a role that has not reported its build. The
+/// result is null without a seal.
 nlohmann::ordered_json BuildsJson(const RunLog& run) {
   if (!run.seal || !run.seal->whole) return nullptr;
   nlohmann::ordered_json json = nlohmann::ordered_json::object();

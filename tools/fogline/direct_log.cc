@@ -64,7 +64,7 @@ void DirectLog::Flush() {
 }
 
 void DirectLog::End(const ExperimentResult& result) {
-  if (!log_) return;  // nothing was added to what is there
+  if (!log_) return;  // the log already has all messages
   run_.steps = result.steps;
   run_.digest = result.digest;
   run_.complete = true;

@@ -16,31 +16,31 @@
 
 namespace fogline {
 
-/// Writes the messages of a run into a log, and seals it. What the log has already of a run that is
-/// resumed is compared instead: it must be the same.
+/// Writes the messages of a run into a log, and seals it. For a resumed run it compares the
+/// messages with those that the log already has: they must be the same.
 class DirectLog {
  public:
   /// @throws InputError if the file cannot be written
   DirectLog(const ExperimentOptions& options, std::int64_t run_id, const Scenario& scenario);
 
-  /// The next message, in the order of the log.
-  /// @throws InputError if the log has another one; std::runtime_error if the disk is full
+  /// Adds the next message, in the order of the log.
+  /// @throws InputError if the log has a different message; std::runtime_error if the disk is full
   void Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime, Bytes message);
-  /// Hands everything to the operating system. @throws std::runtime_error
+  /// Hands all data to the operating system. @throws std::runtime_error
   void Flush();
-  /// The run has come to its end: seals the log. @throws std::runtime_error
+  /// Seals the log of a complete run. @throws std::runtime_error
   void End(const ExperimentResult& result);
-  /// The run was interrupted: seals what there is of it.
+  /// Seals the log of an interrupted run as far as it goes.
   void CutOff();
 
  private:
   const SealKey* key() const { return key_ ? &*key_ : nullptr; }
   void WriteScenario(const std::string& text);
-  /// The next message of the log.
+  /// Compares a message with the next one of the log.
   void Compare(std::int64_t step, const ChannelInfo& channel, Bytes message);
 
   const std::filesystem::path file_;
-  std::optional<EventLogReader> old_;  // while there are steps of it
+  std::optional<EventLogReader> old_;  // as long as it has steps to compare
   Remains remains_;
   std::optional<EventLogWriter> log_;
   std::optional<LogKeeper> keeper_;

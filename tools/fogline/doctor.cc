@@ -40,7 +40,7 @@ struct DoctorArguments {
   bool json = false;
 };
 
-/// An examination that fails is a finding too.
+/// Runs an examination. If it throws, that is a finding too.
 void Attempt(const char* check, Findings& findings, const std::function<void()>& examine) {
   try {
     examine();
@@ -81,7 +81,7 @@ void PrintAsJson(const std::string& url, const Findings& findings) {
 
 void PrintAsText(const Findings& findings) {
   for (const Finding& finding : findings) {
-    // Names of processes, too, can be chosen by their users.
+    // Users can choose names of processes too, so they are escaped.
     fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), EscapeControls(finding.what),
                finding.remedy.empty() ? "" : "  -> ", EscapeControls(finding.remedy));
   }

@@ -1,4 +1,5 @@
-// fogline events: who drove when, and what became of every request to take over, from logs alone.
+// fogline events: which driver had control when, and the outcome of every request to take over,
+// from logs alone.
 #include <array>
 #include <memory>
 #include <optional>
@@ -44,7 +45,7 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
   return events;
 }
 
-// A request's times by what they are called.
+// A time of a request, with its name.
 using RequestTime = std::pair<const char*, std::optional<std::int64_t>>;
 std::array<RequestTime, 7> TimesOf(const TakeOverRequest& request) {
   return {{{"requested", request.requested},

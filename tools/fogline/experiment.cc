@@ -23,7 +23,7 @@
 namespace fogline {
 namespace {
 
-/// A directory for the length of a scope.
+/// A temporary directory; the destructor removes it.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -120,8 +120,8 @@ std::size_t PlaceOf(const ChannelInfo& channel) {
   return static_cast<std::size_t>(&channel - kChannels.data());
 }
 
-/// A run as its log tells it, but for its measures.
-/// @param use is called with the sample of each step
+/// Reads a run from its log, without its measures.
+/// @param use gets the sample of each step
 template <class Use>
 LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
   LoggedRun logged;
@@ -132,7 +132,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
     const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
       return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
     });
-    // Only a run in real time has holes; without TRUTH nobody can say how the step was.
+    // Only a run in real time has holes. Without TRUTH the state of the step is unknown.
     if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
     const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
     if (sample == nullptr) {
@@ -154,7 +154,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
   return logged;
 }
 
-/// Compares the log with what the recorder has told, and reads it.
+/// Compares the log with the recorder's reports, and reads it.
 LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
                      const Scenario& scenario, const ExperimentOptions& options) {
   const auto read = [&] {
@@ -167,7 +167,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
   try {
     keeper.Check(run.written);
   } catch (const std::runtime_error&) {
-    read();  // if it is that of another run, this says more
+    read();  // if the log is that of another run, this error says more
     throw;
   }
   LoggedRun logged = read();
@@ -216,7 +216,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
   try {
     const ClosedLoop parts(scenario);
   } catch (const InputError& error) {
-    // "/pointer: message", or a message alone where no single field is to blame.
+    // The text is "/pointer: message", or only a message if no single field is the cause.
     const std::string what = error.what();
     const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
     const bool field = colon != std::string::npos;

@@ -24,7 +24,7 @@
 
 namespace fogline {
 
-/// The run that a log has a part of.
+/// The run of a log that is to be resumed.
 struct Resumption {
   LogFront front;
   Remains remains;
@@ -35,29 +35,30 @@ struct ExperimentOptions {
   /// for each role, a multicast port of its own), tcpq (the same, a TCP relay of its own), or an
   /// LCM URL (a process for each role there).
   std::string transport = "udpm";
-  /// Event log to write. Empty: a temporary one, or with direct none at all.
+  /// Event log to write. If empty: a temporary log, or no log with direct.
   std::filesystem::path log;
-  /// What is in the log already, if the run is to go on with it.
+  /// The part of the run that the log already has, if the run is resumed.
   std::optional<Resumption> resume;
-  double pace = 0;                       // simulated seconds per second; 0: as fast as it goes
-  bool realtime = false;                 // at that pace by the wall clock, whoever keeps up
-  std::vector<Role> external;            // roles that somebody else starts
-  Duration wait = milliseconds(60'000);  // for these to be ready; 0: for ever
+  double pace = 0;                       // simulated seconds per second; 0: no limit
+  bool realtime = false;                 // at that pace by the wall clock, without waiting for slow
+                                         // roles
+  std::vector<Role> external;            // roles that are started elsewhere
+  Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;        // of each role that is killed or hangs; 0: that ends the run
-  bool verify = false;      // compute the roles' steps again from the log, and compare
-  bool same_build = false;  // end the run if a role is of another build than the runner's
+  int restarts = 10;        // of each role that is killed or hangs; 0: its first death ends the run
+  bool verify = false;      // compute the roles' steps again from the log and compare
+  bool same_build = false;  // end the run if a role's build differs from the runner's
   TrafficOptions traffic;
-  bool announce = false;         // say on stderr where the run is and which processes take part
-  bool samples = false;          // keep those of every step in the result
-  std::string command_to_go_on;  // for the user, if the run ends early
+  bool announce = false;         // print on stderr the network of the run and its processes
+  bool samples = false;          // keep the samples of every step in the result
+  std::string command_to_go_on;  // that resumes the run, for the user if the run ends early
 };
 
-/// How often a process was started again.
+/// How often a process was restarted.
 struct Restarts {
-  std::string role;  // or "relay", the run's own
+  std::string role;  // or "relay", the relay of the run
   int count;
-  std::string last;  // how the last one before the present one ended
+  std::string last;  // how the process before the current one ended
 };
 
 struct ExperimentResult {
@@ -66,41 +67,40 @@ struct ExperimentResult {
   std::int64_t steps = 0;
   std::string digest;
   double wall_s = 0;
-  std::int64_t repairs = 0;  // requests to publish something again
+  std::int64_t repairs = 0;  // requests to publish a message again
   Refusals refused{};
   std::vector<SendTrouble> send_troubles;
   std::vector<Stranger> strangers;  // of other runs, on the same network
   std::vector<Restarts> restarts;
-  std::vector<OtherBuild> other_builds;  // roles that are not of the runner's build
+  std::vector<OtherBuild> other_builds;  // roles whose build differs from the runner's
   std::optional<Verification> verification;
-  bool checked = true;        // the log is in all its bytes what the recorder has told
+  bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is none
   RunMeasures measures;
   std::vector<FollowerMeasures> followers;  // nearest to the host first
-  std::vector<Sample> samples;              // if they were wanted
-  std::optional<RealtimeFigures> realtime;  // of a run in real time
+  std::vector<Sample> samples;              // if requested
+  std::optional<RealtimeFigures> realtime;  // only for a run in real time
 };
 
-/// Makes every part of a run once, without running it: fields that are each within their range may
-/// not go together, and that should be told before any process is started.
-/// @param file as which the scenario is known to the user
+/// Constructs every part of a run once, without running it. Fields whose values are valid one by
+/// one may be invalid together. The user should learn that before any process starts.
+/// @param file name of the scenario for the user
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
 /// Runs a scenario to its end and reads the result from its log.
-/// @throws InputError for a transport or log that cannot be, Interrupted after Ctrl-C,
-///     std::runtime_error with one line that names the culprit when the run fails; a log stays
-///     readable
+/// @throws InputError for an invalid transport or log, Interrupted after Ctrl-C, std::runtime_error
+///     with one line that names the cause when the run fails; a log stays readable
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
 
-/// A run as its log tells it.
+/// A run as read from its log.
 struct LoggedRun : RunLog {
   ExperimentResult result;
 };
 /// With the samples of all its steps. @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
-/// Without them, in memory that does not grow with the run.
-/// @param scenario that is in the log
+/// Without samples, in memory that does not grow with the length of the run.
+/// @param scenario the one in the log
 /// @throws InputError
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
 

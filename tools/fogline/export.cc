@@ -1,4 +1,4 @@
-// fogline export: a log for programs that know nothing of LCM, as CSV or as a MAT-file.
+// fogline export: writes a log as CSV or as a MAT-file, for programs that do not know LCM.
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,8 +29,8 @@ struct ExportArguments {
 
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
-/// What will be written; nothing of it may be there without --force, and with it only what an
-/// export has written. @throws InputError
+/// The files to be written. Without --force none of them may exist; with it, an existing one must
+/// be an export. @throws InputError
 std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =
@@ -44,7 +44,7 @@ std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
 int RunExport(const ExportArguments& arguments) {
   const std::vector<std::filesystem::path> files = FilesOf(arguments);
   WatchInterrupts();
-  // Before anything is made: of a log that is none there shall be no folder.
+  // Read the log first: if it is no log, no folder is made.
   const RunTables tables = ReadRunTables(arguments.log);
   const bool is_mat = IsMat(arguments.out);
   is_mat ? RequireWritable(arguments.out, "--out") : RequireWritableFolder(arguments.out, "--out");

@@ -1,4 +1,5 @@
-// Roles of a run that are started elsewhere: what to start, and how long the run waits for them.
+// Roles of a run that are started elsewhere: the commands that start them, and the time limit for
+// them.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ namespace fogline {
 class ExternalRoles {
  public:
   /// @param url network of the run
-  /// @param limit how long the run waits until all of them are ready; 0: for ever
+  /// @param limit time in which all of them must be ready; 0: no limit
   ExternalRoles(std::string url, const TrafficOptions& traffic, Duration limit)
       : url_(std::move(url)), key_file_(traffic.key_file), limit_(limit), began_(Clock::now()) {}
 
@@ -21,10 +22,11 @@ class ExternalRoles {
   /// The command that starts a role for this run, such as
   /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".
   std::string Command(Role role) const;
-  /// One line for each role: that the run waits for it, how long, and what starts it.
+  /// One line for each role: that the run waits for it, the time limit, and the command that starts
+  /// it.
   std::string Text(const std::vector<Role>& roles) const;
 
-  /// Ends the run, by the names of the roles that are missing, once it has waited for too long.
+  /// Ends the run after the time limit, with the names of the missing roles.
   void Check(Conductor& conductor, TimePoint now) const;
 
  private:

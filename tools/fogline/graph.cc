@@ -1,4 +1,4 @@
-// fogline graph: the roles and channels, from the table that everything is made from.
+// fogline graph: prints the roles and channels, from the table that defines them.
 #include <memory>
 
 #include <fmt/core.h>

@@ -8,13 +8,13 @@
 namespace fogline {
 namespace {
 
-constexpr std::size_t kOptionColumns = 34;  // of the names of options
+constexpr std::size_t kOptionColumns = 34;  // width of the column with the names of options
 
 }  // namespace
 
 CLI::Validator NumberIn(double least, double most) {
   const CLI::Validator range =
-      CLI::Range(least, most);  // lets NaN pass, which compares with nothing
+      CLI::Range(least, most);  // accepts NaN, because comparisons with NaN are false
   CLI::Validator number = range;
   number.operation([range, least, most](std::string& text) {
     const std::string wrong = range(text);
@@ -52,7 +52,7 @@ void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
 }
 
 std::string HelpText(const CLI::App& app, const CLI::App& of) {
-  // Not of.help(), which is that of the verb on the command line.
+  // of.help() would print the verb of the command line.
   const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
   return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
 }

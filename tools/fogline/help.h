@@ -9,10 +9,10 @@
 
 namespace fogline {
 
-/// No line of a help text is longer.
+/// Maximum length of a line of a help text.
 inline constexpr std::size_t kHelpColumns = 100;
 
-/// A real number of a closed range, which NaN is not in.
+/// A validator for a real number in a closed range; it refuses NaN.
 CLI::Validator NumberIn(double least, double most);
 
 /// CLI11's help with the descriptions of options wrapped.
@@ -22,15 +22,15 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override;
 };
 
-/// What the exit codes of a verb mean. Every verb may end with 2, bad input, and 3, failure at run
-/// time.
+/// Meanings of a verb's exit codes. Every verb may also end with 2 (bad input) and 3 (failure at
+/// run time).
 struct ExitMeanings {
   std::string_view done = "done";
   std::string_view check_failed = "";  // "": the verb checks nothing
   bool interruptible = false;
 };
 
-/// Begins the footer of a help text with the exit codes; footer() says the rest.
+/// Puts the exit codes in front of the footer of a help text; footer() sets the rest.
 void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
 
 /// The help of `app`, or of one of its verbs.

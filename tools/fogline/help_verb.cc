@@ -1,4 +1,4 @@
-// fogline help: the help of the program, or of a verb.
+// fogline help: prints the help of the program, or of a verb.
 #include <memory>
 #include <string>
 

@@ -14,7 +14,8 @@
 namespace fogline {
 namespace {
 
-/// A run that is to replace an older log may end before it has begun to.
+/// Whether the log has steps of this run. A run that ends before its first step leaves an older log
+/// unchanged.
 bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
   try {
     return ReadFront(log).run_id == run_id && HasSteps(log);
@@ -23,7 +24,7 @@ bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
   }
 }
 
-/// A word of a command as a shell takes it.
+/// A word of a command, quoted for a shell if needed.
 std::string Word(std::string_view text) {
   constexpr std::string_view kPlain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-,=+";

@@ -1,4 +1,4 @@
-// What a run that ends early leaves, in words.
+// Text about the log that a run leaves when it ends early.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace fogline {
 
-/// "the log so far: FILE" and the command that goes on with it, or that there is no log; "" for a
-/// run that was to leave none.
+/// "the log so far: FILE" and the command that resumes it, or that there is no log; "" if the run
+/// was to write no log.
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 
-/// The command that goes on with the log of a run, with the options that made it and are not in
-/// it; "" for a run in real time, or without a log.
+/// The command that resumes the log of a run. It has the options of the run that the log does not
+/// contain. It is "" for a run in real time, or without a log.
 std::string CommandToGoOn(const ExperimentOptions& options);
 
 }  // namespace fogline

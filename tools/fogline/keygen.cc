@@ -1,4 +1,4 @@
-// fogline keygen: a key for signed traffic.
+// fogline keygen: makes a key for signed traffic.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,4 @@
-// The last lines of what a program prints, however much that is.
+// Keeps the last lines of a program's output, however long the output is.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace fogline {
 class LastLines {
  public:
   static constexpr std::size_t kKept = 10;
-  /// Of a longer line this is the beginning, where errors say what is wrong.
+  /// Only the beginning of a longer line is kept, because errors begin with their cause.
   static constexpr std::size_t kMaxBytes = 4096;
 
-  /// Takes what was read, in pieces of any size.
+  /// Adds output, in pieces of any size.
   void Append(std::string_view text) {
     while (true) {
       const std::size_t end = text.find('\n');
@@ -28,7 +28,7 @@ class LastLines {
     }
   }
 
-  /// The lines, and what has been begun of one more.
+  /// The lines, including an unfinished last line.
   std::vector<std::string> Take() {
     if (!begun_.empty()) Finish();
     return {lines_.begin(), lines_.end()};

@@ -61,7 +61,7 @@ void LogKeeper::Check(const EventLogReader& file, const std::vector<WrittenLog>&
 void LogKeeper::Check(const std::vector<WrittenLog>& written) const {
   try {
     Check(EventLogReader(log_), written);
-  } catch (const InputError& error) {  // it is gone, or no event log
+  } catch (const InputError& error) {  // the file is gone, or it is no event log
     throw std::runtime_error(error.what());
   }
 }
@@ -95,7 +95,7 @@ void LogKeeper::SealCutOff(const std::vector<WrittenLog>& written, const RoleBui
     // Behind a torn event a seal would be read as the rest of it.
     if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
     Seal(reader.run(), written, builds, key);
-  } catch (const std::exception&) {  // the run has ended for a reason that matters more
+  } catch (const std::exception&) {  // the reason why the run ended matters more
   }
 }
 

@@ -1,5 +1,5 @@
-// The log of a run as its runner sees it: whether what is on the disk in the end is what the run's
-// recorder has written, and the seal that says so later.
+// The log of a run from the view of its runner: checks that the file on the disk has the bytes that
+// the run's recorder has written, and seals it, so that a later change shows.
 #pragma once
 
 #include <sys/types.h>
@@ -15,24 +15,24 @@ namespace fogline {
 
 class LogKeeper {
  public:
-  /// Notes which file it is that the run begins with, if there is one.
+  /// Remembers the identity of the log file at the start of the run, if there is a file.
   explicit LogKeeper(std::filesystem::path log);
 
-  /// @param written what each of the run's recorders has told last
-  /// @throws std::runtime_error if another file has taken its place, or it holds other bytes
+  /// @param written the last report of each of the run's recorders
+  /// @throws std::runtime_error if another file has replaced the log, or its bytes differ
   void Check(const std::vector<WrittenLog>& written) const;
-  /// Whether nothing stands in the file behind what was told.
+  /// Whether the file is exactly as long as the recorders have reported.
   bool HasAllTold(const std::vector<WrittenLog>& written) const;
 
   /// Checks the file again and seals it.
-  /// @param run all of the file
-  /// @param builds what each role has said of its build
+  /// @param run read from the whole file
+  /// @param builds the build that each role has reported
   /// @param key signs the seal; nullptr: no signature
-  /// @throws std::runtime_error as Check(), or if it cannot be written
+  /// @throws std::runtime_error as Check(), or if the seal cannot be written
   void Seal(const RunLog& run, const std::vector<WrittenLog>& written, const RoleBuilds& builds,
             const SealKey* key) const;
-  /// The same for a run that was cut off, whose log is not read otherwise. What cannot be sealed is
-  /// left as it is.
+  /// The same for a run that ended early, whose log has not been read. If the log cannot be sealed,
+  /// it stays as it is.
   void SealCutOff(const std::vector<WrittenLog>& written, const RoleBuilds& builds,
                   const SealKey* key) const noexcept;
 
@@ -43,7 +43,7 @@ class LogKeeper {
     bool operator==(const Identity&) const = default;
   };
   std::optional<Identity> Find() const;
-  /// The bytes on the disk. @throws std::runtime_error as Check()
+  /// Checks the bytes on the disk. @throws std::runtime_error as Check()
   void Check(const EventLogReader& file, const std::vector<WrittenLog>& written) const;
 
   std::filesystem::path log_;

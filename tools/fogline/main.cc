@@ -1,4 +1,4 @@
-// fogline: the one program that a person runs. Every verb is in a file of its own.
+// fogline: the main program for users. Every verb is in a file of its own.
 #include "tools/fogline/own_program.h"
 #include "tools/fogline/verb_main.h"
 #include "tools/fogline/verbs.h"

@@ -1,4 +1,4 @@
-// fogline metrics: the measures of runs, from their logs alone.
+// fogline metrics: prints the measures of runs, from their logs alone.
 #include <algorithm>
 #include <memory>
 

@@ -1,5 +1,5 @@
-// Verbs that are programs of their own beside `fogline`: few people need them, and they take long
-// to build. `fogline VERB ...` is the same as `fogline-VERB ...`.
+// Verbs that are separate programs beside `fogline`: few people need them, and they take long to
+// build. `fogline VERB ...` is the same as `fogline-VERB ...`.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@ inline constexpr OwnProgram kCalibrate{"calibrate", "Find values of fields that 
 inline constexpr OwnProgram kStudy{"study", "Answer an open question with runs and intervals"};
 inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
 
-/// Adds them to the list of verbs, for help and spelling; they have no action here.
+/// Adds these verbs to the list of verbs, for help and spelling hints. They have no action here.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
-/// Becomes the program of the verb argv[1], or argv[2] after "help", if it is one of these. Returns
-/// if not. A program that cannot be started is named on stderr and ends the process with
-/// kRunFailed.
+/// Replaces this process by the program of the verb argv[1], or argv[2] after "help". It returns if
+/// the verb is not one of these. If the program cannot be started, it prints an error on stderr and
+/// ends the process with kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
 }  // namespace fogline

@@ -5,7 +5,7 @@
 namespace fogline {
 namespace {
 
-/// What two runs of a pair have in common.
+/// The part of a scenario that two runs of a pair have in common.
 std::string CommonPart(Scenario scenario) {
   scenario.arbitrator = {};
   return PrintScenario(scenario);

@@ -1,4 +1,4 @@
-// Which run is whose pair without traded control: the safety improvement SI needs both.
+// Finds the paired run without traded control of each run: the safety improvement SI needs both.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace fogline {
 /// The scenario of the paired run: lambda_A = 1 throughout, everything else the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
-/// SI in % of every run that has its pair among `runs` (same scenario and seed apart from the
-/// arbitrator, policy none); nullopt for the others.
+/// SI in % of every run whose pair is among `runs`: a run of the same scenario and seed with policy
+/// none, where only the arbitrator differs. nullopt for the others.
 std::vector<std::optional<double>> SafetyImprovements(std::span<const LoggedRun> runs);
 
 }  // namespace fogline

@@ -67,7 +67,8 @@ void ProcessGroup::Signal(int signal) {
 }
 
 void ProcessGroup::ReadOutput(Process& process) {
-  // What a pipe holds (see pipe(7)); who prints without end must not keep us here.
+  // Capacity of a pipe (see pipe(7)). The limit keeps a process that prints without end from
+  // blocking the runner.
   constexpr int kReads = 16;
   std::array<char, 4096> buffer{};
   for (int i = 0; i < kReads; ++i) {

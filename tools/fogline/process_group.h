@@ -1,5 +1,5 @@
-// The processes of a run on this machine: started, listened to, and ended without a trace whatever
-// happens to the runner (the kernel kills them when it dies).
+// The processes of a run on this machine: starts them, reads their output, and ends them. The
+// kernel kills them when the runner dies.
 #pragma once
 
 #include <sys/types.h>
@@ -17,13 +17,12 @@ namespace fogline {
 class ProcessGroup {
  public:
   ProcessGroup() = default;
-  /// Kills whatever still runs.
+  /// Kills all processes that still run.
   ~ProcessGroup();
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  /// Starts a program for a role; what it prints is kept.
-  /// @return its process id @throws std::runtime_error as StartChild()
+  /// Starts a program for a role, and keeps its output.
   pid_t Start(Role role, const std::filesystem::path& program,
               const std::vector<std::string>& arguments);
 
@@ -32,16 +31,16 @@ class ProcessGroup {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // by a signal: it could not say why
-    std::vector<std::string> lines;  // the last ones that it printed
+    bool killed;                     // by a signal, so it could not print a reason
+    std::vector<std::string> lines;  // the last lines that it printed
   };
-  /// Reads what the processes print and collects those that have ended since the last call.
+  /// Reads the output of the processes and collects those that have ended since the last call.
   std::vector<Exit> Collect();
 
   bool empty() const { return processes_.empty(); }
-  /// "world 4711, radar 4712, ...", for people who want to look at or signal a process.
+  /// "world 4711, radar 4712, ...", for people who want to inspect or signal a process.
   std::string Describe() const;
-  /// Sends a signal to all that still run.
+  /// Sends a signal to all processes that still run.
   void Signal(int signal);
 
  private:

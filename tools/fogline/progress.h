@@ -1,5 +1,5 @@
-// A progress bar on stderr, for a person at a terminal, for work that takes longer than two
-// seconds.
+// A progress bar on stderr for a person at a terminal. It appears when the work takes longer than
+// two seconds.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ namespace fogline {
 
 class Progress {
  public:
-  /// @param what what is counted, such as "step"; @param total how many there are
+  /// @param what unit of the count, such as "step"; @param total full count
   Progress(std::string what, std::int64_t total);
   /// Erases the bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param note how it goes, behind the rest
+  /// @param note text behind the bar
   void Show(std::int64_t done, std::string_view note = "");
   /// Prints a line on stderr, in place of the bar.
   void Say(std::string_view line);

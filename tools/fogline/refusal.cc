@@ -20,7 +20,7 @@ std::vector<std::string> OptionsOf(const CLI::App& command) {
   return names;
 }
 
-/// The verbs that have this option, such as "fogline run, table"; "" if none has.
+/// The verbs that have this option, such as "fogline run, table"; "" if there is none.
 std::string VerbsWith(const CLI::App& app, const std::string& option) {
   std::string verbs;
   for (const CLI::App* verb : app.get_subcommands({})) {
@@ -30,7 +30,8 @@ std::string VerbsWith(const CLI::App& app, const std::string& option) {
   return verbs;
 }
 
-/// What `field` may be set to by the words "--threshold=0.8", or "--threshold" and "0.8".
+/// The value for `field` from the words "--threshold=0.8", or "--threshold" and "0.8"; "VALUE" if
+/// they have none.
 std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& words) {
   const std::string& option = words.front();
   if (const std::size_t at = option.find('='); at != std::string::npos) {
@@ -45,7 +46,8 @@ std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& wor
   return "VALUE";
 }
 
-/// The fields of the scenario that an option may be meant for, and how they are set; "" if none.
+/// A hint for an unknown option that resembles fields of the scenario: how to set them. "" if there
+/// is no such field.
 std::string FieldHint(const std::string& option, const std::vector<std::string>& words) {
   std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   std::ranges::replace(word, '-', '_');
@@ -71,7 +73,7 @@ std::string FieldHint(const std::string& option, const std::vector<std::string>&
   return hint;
 }
 
-/// Says which word `command` has no use for. @param words the first one of which is it
+/// Explains the word that `command` does not accept. @param words the first one is this word
 std::string Misfit(const CLI::App& app, const CLI::App& command,
                    const std::vector<std::string>& words) {
   const std::string& word = words.front();
@@ -121,7 +123,7 @@ std::string UnknownVerb(const CLI::App& app) {
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-  // A word before the verb is a misfit of the program, not of the verb.
+  // A wrong word before the verb is an error of the program's command line, not of the verb's.
   const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
   const CLI::App& command = is_verb ? *verbs.front() : app;
   const std::vector<std::string> misfits = command.remaining();

@@ -1,4 +1,4 @@
-// What the command line says of words that it cannot follow.
+// Error messages for wrong command lines.
 #pragma once
 
 #include <string>
@@ -7,11 +7,10 @@
 
 namespace fogline {
 
-/// "fogline", or "fogline VERB" once the verb is known: what every message begins with.
+/// "fogline", or "fogline VERB" once the verb is known: the beginning of every message.
 std::string CommandName(const CLI::App& app);
 
-/// What is said to `fogline levitate --help`, which asks for the help of no verb; "" if that is not
-/// what was asked.
+/// The error for `fogline levitate --help`, which names no verb; "" for any other command line.
 std::string UnknownVerb(const CLI::App& app);
 
 /// `no verb "tabel"; did you mean "table"?`

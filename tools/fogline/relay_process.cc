@@ -24,7 +24,7 @@ constexpr Duration kListenLimit = milliseconds(5000);
 
 constexpr std::string_view kHere = "127.0.0.1";
 
-/// The line that it prints when it listens; "" if it does not.
+/// The first line that the relay prints, when it listens; "" if it does not listen in time.
 std::string FirstLine(int output) {
   std::string text;
   const TimePoint end = Clock::now() + kListenLimit;
@@ -51,7 +51,7 @@ RelayProcess::~RelayProcess() { End(); }
 std::string RelayProcess::Start(const std::string& place) {
   const std::filesystem::path program = ProgramBeside("fogline-relay");
   Pipe output;
-  // It names on our stderr whom it disconnects.
+  // The relay prints on the runner's stderr which clients it disconnects.
   pid_ = StartChild(program, {"--listen", place, "--quiet"}, output.write);
   close(std::exchange(output.write, -1));
   std::string url = FirstLine(output.read);
@@ -62,7 +62,7 @@ std::string RelayProcess::Start(const std::string& place) {
 
 void RelayProcess::End() {
   if (pid_ < 0) return;
-  kill(pid_, SIGKILL);  // it keeps nothing
+  kill(pid_, SIGKILL);  // the relay has no data to save
   waitpid(pid_, nullptr, 0);
   pid_ = -1;
 }
@@ -81,7 +81,7 @@ std::string RelayProcess::Look(const Conductor& run, TimePoint now) {
   }
   if (!start_at_ || now < *start_at_) return "";
   try {
-    Start(url_.substr(url_.find("//") + 2));  // where the others look for it
+    Start(url_.substr(url_.find("//") + 2));  // the address at which its clients look for it
   } catch (const std::runtime_error&) {
     start_at_ = now + policy_.OnFailedStart();
     return "";

@@ -1,5 +1,5 @@
-// A relay for one run: fogline-relay on a free port of this machine, started again there when it is
-// killed, gone with this object.
+// A relay for one run: fogline-relay on a free port of this machine. It is restarted at the same
+// address when it dies. The destructor ends it.
 #pragma once
 
 #include <sys/types.h>
@@ -14,8 +14,8 @@ namespace fogline {
 
 class RelayProcess {
  public:
-  /// Starts it and waits until it listens.
-  /// @param restarts how often, at most, it is started again @throws std::runtime_error
+  /// Starts the relay and waits until it listens.
+  /// @param restarts maximum number of restarts @throws std::runtime_error
   explicit RelayProcess(int restarts);
   ~RelayProcess();
   RelayProcess(const RelayProcess&) = delete;
@@ -23,24 +23,24 @@ class RelayProcess {
 
   const std::string& url() const { return url_; }
 
-  /// Sees whether it has died, and starts it again when its time has come. Call it every few tens
-  /// of milliseconds.
-  /// @return what to tell a person, "" if there is nothing
-  /// @throws std::runtime_error if it is not to be started again
+  /// Checks whether the relay has died, and restarts it after its delay. Call it every few tens of
+  /// milliseconds.
+  /// @return a message for the user, "" if there is none
+  /// @throws std::runtime_error if the restarts are used up
   std::string Look(const Conductor& run, TimePoint now);
 
-  /// How often it was started again, and how it had ended the last time.
+  /// Number of restarts, and how the last dead process ended.
   int restarts() const { return policy_.restarts(); }
   const std::string& death() const { return death_; }
 
  private:
-  /// @return the line that it prints when it listens
+  /// @return the line that the relay prints when it listens
   std::string Start(const std::string& place);
   void End();
 
   RestartPolicy policy_;
   pid_t pid_ = -1;
-  pid_t dead_ = -1;  // the last one
+  pid_t dead_ = -1;  // process id of the last dead relay
   std::string url_;
   std::string death_{};
   std::optional<TimePoint> start_at_{};

@@ -1,4 +1,4 @@
-// fogline replay: whether a role still computes what it did when a log was made.
+// fogline replay: checks whether a role still computes the messages that a log has.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -29,7 +29,7 @@ struct ReplayArguments {
   throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
-/// The run that a log holds, without its steps. @throws InputError for a run in real time
+/// The run of a log, without its steps. @throws InputError for a run in real time
 RunLog ReadRun(const std::filesystem::path& log) {
   RunLogReader reader(log);
   while (reader.Next() != nullptr) {
@@ -43,7 +43,7 @@ RunLog ReadRun(const std::filesystem::path& log) {
   return run;
 }
 
-/// @throws InputError for a role that is none, or computes nothing
+/// @throws InputError for a name that is no role, or a role that computes nothing
 std::vector<RoleCheck> ChosenRoles(const ReplayArguments& arguments, const RunLog& run) {
   std::vector<RoleCheck> roles = MakeRoleChecks(run);
   std::vector<std::string_view> names;

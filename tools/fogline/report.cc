@@ -32,7 +32,7 @@
 namespace fogline {
 namespace {
 
-// How MakeReport()'s pages begin.
+// Beginning of MakeReport()'s pages.
 constexpr std::string_view kDocumentType = "<!DOCTYPE html>";
 
 struct ReportArguments {
@@ -64,7 +64,7 @@ constexpr std::array kFigureOptions{
                  &ReportArguments::pdf},
 };
 
-/// Only a page may be replaced: "-o *.lcm" must not cost a log. @throws InputError
+/// Only an HTML page may be replaced, so that "-o *.lcm" does not destroy a log. @throws InputError
 void RefuseToReplaceOther(const std::filesystem::path& output) {
   if (!IsReplaceable(output)) return;
   std::ifstream file(output, std::ios::binary);
@@ -97,7 +97,7 @@ std::string NameOf(const ArbitratorSection& arbitrator) {
   return name + fmt::format("threshold {:g}", arbitrator.threshold);
 }
 
-/// By what tells the runs apart: who may drive, then the seed, then the log.
+/// Names that tell the runs apart: by the drivers, then by the seed, then by the log.
 std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
@@ -131,8 +131,7 @@ std::vector<ReportMeasure> MeasuresOf(const RunMeasures& measures) {
   return out;
 }
 
-/// The table that the logs give by themselves: one row for each run with a pair. Nothing without
-/// one.
+/// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
 std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
                                    std::span<const std::optional<double>> improvements) {
   const bool one_seed = HaveOneSeed(runs);
@@ -157,7 +156,8 @@ std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
   return table;
 }
 
-/// The runs of the logs, those without traded control first: the others are compared with them.
+/// The runs of the logs. Those without traded control come first, because the others are compared
+/// with them.
 std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   std::vector<LoggedRun> runs;
   for (const std::filesystem::path& log : logs) {
@@ -172,7 +172,7 @@ std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   return runs;
 }
 
-/// Takes the samples out of `run`.
+/// Moves the samples out of `run`.
 ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<double>& si_pct) {
   return {.name = name,
           .log = LogNameOf(run),
@@ -243,7 +243,7 @@ int RunReport(const ReportArguments& arguments) {
   }
   std::optional<ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
-  WatchInterrupts();  // no half of a file is left
+  WatchInterrupts();  // an interrupt leaves no partial file
   WholeFile file(arguments.output);
   file.Write(MakeReport(pages, table, curves));
   file.Finish();

@@ -12,15 +12,15 @@
 namespace fogline {
 namespace {
 
-// The roles of a runner that was killed are killed with it, which takes the kernel a moment; their
-// recorder has the log for as long.
+// The roles of a killed runner are killed with it, which takes the kernel a moment. Their recorder
+// keeps the lock of the log until then.
 constexpr Duration kEndOfOthers = milliseconds(2000);
 
 [[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
   throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
 }
 
-/// The path of a file that is there, and is an event log. @throws InputError
+/// Checks that a file exists and is an event log. @return its path @throws InputError
 const std::filesystem::path& Readable(const std::filesystem::path& log) {
   ReadFront(log);
   return log;

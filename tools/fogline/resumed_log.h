@@ -1,4 +1,4 @@
-// The log that `fogline run --resume` goes on with.
+// The log that `fogline run --resume` continues.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace fogline {
 
-/// A log of a run in lockstep that has ended early, or come to its end. No other run can have it
-/// until the end of this object. It is left as it is, whatever is wrong with it.
+/// A log of a run in lockstep that has ended early, or is complete. Its lock keeps other runs away
+/// until the end of this object. The constructor does not change the file, even if it refuses it.
 class ResumedLog {
  public:
   /// @param key that its seal is signed with, if it has one; nullptr: any or none
-  /// @throws InputError with what is wrong with it
+  /// @throws InputError with the reason why the log cannot be resumed
   ResumedLog(const std::filesystem::path& log, const SealKey* key);
 
   const Scenario& scenario() const { return scenario_; }
   const Resumption& resumption() const { return resumption_; }
-  /// The run has come to its end.
+  /// Whether the log has the whole run.
   bool complete() const { return resumption_.remains.final; }
 
  private:

@@ -1,5 +1,5 @@
-// Whether the roles of a run have computed what their algorithms compute here: each step's inputs
-// are the log's, so what differs in one role does not carry over to another.
+// Checks that the messages of a run's roles are those that the algorithms compute here. Each step
+// takes its inputs from the log, so a difference in one role does not carry over to another role.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace fogline {
 
-/// A role, and what has come of computing its steps again.
+/// A role, and the result of computing its steps again.
 struct RoleCheck {
   Role role;
   std::unique_ptr<RoleReplay> replay;
@@ -22,33 +22,33 @@ struct RoleCheck {
   std::optional<Difference> first;  // `a` in the log, `b` computed here
 };
 
-/// Every role that computes something, at the beginning of a run in lockstep.
+/// The roles of a run in lockstep that compute messages, in their initial state.
 std::vector<RoleCheck> MakeRoleChecks(const RunLog& run);
 /// Computes every step of a log again.
-/// @throws InputError for a step that cannot be computed, without the log's name
+/// @throws InputError for a step that cannot be computed; the text lacks the log's name
 void CheckRoles(RunLogReader& reader, std::vector<RoleCheck>& roles);
 
-/// The check of a run's own log.
+/// Result of the check of a run's own log.
 struct Verification {
   struct LeftOut {
     Role role;
     std::string why;
   };
-  std::vector<Role> roles;        // that were computed again
-  std::vector<LeftOut> left_out;  // and those that could not be
+  std::vector<Role> roles;        // roles that were computed again
+  std::vector<LeftOut> left_out;  // roles that could not be computed again
   struct Failure {
     Role role;
     Difference first;  // `a` in the log, `b` computed here
   };
-  std::optional<Failure> failure;  // the earliest one
-  std::string broken;              // why a step could not be computed at all, "" if all could
+  std::optional<Failure> failure;  // the earliest difference
+  std::string broken;              // why a step could not be computed; "" if all steps could
 
   bool Holds() const { return !failure && broken.empty(); }
-  /// What differs, one line; "" if nothing does.
+  /// The difference, in one line; "" if there is none.
   std::string Trouble() const;
 };
 
-/// @param others roles of another build, whose algorithms are not here
+/// @param others roles of another build; their algorithms are not in this program
 Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
                        const std::vector<OtherBuild>& others);
 

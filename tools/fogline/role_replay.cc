@@ -24,7 +24,7 @@
 namespace fogline {
 namespace {
 
-/// Every algorithm of a run.
+/// The algorithms of all roles that compute messages.
 using Algorithms = std::tuple<World, Radar, Lidar, Fusion, Acc, Driver, Arbitrator, Follower>;
 
 template <class Algorithm>
@@ -63,7 +63,7 @@ class ReplayOf final : public RoleReplay {
     (std::make_index_sequence<N>{});
   }
 
-  /// Reads input I of a step, as a process of the role would.
+  /// Reads input I of a step, as the role's process does.
   template <std::size_t I>
   void Read(std::int64_t step, const StepMessages& messages, const StepMessages& before) {
     using M = std::tuple_element_t<I, AllInputs>;
@@ -76,7 +76,7 @@ class ReplayOf final : public RoleReplay {
 
   void Hear(std::int64_t step, const StepMessages& messages, const StepMessages& before) {
     using M = std::tuple_element_t<kInputs, AllInputs>;
-    // Before the run there is nothing: all zero (services/runtime/algorithm.h).
+    // Before the run the message is all zero (services/runtime/algorithm.h).
     if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
     algorithm_.Hear(std::get<kInputs>(inputs_));
   }
@@ -104,7 +104,7 @@ class ReplayOf final : public RoleReplay {
 
   Algorithm algorithm_;
   std::int64_t run_id_;
-  bool hears_;  // in this scenario
+  bool hears_;  // whether the role hears its extra input in this scenario
   AllInputs inputs_{};
   std::vector<std::uint8_t> encoded_;
 };

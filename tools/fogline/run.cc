@@ -44,12 +44,12 @@ Examples:
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// Nine processes must pass on a step in this time, and their signs of life be heard in 64 steps.
+// In this time nine processes must pass on a step. Their signs of life must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
-    verb.get_option("SCENARIO")->required(false);  // unless a log has it
+    verb.get_option("SCENARIO")->required(false);  // with --resume the log has the scenario
     verb.add_option("--resume", resume, "Go on with the run in this log, which has its scenario");
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
@@ -107,8 +107,8 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
-/// The exit code of a run that has ended; says on stderr why it is not kDone.
-/// @throws std::runtime_error if the log of a run in real time lacks what was published
+/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
+/// @throws std::runtime_error if the log of a run in real time lacks published messages
 int Ended(const ExperimentResult& result) {
   if (result.realtime && result.realtime->unlogged_messages > 0) {
     throw std::runtime_error(fmt::format(
@@ -130,7 +130,7 @@ int Print(const RunArguments& arguments, const RunOutcome& outcome) {
   return Ended(outcome.result);
 }
 
-/// What is the same for a new run and one that goes on. @throws InputError
+/// Applies the options that a new run and a resumed run share. @throws InputError
 void ApplyOptions(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
@@ -169,7 +169,7 @@ int RunAnew(RunArguments& arguments) {
                            .resumed = std::nullopt});
 }
 
-/// The run in a log to its end. A log that has it is not computed again: what is done once is done.
+/// Continues the run of a log to its end. If the log has the whole run, nothing is computed again.
 int Resume(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   const auto key = KeyOf(options.traffic);
@@ -196,7 +196,8 @@ int Resume(RunArguments& arguments) {
   return Print(arguments, outcome);
 }
 
-/// @throws CLI::ParseError for what cannot go together with --resume, or is missing without it
+/// @throws CLI::ParseError for an option that contradicts --resume, or for a missing SCENARIO
+/// without --resume
 void CheckResume(const CLI::App& verb) {
   if (verb.get_option("--resume")->count() == 0) {
     if (verb.get_option("SCENARIO")->count() == 0) throw CLI::RequiredError("SCENARIO");

@@ -32,7 +32,7 @@ nlohmann::ordered_json VerificationJson(const Verification& verification) {
   return json;
 }
 
-/// What was computed again, and what was not.
+/// The roles that were computed again, and those that were not.
 std::string VerificationText(const Verification& verification) {
   std::string text;
   for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));
@@ -43,7 +43,7 @@ std::string VerificationText(const Verification& verification) {
   return text;
 }
 
-/// What of a run is not as it should be or was not looked at; "" if nothing.
+/// Deviations of a run, and parts that were not checked; "" if there are none.
 std::string RemarksText(const RunOutcome& outcome) {
   const ExperimentResult& result = outcome.result;
   std::string text;

@@ -1,4 +1,4 @@
-// What a run has come to, as `fogline run` prints it.
+// The result of a run, as `fogline run` prints it.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 namespace fogline {
 
 struct RunOutcome {
-  std::filesystem::path file;  // that has the scenario
-  std::int64_t steps = 0;      // of the scenario; a collision ends a run before them
+  std::filesystem::path file;  // the file with the scenario
+  std::int64_t steps = 0;      // of the scenario; a collision ends a run earlier
   ExperimentResult result;
-  std::optional<std::int64_t> resumed;  // steps that were in the log before
-  bool computed = true;                 // the rest of them, here
+  std::optional<std::int64_t> resumed;  // number of steps that the log already had
+  bool computed = true;                 // whether this process computed the rest
 };
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome);
-/// Some lines; the first one says the most.
+/// Several lines, the most important one first.
 std::string ToText(const RunOutcome& outcome);
 
 }  // namespace fogline

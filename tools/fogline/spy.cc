@@ -1,6 +1,6 @@
-// fogline spy: LCM's own lcm-spy with our message types. Debian's /usr/bin/lcm-spy cannot show
-// them: it passes an option that Java has not known since version 14, and a class path without our
-// types.
+// fogline spy: LCM's own lcm-spy with Fogline's message types. Debian's /usr/bin/lcm-spy cannot
+// show these types: it passes an option that Java removed in version 14, and its class path lacks
+// them.
 #include <unistd.h>
 
 #include <cerrno>
@@ -58,7 +58,7 @@ struct SpyArguments {
   fs::path jars;
 };
 
-/// @throws std::runtime_error that names the package to install
+/// @throws std::runtime_error that names the missing package
 fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
   const fs::path jar = arguments.jars.empty() ? InstalledJar(name) : arguments.jars / name;
   if (access(jar.c_str(), R_OK) == 0) return jar;
@@ -67,7 +67,7 @@ fs::path JarOf(const SpyArguments& arguments, const std::string& name, const cha
       fmt::format("there is no {}: apt-get install {}", PathText(folder / name), package));
 }
 
-/// @throws std::runtime_error that says how to make it
+/// @throws std::runtime_error that says how to build the types
 fs::path TypesOf(const SpyArguments& arguments) {
   const auto programs = fs::read_symlink("/proc/self/exe").parent_path();
   const fs::path types = arguments.types.empty() ? TypesJar(programs) : arguments.types;
@@ -100,10 +100,10 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
 }
 
-/// Waits until there is something to look at. @return its network
-/// @throws Interrupted, std::runtime_error when nothing came
+/// Waits until there is traffic to show. @return its network
+/// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
-  // A run that is announced is found in this time, and comes before other traffic.
+  // An announced run is found within this time, and takes precedence over other traffic.
   constexpr Duration kDiscovery = 2 * kBeaconEvery;
   constexpr Duration kLookEvery = milliseconds(50);
   Bus bus(arguments.network.Url());
@@ -138,10 +138,10 @@ std::string FindNetwork(const SpyArguments& arguments) {
   throw Interrupted("interrupted before a run came");
 }
 
-/// lcm-spy is to hear what stays on this machine.
+/// Lets lcm-spy hear traffic that stays on this machine.
 void PreloadHearLoopback() {
   const fs::path library = HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
-  if (library.empty()) return;  // it hears what goes over other interfaces
+  if (library.empty()) return;  // lcm-spy still hears traffic over other interfaces
   std::string preload = library.string();
   if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
   setenv("LD_PRELOAD", preload.c_str(), 1);

@@ -1,5 +1,5 @@
-// What LCM's lcm-spy is made of on this machine: a Java that opens windows, LCM's jars, the jar of
-// our message types, and what lets Java hear loopback.
+// Finds the parts of LCM's lcm-spy on this machine: a Java that can open windows, LCM's jars, the
+// jar of Fogline's message types, and the library that lets Java hear loopback.
 #pragma once
 
 #include <filesystem>
@@ -7,25 +7,25 @@
 
 namespace fogline {
 
-/// A program where the shell would find it, "" if nowhere.
+/// Path of a program as the shell finds it; "" if it is not in PATH.
 std::filesystem::path InPath(const std::string& program);
 
-/// JAVA_HOME's Java, the shell's without JAVA_HOME; "" if there is none.
+/// Java of JAVA_HOME, or the shell's if JAVA_HOME is not set; "" if there is none.
 std::filesystem::path JavaProgram();
 
-/// Whether a Java can open windows; the headless package has everything else.
+/// Whether a Java can open windows. The headless package cannot.
 bool OpensWindows(const std::filesystem::path& java);
 
-/// A jar in the folders where Debian, and LCM's own installation, put jars; "" if it is in neither.
+/// A jar in the folders of Debian or of LCM's own installation; "" if neither has it.
 std::filesystem::path InstalledJar(const std::string& name);
 
-/// The jar of the message types, of the build or the installation that a program belongs to; "" if
+/// The jar of the message types that belongs to a program, in its build or installation; "" if
 /// there is none.
 /// @param programs folder of the program
 std::filesystem::path TypesJar(const std::filesystem::path& programs);
 
-/// What lets a Java program hear a run that stays on this machine (tools/spy), of the build or the
-/// installation that a program belongs to; "" if there is none.
+/// The library that lets a Java program hear a run that stays on this machine (tools/spy), from the
+/// program's build or installation; "" if there is none.
 std::filesystem::path HearLoopback(const std::filesystem::path& programs);
 
 }  // namespace fogline

@@ -24,7 +24,7 @@
 namespace fogline {
 namespace {
 
-/// The name that stands for every study.
+/// The name that selects every study.
 constexpr std::string_view kAll = "all";
 
 struct StudyArguments {
@@ -36,7 +36,7 @@ struct StudyArguments {
   bool json = false;
 };
 
-/// A study that has been made.
+/// A finished study.
 struct Made {
   const Study* study;
   SeedRange seeds;
@@ -52,7 +52,7 @@ void RequireFew(const SeedRange& seeds, const std::string& text) {
   throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
 }
 
-/// Looks for the scenarios that the studies vary before long work. @throws InputError
+/// Checks before long work that the scenarios of the studies exist. @throws InputError
 void RequireScenarios(const std::filesystem::path& folder) {
   for (const char* name : {"paper.json", "dense_fog.json"}) {
     const std::filesystem::path file = folder / name;
@@ -114,8 +114,8 @@ void Write(const std::filesystem::path& path, const std::string& content) {
   file.Finish();
 }
 
-/// What a reader types to make the same again. Neither the folder nor the number of threads is part
-/// of it: files do not depend on them.
+/// The command that makes the same files again. It has neither the folder nor the number of
+/// threads, because the files do not depend on them.
 std::string CommandOf(const StudyArguments& arguments) {
   std::string command = fmt::format("fogline study {}", arguments.name);
   if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);
@@ -151,8 +151,8 @@ void PrintText(const StudyArguments& arguments, const Made& made) {
   }
 }
 
-/// The folder for the files, which is there before long work. Removed again if it was made for
-/// nothing.
+/// The folder for the files, made before long work. The destructor removes a new folder that is
+/// still empty.
 class OutFolder {
  public:
   /// @throws InputError

@@ -12,19 +12,21 @@
 namespace fogline {
 namespace {
 
-// How long the roles may take to leave when they are told to.
+// Time in which the roles must leave after STOP.
 constexpr Duration kLeaveLimit = milliseconds(1500);
 constexpr Duration kLookEvery = milliseconds(20);
-// STOP is said this often to roles that run elsewhere: their leaving cannot be seen.
+// Number of STOP messages for roles that run elsewhere, because the supervisor cannot see them
+// leave.
 constexpr int kStopRepeats = 5;
-// A process that is not heard of for so long after its start hangs.
+// A process hangs if it has sent nothing for this long after its start.
 constexpr Duration kStartLimit = milliseconds(5000);
-// A process that runs and is not heard counts as alive unless this is less likely: so few are
-// killed in vain that it happens in one of some thousand runs on a network that loses a lot.
+// A silent process that still runs counts as alive unless the probability of losing all its
+// messages is below this. With this value a process is killed by mistake only in one of some
+// thousand runs on a network that loses many messages.
 constexpr double kUnlikely = 1e-6;
 
-/// How often a process has begun to wait, or was made to; nothing if it cannot be known. Whoever
-/// lives does so many times a second.
+/// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
+/// has many of them each second.
 std::optional<std::int64_t> ActivityOf(pid_t pid) {
   std::ifstream status(fmt::format("/proc/{}/status", pid));
   std::int64_t sum = 0;
@@ -56,7 +58,8 @@ void Supervisor::Start(Child& child, TimePoint now) {
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
-    // Only if it is the log of this run: before that it may be an old one that is to be replaced.
+    // Only if the log is that of this run. Earlier the file may be an old log that is to be
+    // replaced.
     if (options_.resume || conductor_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
@@ -72,7 +75,7 @@ void Supervisor::Look(TimePoint now) {
   conductor_.Attend(now);
   const std::vector<ProcessGroup::Exit> exits = group_.Collect();
   if (!exits.empty()) {
-    // What they said last comes before their end.
+    // The last messages of the processes are handled before their end.
     bus_.Wait(kLookEvery);
     bus_.Drain();
   }
@@ -92,7 +95,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
   const pid_t before = child.pid;
   try {
     Start(child, now);
-  } catch (const std::runtime_error& error) {  // for now, perhaps: the stall timeout decides
+  } catch (const std::runtime_error& error) {  // perhaps temporary: the stall timeout decides
     child.start_at = now + child.policy.OnFailedStart();
     conductor_.Hinder(child.role, error.what());
     return;
@@ -112,7 +115,7 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
     child->start_at = now + *wait;
     return;
   }
-  // One line that says who died, then what it had to say.
+  // One line that names the dead process, then the last lines that it printed.
   std::string text = fmt::format("{} (pid {}) {}", NameOf(exit.role), exit.pid, child->death);
   if (exit.killed && options_.restarts > 0) {
     text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
@@ -137,7 +140,7 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   if (silent < limit / 2 || !child.killed_for.empty()) return;
   if (!child.activity) child.activity = ActivityOf(child.pid);
   if (silent < limit) return;
-  // One that runs may be one that is not heard.
+  // A process that still runs may be alive although its messages are lost.
   if (ActivityOf(child.pid) != child.activity &&
       conductor_.ChanceOfLife(child.role, silent) > kUnlikely) {
     return;
@@ -181,11 +184,11 @@ void Supervisor::End() {
     conductor_.Stop();
     ++said;
     const TimePoint pause = Clock::now() + kLookEvery;
-    // Until then, however many messages there are: a flood of them must not hold up the end.
+    // Wait until then even if many messages arrive: a flood must not delay the end.
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }
-  bus_.Drain();  // what the last of them has said
+  bus_.Drain();  // the last messages of the processes
 }
 
 std::vector<Restarts> Supervisor::restarts() const {
@@ -199,7 +202,7 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
-      // The last one may have come too late in the run to be sure that the one before it is dead.
+      // The newest process may have come too late in the run to prove that its predecessor is dead.
       const status_t& dead = member.rival ? *member.status : member.dead.back();
       restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,

@@ -1,5 +1,6 @@
-// The roles of a run as processes on this machine: started, watched, and started again when they
-// are killed, hang or are deaf. A process that ends by itself has said why, and ends the run.
+// The roles of a run as processes on this machine. It starts and watches them, and restarts those
+// that are killed, hang or are deaf. A process that exits by itself has printed the reason, and its
+// exit ends the run.
 #pragma once
 
 #include <functional>
@@ -21,25 +22,26 @@ class Supervisor {
     std::string url;
     std::int64_t run_id = 0;
     std::filesystem::path log;
-    bool resume = false;                 // the log is that of this run already
-    std::vector<std::string> arguments;  // of every process besides
-    std::vector<Role> external;          // roles that are not its business
+    bool resume = false;                 // the log already belongs to this run
+    std::vector<std::string> arguments;  // further arguments for every process
+    std::vector<Role> external;          // roles that are started elsewhere
     int restarts = 0;                    // of each role; 0: the first death ends the run
-    Duration silence{};  // without a STATUS after which a process hangs and is killed
-    std::function<void(const std::string&)> say;  // for a person
+    Duration silence{};  // time without a STATUS after which a process counts as hanging and is
+                         // killed
+    std::function<void(const std::string&)> say;  // prints a line for the user
   };
 
   /// Starts every role. @throws std::runtime_error
   Supervisor(Bus& bus, Conductor& conductor, Options options);
 
-  /// Sees who has died or hangs, and starts again whose time has come. Call it every few tens of
-  /// milliseconds.
+  /// Checks for dead and hanging processes, and restarts those whose delay is over. Call it every
+  /// few tens of milliseconds.
   void Look(TimePoint now);
 
-  /// Says STOP until every process has left; those that do not are killed.
+  /// Sends STOP until every process has left, then kills the rest.
   void End();
 
-  /// The roles that were started again, here or elsewhere.
+  /// The restarted roles, here or elsewhere.
   std::vector<Restarts> restarts() const;
   const ProcessGroup& group() const { return group_; }
 
@@ -49,21 +51,21 @@ class Supervisor {
     RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // in the middle of its silence
-    std::string killed_for{};                // what it was killed for here
-    bool deaf = false;                       // that was deafness
-    std::string death{};                     // the last one, in words
+    std::optional<std::int64_t> activity{};  // measured in the middle of its silence
+    std::string killed_for{};                // the reason why the supervisor killed it
+    bool deaf = false;                       // whether that reason was deafness
+    std::string death{};                     // how its last process ended
     std::optional<TimePoint> start_at{};
-    bool gone = false;  // for good, and the run goes on
+    bool gone = false;  // ended for good, while the run continues
   };
   void Start(Child& child, TimePoint now);
-  /// If that is not possible, it is tried again later.
+  /// Restarts the process; if that fails, a later call tries again.
   void StartAgain(Child& child, TimePoint now);
   void OnExit(const ProcessGroup::Exit& exit, TimePoint now);
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
-  /// Says of roles that are not started here that they are deaf, once each time.
+  /// Reports deaf roles that are not restarted here, once for each time.
   void NameTheDeaf();
 
   Bus& bus_;
@@ -71,7 +73,7 @@ class Supervisor {
   Options options_;
   ProcessGroup group_;
   std::vector<Child> children_;
-  std::set<Role> deaf_;  // those that this was said of
+  std::set<Role> deaf_;  // deaf roles that were reported
 };
 
 }  // namespace fogline

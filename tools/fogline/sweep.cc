@@ -80,14 +80,14 @@ SweepPlan MakePlan(const SweepArguments& arguments) {
   return SweepPlan(std::move(scenario), std::move(axes), seeds, PathText(arguments.scenario));
 }
 
-/// What has been done, on stdout unless the rows go there.
+/// Prints a summary on stdout, or on stderr if the rows go to stdout.
 void PrintSummary(const std::filesystem::path& out, const std::string& text) {
   if (IsStdout(out)) return Complain(text);
   fmt::print("{}\n{}\n", text, PathText(out));
 }
 
-/// Where the rows go if the command line does not say it: a sweep that is called again finds its
-/// file, and leaves that of another one.
+/// The default file for the rows. A repeated sweep finds its own file again, and the file of
+/// another sweep stays.
 std::filesystem::path DefaultOut(const SweepArguments& arguments, const SweepPlan& plan,
                                  const Shard& shard) {
   const std::string stem = arguments.scenario.stem().native() + "-sweep";
@@ -118,7 +118,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) return Merge(arguments);
   const SweepPlan plan = MakePlan(arguments);
   const Shard shard = ParseShard(arguments.shard);
-  Scenario first = plan.base();  // what cannot be is refused before a file is there
+  Scenario first = plan.base();  // refuses an impossible scenario before a file is made
   plan.Configure(plan.ShardBegin(shard), 0, first);
   CheckPossible(first, arguments.scenario);
   const std::filesystem::path out =

@@ -1,4 +1,4 @@
-// fogline table: safety improvement against redundant human engagement, by threshold.
+// fogline table: safety improvement and redundant human engagement for each threshold.
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -85,7 +85,7 @@ ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions optio
   return result;
 }
 
-/// Runs every pair on a transport, with logs if wanted.
+/// Runs every pair on a transport, with logs if requested.
 std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                      const ExperimentOptions& options, Scenario scenario,
                                      std::span<const double> thresholds, const SeedRange& seeds) {

@@ -1,4 +1,4 @@
-// The rows of `fogline table` and the curves of `fogline report`, computed for a person who waits.
+// The rows of `fogline table` and the curves of `fogline report`, computed with a progress bar.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace fogline {
 
-/// SweepThresholds() on all cores with a progress bar; needs WatchInterrupts() before.
+/// SweepThresholds() on all cores with a progress bar. Call WatchInterrupts() before it.
 /// @throws Interrupted after Ctrl-C
 std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
                                          std::span<const double> thresholds,

@@ -1,4 +1,4 @@
-// fogline top: a text view of what goes over an LCM network.
+// fogline top: a text view of the traffic on an LCM network.
 #include <poll.h>
 #include <unistd.h>
 
@@ -65,16 +65,17 @@ struct TopArguments {
   bool json = false;
 };
 
-// How often it looks at what poll() does not see: messages that a flood has left undrained.
+// Interval for events that poll() does not report: messages that a flood has left undrained.
 constexpr Duration kLookEvery = milliseconds(50);
-// How often it looks whether another run is to be followed: opening a network takes its time.
+// Interval for a check whether another run should be followed, because opening a network takes
+// time.
 constexpr Duration kFollowEvery = milliseconds(100);
-// Every run of this machine has announced itself in this time.
+// Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * kBeaconEvery;
-// LCM remembers every channel name that it has heard for as long as it is open: some 300 bytes
-// each. It is opened anew after so many.
+// LCM keeps every channel name that it has heard while it is open, at about 300 bytes each. After
+// this many unknown names it is closed and opened again.
 constexpr std::int64_t kMostNames = 10'000;
-// Announced runs on networks that cannot be opened: so many are remembered.
+// Number of announced runs with unreachable networks that are remembered.
 constexpr std::size_t kMaxUnreachable = 64;
 
 Duration FromSeconds(double seconds) {
@@ -117,8 +118,8 @@ class Top {
     names_ = statistics_.unknown_names();
   }
 
-  /// Has LCM forget the names of channels when there are too many. Follow() opens the network of
-  /// the run again.
+  /// Makes LCM forget the names of channels when there are too many. Follow() then opens the
+  /// network of the run again.
   void ForgetNames() {
     if (statistics_.unknown_names() - names_ < kMostNames) return;
     followed_.reset();
@@ -131,7 +132,7 @@ class Top {
     });
   }
 
-  /// Waits until a run is announced, so that the first interval has the whole of its traffic.
+  /// Waits until a run is announced, so that the first interval has all of its traffic.
   void Discover() {
     const TimePoint end = Clock::now() + kDiscovery;
     while (listener_ && !followed_ && Clock::now() < end && Listen(Clock::now() + kLookEvery)) {
@@ -139,7 +140,7 @@ class Top {
     statistics_.Observe(Clock::now());
   }
 
-  /// Looks besides at the network of the newest run that is announced.
+  /// Also watches the network of the newest announced run.
   void Follow(TimePoint now) {
     if (!listener_ || now < follow_at_) return;
     follow_at_ = now + kFollowEvery;
@@ -157,12 +158,12 @@ class Top {
     try {
       followed_.emplace(run.url);
       Watch(*followed_);
-    } catch (const std::exception&) {  // the address came from the network
+    } catch (const std::exception&) {  // the address came from the network and may be invalid
       Leave(run.run_id);
     }
   }
 
-  /// Handles what has come from the run that is followed.
+  /// Handles messages of the followed run.
   void DrainFollowed() {
     if (!followed_) return;
     try {
@@ -172,14 +173,14 @@ class Top {
     }
   }
 
-  /// Follows this run no more.
+  /// Stops following this run.
   void Leave(std::int64_t run_id) {
     followed_.reset();
     if (unreachable_.size() == kMaxUnreachable) unreachable_.clear();
     unreachable_.push_back(run_id);
   }
 
-  /// Handles messages and keys. @return false if the user wants to quit before it is time
+  /// Handles messages and keys. @return false on an interrupt, or if the user quits before `until`
   bool Listen(TimePoint until) {
     while (true) {
       const TimePoint now = Clock::now();
@@ -211,7 +212,7 @@ class Top {
     std::fflush(stdout);
   }
 
-  /// The network of the run that is followed, else the one that was to be looked at.
+  /// The network of the followed run, or else the given network.
   const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
 
   std::vector<Line> Lines(const TrafficView& view) const {
@@ -231,11 +232,11 @@ class Top {
   std::string url_;
   std::optional<Bus> bus_;
   TrafficStatistics statistics_;
-  std::int64_t names_ = 0;                  // unknown ones when bus_ was opened
-  std::optional<BeaconListener> listener_;  // where runs are to be followed
-  std::vector<Announcement> runs_;          // that are announced; first the one to be followed
-  std::optional<Bus> followed_;             // its network
-  std::vector<std::int64_t> unreachable_;   // runs
+  std::int64_t names_ = 0;                  // unknown names when bus_ was opened
+  std::optional<BeaconListener> listener_;  // set if announced runs are to be followed
+  std::vector<Announcement> runs_;          // announced runs, the followed one first
+  std::optional<Bus> followed_;             // the network of the followed run
+  std::vector<std::int64_t> unreachable_;   // ids of runs
   TimePoint follow_at_{};
   std::optional<Terminal> terminal_;
 };

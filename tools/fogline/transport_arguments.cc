@@ -70,7 +70,7 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
-  // A wrong key is refused, also for a run without messages to sign.
+  // A wrong key is refused even for a run that has no messages to sign.
   KeyOf(traffic_);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");

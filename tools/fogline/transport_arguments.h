@@ -1,4 +1,4 @@
-// Where a run goes and who takes part: arguments of the verbs that make runs.
+// Network and roles of a run: arguments of the verbs that make runs.
 #pragma once
 
 #include <string>
@@ -13,16 +13,17 @@ namespace fogline {
 /// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
 class TransportArguments {
  public:
-  /// @param transport where runs go unless something else is said. A run whose roles are
-  ///     processes goes to $LCM_DEFAULT_URL then, if that is set.
+  /// @param transport default transport. If it starts the roles as processes and $LCM_DEFAULT_URL
+  /// is
+  ///     set, that URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
-  /// Sets the transport, what is asked of its traffic, and the roles that are started elsewhere.
-  /// @throws InputError if these cannot go together
+  /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
+  /// @throws InputError for a contradiction between them
   void Apply(ExperimentOptions& options) const;
 
  private:
-  /// The transport of a run that was told neither --transport nor --lcm-url.
+  /// The transport of a run without --transport and --lcm-url.
   std::string Unsaid() const;
 
   std::string transport_;

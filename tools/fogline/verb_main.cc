@@ -22,7 +22,7 @@
 namespace fogline {
 namespace {
 
-/// A verb's exit code; prints its error if there is one.
+/// Runs a verb and prints its error if there is one. @return its exit code
 int Run(const CLI::App& app, const Action& action) {
   const std::string name = CommandName(app);
   try {
@@ -32,7 +32,7 @@ int Run(const CLI::App& app, const Action& action) {
     }
     return code;
   } catch (const InputError& error) {
-    // A mistake in a file begins with its place, one in the arguments with "error:".
+    // An error in a file begins with its place, an error in the arguments with "error:".
     const std::string_view what = error.what();
     Complain(what.starts_with("error:") ? fmt::format("{}: {}", name, EscapeControls(what))
                                         : std::string(what));
@@ -49,7 +49,7 @@ int Run(const CLI::App& app, const Action& action) {
   }
 }
 
-/// @param arguments without the program's name, the last one first
+/// @param arguments without the program's name, in reverse order
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
   FailWritesBeyondTheSizeLimit();
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
@@ -76,7 +76,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
     Complain(Refusal(app, error));
     return kBadInput;
   }
-  if (!action) {  // no verb: the help, and exit code 0, as cargo does
+  if (!action) {  // without a verb: the help, and exit code 0, as in cargo
     action = [&app] {
       fmt::print("{}", HelpText(app, app));
       return kDone;

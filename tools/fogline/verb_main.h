@@ -1,4 +1,5 @@
-// What the main programs of verbs share: the command line, and errors turned into exit codes.
+// Shared code of the verbs' main programs: it parses the command line and turns errors into exit
+// codes.
 #pragma once
 
 #include <initializer_list>
@@ -10,11 +11,11 @@ namespace fogline {
 /// Adds a verb to the command line; see verbs.h.
 using AddVerb = void (*)(CLI::App& app, Action& action);
 
-/// Reads the command line "fogline VERB ...", runs the verb, prints its error if there is one.
+/// Reads the command line "fogline VERB ...", runs the verb, and prints its error if there is one.
 /// @return the exit code
 int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs);
 
-/// The same for the program of one verb: its command line has no VERB.
+/// The same for the program of a single verb: its command line has no VERB.
 int RunOneVerb(int argc, char** argv, AddVerb verb);
 
 }  // namespace fogline

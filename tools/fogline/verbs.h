@@ -9,7 +9,7 @@
 
 namespace fogline {
 
-/// What a chosen verb does; returns the exit code.
+/// Action of the chosen verb; returns the exit code.
 using Action = std::function<int()>;
 
 /// Exit codes of every verb.

@@ -1,5 +1,5 @@
-// Lines on stderr, but not more than a person can read: who connects only to be refused, again and
-// again, must not fill a disk with what is said about it.
+// Rate limiter for lines on stderr. Without it a program that connects and is refused again and
+// again would fill a disk with messages.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-// Without room for another connection (files are short), the next try is after this.
+// Delay before the next try when a connection could not be accepted (no file descriptor is free).
 constexpr std::chrono::milliseconds kPause(100);
 
 }  // namespace
@@ -62,7 +62,7 @@ void Relay::Leave(std::uint64_t id, const std::string& address, const std::strin
     ++disconnected_;
     lines_.Print(fmt::format("{} disconnected: {}", address, why));
   }
-  // Not now: it may be one of those that Forward() goes through.
+  // Erase it later: Forward() may be iterating over clients_.
   asio::post(context_, [this, id] { clients_.erase(id); });
 }
 

@@ -1,8 +1,8 @@
-// The relay: takes messages from its clients and gives each to those that subscribed to its
-// channel, the sender included (as LCM's own relay does), in the order in which they came.
+// The relay takes messages from its clients. It gives each message to the clients that subscribed
+// to its channel, in the order of arrival. The sender is included, as with LCM's own relay.
 //
-// One thread, and nothing blocks: what a client does not take waits in a queue of its own, and when
-// that is full the client is disconnected. So clients cannot hold each other up.
+// One thread, and nothing blocks. Each client has its own queue for bytes that it has not taken
+// yet. A client whose queue is full is disconnected. So clients cannot hold each other up.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ namespace fogline {
 
 struct RelayOptions {
   tcpq::Limits limits;
-  std::size_t queue_bytes = 16 << 20;  // for each client, at least one message
+  std::size_t queue_bytes = 16 << 20;  // of each client; an empty queue takes any message
   std::size_t clients = 128;
   std::size_t subscriptions = 1000;  // of each client
 };
@@ -39,13 +39,13 @@ class Relay {
         const RelayOptions& options);
   ~Relay();
 
-  /// Where it listens, with the port that was chosen if it was 0.
+  /// The address on which it listens. If the given port was 0, this is the chosen port.
   tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
   /// Ends all connections; the context then has nothing left to do.
   void Stop();
 
-  /// What it has done so far, in one line.
+  /// Counts so far, in one line.
   std::string Summary() const;
 
  private:
@@ -55,13 +55,13 @@ class Relay {
   void Forward(const tcpq::Frame& message);
   void Greeted() { ++served_; }
   void Sent(std::size_t bytes);
-  /// A client is gone; `why` is empty if it left by itself.
+  /// Removes a client. `why` is empty if the client left by itself.
   void Leave(std::uint64_t id, const std::string& address, const std::string& why);
 
   boost::asio::io_context& context_;
   const RelayOptions options_;
   tcp::acceptor acceptor_;
-  boost::asio::steady_timer pause_;  // after a connection could not be accepted
+  boost::asio::steady_timer pause_;  // runs after a connection could not be accepted
   std::map<std::uint64_t, std::shared_ptr<RelayClient>> clients_;
   std::uint64_t next_id_ = 0;
   LineBudget lines_;

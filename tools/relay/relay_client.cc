@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 
 constexpr std::size_t kReadBytes = 64 << 10;
-// Who connects says at once that it is a client.
+// A client has to send its magic within this time after it connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
 
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
@@ -29,8 +29,9 @@ std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
   return fmt::format("{}:{}", peer.address().to_string(), peer.port());
 }
 
-/// LCM's client sends a message in five pieces, the second when the first is acknowledged. The
-/// kernel waits up to 40 ms with that unless it is told again and again not to.
+/// Acknowledges received data at once. LCM's client sends a message in five pieces, and waits for
+/// the acknowledgement of the first before it sends the second. The kernel delays it by up to 40 ms
+/// unless this option is set again after each read.
 void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
   const int on = 1;
   setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));
@@ -49,7 +50,7 @@ RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
       read_(kReadBytes) {}
 
 void RelayClient::Start() {
-  error_code ignored;  // a socket that is gone already says so when it is read
+  error_code ignored;  // a closed socket reports that at the next read
   socket_.set_option(tcp::no_delay(true), ignored);
   socket_.set_option(asio::socket_base::keep_alive(true), ignored);
   greeting_.expires_after(kGreetingLimit);
@@ -136,7 +137,7 @@ void RelayClient::Write() {
   asio::async_write(socket_, asio::buffer(sending_),
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->sending_.clear();
-                      // The memory of a queue that was long goes back.
+                      // Frees the memory of a queue that was long.
                       if (self->sending_.capacity() > kReadBytes) self->sending_.shrink_to_fit();
                       if (error) {
                         self->deaf_ = true;

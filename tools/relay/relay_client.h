@@ -19,7 +19,7 @@ namespace fogline {
 
 class Relay;
 
-/// Lives until its last operation has ended; the relay forgets it when it has left.
+/// Lives until its last operation has ended. The relay forgets it as soon as it has left.
 class RelayClient : public std::enable_shared_from_this<RelayClient> {
  public:
   using tcp = boost::asio::ip::tcp;
@@ -31,7 +31,7 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   /// Sends a message if the client wants it; disconnects the client if its queue is full.
   void Offer(const tcpq::Frame& message);
 
-  /// Ends the connection and tells the relay. @param why "" if that is nobody's fault
+  /// Ends the connection and tells the relay. @param why "" if there is no error to report
   void Drop(const std::string& why);
 
  private:
@@ -45,14 +45,14 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   const std::uint64_t id_;
   tcp::socket socket_;
   const std::string address_;
-  boost::asio::steady_timer greeting_;  // runs until the client has said what it is
+  boost::asio::steady_timer greeting_;  // runs until the client has sent its magic
   tcpq::FrameParser parser_;
   Subscriptions subscriptions_;
   std::vector<std::uint8_t> read_;
-  std::vector<std::uint8_t> sending_;  // the socket has it
-  std::vector<std::uint8_t> waiting_;  // comes next
+  std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
+  std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
-  bool deaf_ = false;  // takes nothing any more; what it still has to say is heard
+  bool deaf_ = false;  // writing to it failed; messages from it are still read
   bool gone_ = false;
 };
 

@@ -1,4 +1,4 @@
-// fogline-relay: carries LCM's messages over TCP where multicast is blocked. It knows nothing of
+// fogline-relay: carries LCM's messages over TCP where multicast is blocked. It does not know
 // Fogline's messages or runs.
 #include <cstdio>
 
@@ -35,7 +35,7 @@ Examples:
 
 constexpr std::size_t kMebibyte = 1 << 20;
 
-/// Options as on the command line.
+/// Options of the command line.
 struct Arguments {
   std::string listen = "127.0.0.1:7700";
   std::size_t message_mib = 4;

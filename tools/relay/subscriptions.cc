@@ -11,20 +11,20 @@
 namespace fogline {
 namespace {
 
-// Answers kept for each client. A testbed has tens of channels; names that change all the time
-// would fill the memory.
+// Matching results that are kept for each client. A testbed has tens of channels. Names that change
+// all the time would fill the memory without this limit.
 constexpr std::size_t kMaxKnown = 1000;
-// Bytes of expressions: so many for each that a client may have, and room for a few long ones.
-// Boost takes up to 320 bytes of memory for one.
+// Limit for the bytes of all expressions: kMeanBytes for each allowed expression, and kSpareBytes
+// for a few long ones. Boost takes up to 320 bytes of memory for each byte.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
-// Processor time that looking for new names may cost: at once, and then again every ten seconds. An
-// expression that Boost does not give up takes up to a fifth of a second, and a client may have
-// many.
+// Budget of processor time for new channel names: this much at once, and the same again every ten
+// seconds. Boost gives up a match that takes too many steps. A match below that limit takes up to a
+// fifth of a second, and a client may have many expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// One name costs nothing up to here: tens of simple expressions take no longer, and no flood of
-// names shall cut off a client that has them. Receiving the name cost about as much.
+// Time that is free for each name. Tens of simple expressions take no longer, so a flood of names
+// does not cut off a client that has them. Receiving the name took about as much time.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {
@@ -43,8 +43,8 @@ std::string Subscriptions::Add(std::string_view pattern) {
   if (bytes_ + pattern.size() > most)
     return fmt::format("more than {} bytes of subscriptions", most);
   try {
-    // A string of its own, with a zero behind it: Boost 1.81 looks one character beyond the end of
-    // "[" and the like.
+    // A copy with a zero behind it, because Boost 1.81 reads one character beyond the end of "["
+    // and the like.
     std::string text(pattern);
     boost::regex expression(text, boost::regex::perl);
     entries_.push_back({std::move(text), std::move(expression)});

@@ -14,21 +14,22 @@
 
 namespace fogline {
 
-/// Expressions in Perl's syntax (as LCM's), each for whole channel names.
+/// Expressions in Perl's syntax (as in LCM). Each must match a whole channel name.
 class Subscriptions {
  public:
   explicit Subscriptions(std::size_t limit);
 
-  /// Adds one; the same may be there several times. Their number is limited, and their length
-  /// together. @return "" or what is wrong with it
+  /// Adds an expression; the same one may be added several times. Their number and their total
+  /// length are limited. @return "", or what is wrong with the expression
   std::string Add(std::string_view pattern);
 
-  /// Takes one that was added away; others are ignored.
+  /// Removes one copy of an expression; does nothing if it was not added.
   void Remove(std::string_view pattern);
 
-  /// Whether one of them is for this channel. What that costs beyond what a few simple expressions
-  /// do goes off a budget of processor time, which fills again slowly (a token bucket): whoever
-  /// publishes ever new names makes the slow expressions of others no slower for everybody.
+  /// Whether one of the expressions matches this channel. Matching a new name is charged to a
+  /// budget of processor time, beyond a free share that a few simple expressions stay within. The
+  /// budget fills again slowly (a token bucket). Without it a client that keeps publishing new
+  /// names could make the slow expressions of another client hold up the relay.
   /// @throws std::runtime_error if the budget is spent
   bool Match(std::string_view channel, TimePoint now);
 
@@ -40,9 +41,9 @@ class Subscriptions {
     boost::regex expression;
   };
   std::size_t limit_;
-  std::size_t bytes_ = 0;  // of all expressions
+  std::size_t bytes_ = 0;  // of all expressions together
   std::vector<Entry> entries_;
-  std::map<std::string, bool, std::less<>> known_;  // answers; channels come again and again
+  std::map<std::string, bool, std::less<>> known_;  // matching results by channel
   double budget_s_;                                 // processor time left
   TimePoint filled_{};
 };

@@ -1,5 +1,5 @@
-# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: the definitions of assets.h, each file as a raw
-# string. A program that carries its page needs no path to it when it runs.
+# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions of assets.h, each file as a raw
+# string. With them the program contains its page and needs no path to it at run time.
 set(assets
   kPageHtml=page.html
   kPageCss=page.css

@@ -1,4 +1,4 @@
-// The files that the page is made of, built into the program (assets.cmake writes the definitions).
+// The files of the page, built into the program (assets.cmake writes the definitions).
 #pragma once
 
 #include <string_view>

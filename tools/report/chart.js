@@ -1,10 +1,10 @@
-// One panel of a figure: a uPlot chart of one or several runs over time.
+// One panel of a figure: a uPlot chart of one or more runs over time.
 
-const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // least distance of ticks, in pixels
-const VALUE_AXIS_WIDTH = 50;               // the same everywhere, so that time axes line up
+const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // smallest distance of ticks, in pixels
+const VALUE_AXIS_WIDTH = 50;               // the same in all charts, so that their time axes line up
 const TOP = 8;                             // above the plot, in pixels
 const STRIP_HEIGHT = 96;
-const LANE = {height: 4, gap: 2};          // bars above the plot that say when the human drives
+const LANE = {height: 4, gap: 2};          // bars above the plot for the time in which the human drives
 
 /** The lines of a panel, in drawing order: [{run, curve, stroke, dash, width, isCore}]. */
 function panelCurves(figure, runs) {
@@ -26,13 +26,13 @@ function runColour(run) {
   return state.theme.palette[run.index % PALETTE_SIZE];
 }
 
-/** Colour of the core of a run's lines; null if they have none. */
+/** Colour of the core of a run's lines; null if they have no core. */
 function runCore(run) {
   const {surface, ink} = state.theme;
   return [null, surface, ink][Math.floor(run.index / PALETTE_SIZE) % CORES];
 }
 
-/** A run's line where runs share the axes: its colour, and on it its core, if it has one. */
+/** Lines of a run on shared axes: one in its colour, and its core on top, if it has one. */
 function runLines(run, curve, width) {
   const line = {run, curve, stroke: runColour(run), dash: curve.dash, width};
   const core = runCore(run);
@@ -40,7 +40,7 @@ function runLines(run, curve, width) {
   return [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width, isCore: true}];
 }
 
-/** Columns for uPlot: one time axis for all, whatever the lengths and steps of the runs. */
+/** Columns for uPlot: one time axis for all runs, whatever their lengths and steps are. */
 function panelData(curves) {
   if (curves.length === 0) return [state.span.slice()];
   return uPlot.join(curves.map(({run, curve}) => [run.columns.time_s, run.columns[curve.column]]));
@@ -50,7 +50,7 @@ function withAlpha(colour, alpha) {
   return colour + Math.round(alpha * 255).toString(16).padStart(2, "0");
 }
 
-/** Diagonal lines, so that a shade is told from another without its colour. */
+/** Diagonal lines, so that shades are distinguishable without colour. */
 function hatch(context, colour) {
   const size = Math.round(7 * devicePixelRatio);
   const tile = document.createElement("canvas");
@@ -78,7 +78,7 @@ function drawFog(chart, runs) {
   for (const span of spans.values()) fillSpan(chart, span, state.theme.fog);
 }
 
-/** When the human drives, hatched. */
+/** Hatches the time in which the human drives. */
 function drawHuman(chart, run) {
   const lines = hatch(chart.ctx, state.theme.humanLine);
   for (const span of run.human) {
@@ -87,7 +87,7 @@ function drawHuman(chart, run) {
   }
 }
 
-/** The same for several runs: a bar for each, above the plot. */
+/** The same for several runs: one bar for each, above the plot. */
 function drawLanes(chart, runs) {
   const lanes = runs.filter((run) => run.human.length);
   lanes.forEach((run, lane) => {
@@ -105,7 +105,7 @@ function laneSpace(figure, runs) {
   return runs.filter((run) => run.human.length).length * (LANE.height + LANE.gap);
 }
 
-/** Shades where one curve is below another. */
+/** Shades areas in which one curve is below another. */
 function drawShortfall(chart, {below, limit}, runs) {
   for (const run of runs) {
     const {time_s: times, [below]: gaps, [limit]: limits} = run.columns;
@@ -128,7 +128,7 @@ function drawShortfall(chart, {below, limit}, runs) {
   }
 }
 
-/** Everything that lies under the curves. */
+/** Draws everything that lies under the curves. */
 function drawShades(chart, figure, runs) {
   const {ctx, bbox} = chart;
   ctx.save();
@@ -163,7 +163,7 @@ function axisOptions(space, values, more) {
           space, values, ...more};
 }
 
-/** Decimals that it takes to print a multiple of `increment`. */
+/** Number of decimals that a multiple of `increment` needs. */
 function decimalsOf(increment) {
   let decimals = 0;
   while (decimals < 6 && Math.abs(Number(increment.toFixed(decimals)) / increment - 1) > 1e-6) {
@@ -179,7 +179,7 @@ function tickTexts(suffix) {
   };
 }
 
-/** Several runs of a figure of strips, one below the other. */
+/** Whether the figure shows several runs as strips, one below the other. */
 function isStrip(figure) {
   return sharesAxes() && figure.strips;
 }
@@ -190,8 +190,8 @@ function chartHeight(width, figure, runs) {
 }
 
 /**
- * A chart of `runs` in `element`. `onTime(time)` is called when the reader points at a time,
- * `onSpan(span)` when they choose a time span.
+ * Makes a chart of `runs` in `element`. It calls `onTime(time)` when the reader points at a time,
+ * and `onSpan(span)` when they choose a time span.
  */
 function makeChart(element, figure, runs, {onTime, onSpan}) {
   const curves = panelCurves(figure, runs);
@@ -215,7 +215,7 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
     cursor: {
       y: false,
       points: {size: (chart, place) => chart.series[place].isCore ? 0 : 6},
-      drag: {x: true, y: false, dist: 6, setScale: false},  // onSpan sets it, in every chart
+      drag: {x: true, y: false, dist: 6, setScale: false},  // onSpan sets the scale of every chart
       bind: {mouseleave: () => null, dblclick: () => () => onSpan(wholeSpan())},
     },
     hooks: {
@@ -236,7 +236,7 @@ function makeChart(element, figure, runs, {onTime, onSpan}) {
   return chart;
 }
 
-/** Puts the chart's cursor at a time, or takes it away if the time is out of sight. */
+/** Puts the chart's cursor at a time, or hides it if the time is not shown. */
 function pointAt(chart, time) {
   const {min, max} = chart.scales.x;
   const seen = time >= min && time <= max;

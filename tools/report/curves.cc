@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// "0.2", or "0.01–0.27, 0.3" of rows of which those next to each other make a range.
+/// "0.2", or "0.01–0.27, 0.3": adjacent rows form a range.
 std::string ThresholdsText(const ReportCurves& curves, const std::vector<std::size_t>& rows) {
   std::string text;
   for (std::size_t i = 0; i < rows.size();) {
@@ -59,7 +59,7 @@ std::string FigureElement(const CurveFigure& figure, const std::string& caption)
       figure.id, figure.letter, figure.title, caption, figure.axis);
 }
 
-/// Where seeds have no SI, how many; "" if all have one.
+/// The number of seeds without SI; "" if all seeds have one.
 std::string MissingText(const ReportCurves& curves) {
   const auto fewer = [](const ReportCurves::Point& a, const ReportCurves::Point& b) {
     return a.si_pct.count < b.si_pct.count;

@@ -1,4 +1,4 @@
-// What the figures of the curves over thresholds show, for the page and the files of figures alike.
+// Content of the figures of the curves over thresholds, for the page and for the figure files.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,23 @@
 
 namespace fogline {
 
-/// A place in the plane of mean RHE and mean SI. Thresholds that agree in both share it.
+/// A point in the plane of mean RHE and mean SI. Thresholds with equal values of both share one
+/// point.
 struct FrontPoint {
   double rhe_pct = 0;
   double si_pct = 0;
-  std::vector<std::size_t> rows;  // places of its thresholds in the curves, ascending
-  std::string thresholds;  // such as "0.36", or "0.01–0.27" for all that the curves have from to
+  std::vector<std::size_t> rows;  // indices of its thresholds in the curves, ascending
+  std::string thresholds;  // such as "0.36", or "0.01–0.27" for all thresholds of the curves in
+                           // this range
   bool on_front = false;
-  bool beside = true;  // whether a label has room to the right: no flat piece of the front is there
+  bool beside = true;  // whether a label has room on the right: there is no flat part of the front
 };
 
-/// All places, by ascending RHE, then SI. Thresholds without SI or RHE have none.
+/// All points, by ascending RHE, then SI. Thresholds without SI or RHE have no point.
 std::vector<FrontPoint> FrontPoints(const ReportCurves& curves);
 
-/// Places of the points that deserve a label, the first ones most: those with a tenth among their
-/// thresholds (the more thresholds the better), then the front.
+/// Indices of the points that deserve a label, the most important first: points with a multiple of
+/// 0.1 among their thresholds (those with more thresholds first), then points on the front.
 std::vector<std::size_t> LabelOrder(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// "seeds 1 to 200", "seed 7".
@@ -33,7 +35,7 @@ std::string SeedsText(const ReportCurves& curves);
 /// The figures' frames on the page, a slider for the threshold, and all values as a table.
 std::string CurvesContent(const ReportCurves& curves);
 
-/// JSON text of what the page's script draws.
+/// JSON text with the data that the page's script draws.
 std::string CurvesData(const ReportCurves& curves);
 
 }  // namespace fogline

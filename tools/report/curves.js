@@ -1,5 +1,5 @@
-// Figure A: safety improvement and redundant human engagement against the threshold, with bands
-// over the seeds; and what figures A and B share: the threshold that the reader points at.
+// Figure A: safety improvement and redundant human engagement as functions of the threshold, with bands over
+// the seeds. It also has the state that figures A and B share: the threshold at the reader's cursor.
 
 const {curves} = report;
 
@@ -13,25 +13,25 @@ const BANDS = [
 ];
 
 const curveState = {
-  row: 0,             // place of the threshold that the reader points at
-  hidden: new Set(),  // keys of the measures that figure A leaves out
+  row: 0,             // index of the threshold at the reader's cursor
+  hidden: new Set(),  // keys of the measures that figure A hides
 };
 
 const curvePage = {
-  charts: [],  // [{chart, element, wholeX, wholeY}], with what the axes show at first
-  show: [],    // functions that show a threshold, given its place
+  charts: [],  // [{chart, element, wholeX, wholeY}], with the initial ranges of the axes
+  show: [],    // functions that show a threshold, given its index
   tools: document.getElementById("curve-tools"),
   slider: document.getElementById("threshold"),
   text: document.getElementById("threshold-text"),
   whole: document.getElementById("whole-curves"),
 };
 
-/** [middle - half, middle + half], nulls if either is missing. */
+/** [middle - half, middle + half]; nulls if a value is missing. */
 function around(middle, half) {
   return middle == null || half == null ? [null, null] : [middle - half, middle + half];
 }
 
-/** Least and greatest number with a margin; a flat line fills no axis shorter than `least`. */
+/** Smallest and largest number with a margin; the range is at least `least`. */
 function widened(values, least) {
   const numbers = values.filter((value) => value != null);
   if (numbers.length === 0) return [0, 1];
@@ -45,7 +45,7 @@ function curveHeight(width) {
   return Math.round(Math.min(340, Math.max(240, width * 0.5)));
 }
 
-/** The point of figure B that has this threshold among its own, if any. */
+/** The point of figure B whose thresholds include this one, if any. */
 function pointOf(row) {
   return curves.points.find(({rows}) => rows.includes(row));
 }
@@ -72,7 +72,7 @@ function showWholeCurves() {
   showRow();
 }
 
-/** Lets `draw` paint within the plot, in canvas pixels. */
+/** Lets `draw` paint only within the plot, in canvas pixels. */
 function withinPlot({ctx, bbox}, draw) {
   ctx.save();
   ctx.beginPath();
@@ -82,7 +82,7 @@ function withinPlot({ctx, bbox}, draw) {
   ctx.restore();
 }
 
-/** A published value: a hollow diamond. */
+/** Draws a published value as a hollow diamond. */
 function drawDiamond(chart, x, y, colour) {
   const {ctx} = chart;
   const [left, top] = [chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)];
@@ -100,8 +100,8 @@ function drawDiamond(chart, x, y, colour) {
 }
 
 /**
- * A chart in a figure's place. `onPoint(chart)` is called when the reader points at it; a drag
- * looks closer in both directions.
+ * Makes a chart in a figure's element. It calls `onPoint(chart)` when the reader points at it. A
+ * drag zooms in both directions.
  */
 function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cursor, draw,
                                  onPoint}) {
@@ -201,7 +201,7 @@ function buildThresholds(figure) {
   });
 }
 
-/** A row for each measure with its values at a threshold. Returns a function that shows them. */
+/** Makes one row for each measure. Returns a function that shows the values at a threshold. */
 function makeCurveLegend(figure) {
   const clock = make("span");
   const head = make("tr", {}, make("th", {scope: "col"}, clock));

@@ -1,4 +1,4 @@
-// What the figures show: the one table that the page and the files for papers are drawn from.
+// The table of figures, from which the page and the figure files for papers are drawn.
 #pragma once
 
 #include <array>
@@ -18,43 +18,43 @@ struct Column {
   double (*value)(std::span<const Sample> samples, std::size_t index);
 };
 
-/// Colours on paper, as in page.css; RunStyle() tells runs beyond the last apart. Under simulated
-/// protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first five are
-/// at least 25 apart in CIELAB, any two of all at least 15; on white each has a contrast of 3 or
-/// more.
+/// Colours on paper, as in page.css. RunStyle() distinguishes runs beyond the last colour. Under
+/// simulated protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first
+/// five colours are at least 25 apart in CIELAB, and any two of all at least 15. On white each has
+/// a contrast of 3 or more.
 inline constexpr std::array<std::string_view, 8> kPalette{
     "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
 inline constexpr std::size_t kPaletteSize = kPalette.size();
 
-/// Classes of page.css for what stands for the run of that place: its colour and, from the ninth
-/// run on, a core in its lines. 24 runs look different.
+/// Classes of page.css for the elements of the run with this index: its colour and, from the ninth
+/// run on, a core in its lines. They distinguish 24 runs.
 std::string RunStyle(std::size_t index);
 
-/// How a curve goes from one sample to the next.
+/// Course of a curve between two samples.
 enum class Hold {
   kLinear,
-  kSince,  // the value was there since the sample before, as an applied acceleration is
-  kUntil,  // the value stays until the next sample, as a command does
+  kSince,  // the value holds since the sample before, like an applied acceleration
+  kUntil,  // the value holds until the next sample, like a command
 };
 
 enum class Dash { kSolid, kDashed, kDotted, kDashDot, kLong };
 
-/// Who a curve is of: a quantity of the run, or a limit that it is compared with (always dashed).
+/// What a curve shows: a quantity of the run (main or detail), or a limit for it (always dashed).
 enum class Part { kMain, kDetail, kLimit };
 
 struct Curve {
   std::string_view column;
   std::string_view label;
   Hold hold;
-  int colour;  // of the palette, where the figure shows one run
-  Dash dash;   // where several runs share the axes and the colour says which run
-  Part part;   // a detail is hidden at first where several runs share the axes
+  int colour;  // index in the palette, for a figure with one run
+  Dash dash;   // for several runs on shared axes, where the colour distinguishes the runs
+  Part part;   // a detail is hidden at first if several runs share the axes
 };
 
-/// An area that means something: where one curve is below another.
+/// A shaded area with a meaning: one curve is below another one.
 struct Shade {
-  std::string_view below;  // a curve's column; "" for no area
-  std::string_view limit;  // the other's
+  std::string_view below;  // column of the lower curve; "" for no area
+  std::string_view limit;  // column of the other curve
   std::string_view meaning;
 };
 
@@ -64,12 +64,12 @@ struct Figure {
   std::string_view caption;
   std::string_view quantity;
   std::string_view unit;  // "" if none
-  int decimals;           // of a value that the reader points at
-  double least_span;      // an axis never shows less, so that noise does not look like an event
+  int decimals;           // of a value at the reader's cursor
+  double least_span;      // smallest range of an axis, so that noise does not look like an event
   std::span<const Curve> curves;
   Shade shade = {};
-  /// A panel for each run even where several share the axes: curves of noise laid over each other
-  /// cannot be read.
+  /// Whether each run gets a panel of its own even if runs share the axes elsewhere. Curves of
+  /// noise are unreadable on top of each other.
   bool strips = false;
 };
 
@@ -107,7 +107,7 @@ inline constexpr std::array kColumns{
     Column{"host_jerk_mps3", HostJerk},
 };
 
-/// Figures in their order; a figure's number is its place, from 1.
+/// Figures in their order. A figure's number is its index plus 1.
 std::span<const Figure> Figures();
 
 /// The column of that name.
@@ -117,16 +117,16 @@ const Column& ColumnNamed(std::string_view name);
 /// All values of a column.
 std::vector<double> Values(const Column& column, std::span<const Sample> samples);
 
-/// A time span, from begin_s to before end_s.
+/// A time span from begin_s up to, but not including, end_s.
 struct Window {
   double begin_s;
   double end_s;
 };
 
-/// When there is fog. A step lasts until the next sample.
+/// Time spans with fog. A step lasts until the next sample.
 std::vector<Window> FogWindows(std::span<const Sample> samples);
 
-/// When the human drives, that is, has any authority, as in measures.h.
+/// Time spans in which the human drives, that is, has any authority, as in measures.h.
 std::vector<Window> HumanWindows(std::span<const Sample> samples);
 
 }  // namespace fogline

@@ -1,6 +1,6 @@
-// Figure B: what safety costs. A point for each threshold, the Pareto front, the published points.
+// Figure B: the cost of safety. One point for each threshold, the Pareto front, and the published points.
 
-/** The place of the point nearest to the cursor. */
+/** Index of the point nearest to the cursor. */
 function nearestPoint(chart) {
   const {left, top} = chart.cursor;
   const distance = ({rhe, si}) =>
@@ -12,7 +12,7 @@ function nearestPoint(chart) {
   return best;
 }
 
-/** Thresholds below and beside their points, those first that matter most, where there is room. */
+/** Writes thresholds below or beside their points where there is room, the most important first. */
 function drawLabels(chart) {
   const {ctx, bbox} = chart;
   const pixel = devicePixelRatio;
@@ -38,7 +38,7 @@ function drawLabels(chart) {
   }
 }
 
-/** A ring around the point that the reader points at, with its thresholds. */
+/** Makes a ring around the point at the reader's cursor, with its thresholds. */
 function makeSpot(chart) {
   const text = make("span");
   const spot = make("div", {class: "spot", "aria-hidden": "true"}, text);

@@ -32,14 +32,14 @@ using File = std::unique_ptr<std::FILE, Close>;
   throw std::runtime_error(what + ": " + why);
 }
 
-/// A file without a name, which goes away by itself.
+/// A file without a name; it disappears when it is closed.
 File NamelessFile() {
   File file(std::tmpfile());
   if (file == nullptr) Fail("temporary file", std::strerror(errno));
   return file;
 }
 
-/// What is in `file`, from its beginning, without white space at the ends.
+/// The whole content of `file`, without white space at its ends.
 std::string TextOf(std::FILE* file) {
   std::string text;
   std::array<char, 4096> part{};
@@ -53,7 +53,7 @@ std::string TextOf(std::FILE* file) {
   return text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
 }
 
-/// Where a child's standard streams come from and go to.
+/// Standard streams of a child process.
 class Streams {
  public:
   Streams() { posix_spawn_file_actions_init(&actions_); }
@@ -70,8 +70,8 @@ class Streams {
   posix_spawn_file_actions_t actions_;
 };
 
-/// Exit status of gnuplot, in the form of waitpid(). The script is read as a file, not as if typed:
-/// gnuplot then ends at the first error.
+/// Runs gnuplot. @return its exit status, in the form of waitpid(). gnuplot reads the script as a
+/// file instead of typed input, so that it ends at the first error.
 int StatusOfGnuplot(const Streams& streams) {
   std::string name = "gnuplot";
   std::string ignore_personal_settings = "-d";
@@ -91,22 +91,23 @@ int StatusOfGnuplot(const Streams& streams) {
   return status;
 }
 
-/// How gnuplot is told of a format. Letters and lines have the same share of the picture in all.
+/// Settings of gnuplot for a format. Letters and lines have the same share of the picture in all
+/// formats.
 struct FormatRow {
   FigureFormat format;
   std::string_view suffix;
   std::string_view terminal;
-  double unit;  // of the terminal's size
+  double unit;  // of the terminal's size, per unit of kWidth
   std::string_view font;
   double font_scale;
   double line_width;
   double point_scale;
 };
 
-constexpr double kInches = 1.0 / 200;  // so that a PDF figure is 8 inches wide
+constexpr double kInches = 1.0 / 200;  // with it a PDF figure is 8 inches wide
 constexpr std::array kFormats{
     FormatRow{FigureFormat::kPng, "png", "pngcairo", 1, "sans", 1, 2, 1},
-    // Points of type are 4/3 of the unit in the cairo terminals, and 1 in svg.
+    // The unit of font sizes is 4/3 of the unit in the cairo terminals, and 1 in svg.
     FormatRow{FigureFormat::kSvg, "svg", "svg", 1, "sans-serif", 4.0 / 3, 2, 0.7},
     FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
 };
@@ -129,7 +130,7 @@ void RunGnuplot(const std::string& script, const std::filesystem::path& output) 
   streams.Connect(STDOUT_FILENO, picture.descriptor());
   streams.Connect(STDERR_FILENO, fileno(words.get()));
   const int status = StatusOfGnuplot(streams);
-  // Ctrl-C reaches gnuplot, too.
+  // Ctrl-C reaches gnuplot too, so an interrupt is checked before gnuplot's status.
   if (WasInterrupted()) throw Interrupted("interrupted; not all figures are written");
   if (status != 0) Fail("gnuplot", TextOf(words.get()));
   picture.Finish();
@@ -156,13 +157,13 @@ std::string Margins(const Place& place) {
 }
 
 std::string NameOfX(std::string_view name, double height) {
-  constexpr double kBelowPlot = 88;  // to the middle of the letters
+  constexpr double kBelowPlot = 88;  // distance to the middle of the letters
   return fmt::format("set label {} {} at graph 0.5, graph 0 center offset screen 0, {:.4f}\n",
                      kLabelOfX, GnuplotString(name), -kBelowPlot / height);
 }
 
 std::string NameOfY(std::string_view name, double middle) {
-  constexpr double kFromLeft = 38;  // to the middle of the letters
+  constexpr double kFromLeft = 38;  // distance to the middle of the letters
   return fmt::format("set label {} {} at screen {:.4f}, screen {:.4f} center rotate\n", kLabelOfY,
                      GnuplotString(name), kFromLeft / kWidth, middle);
 }

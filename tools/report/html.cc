@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kNone = "–";
 constexpr std::string_view kMinus = "−";
 
-/// The character reference that must stand for `c`, "" if it may stand for itself.
+/// The character reference for `c`; "" if `c` needs none.
 std::string_view Entity(char c) {
   switch (c) {
     case '&':

@@ -1,5 +1,5 @@
-// The legend of a figure: a row for each curve, a column for each run, the values at the cursor's
-// time in between; and the keys of the shades.
+// The legend of a figure: one row for each curve, one column for each run, with the values at the cursor's
+// time. It also has the keys of the shades.
 
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
@@ -8,7 +8,7 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** A short piece of a line. */
+/** Makes a short piece of a line. */
 function lineSwatch(stroke, dash, width) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
@@ -22,14 +22,14 @@ function lineSwatch(stroke, dash, width) {
   return svg;
 }
 
-/** A short piece of the curve, as it is drawn. */
+/** Makes a short piece of the curve in the style of the figure. */
 function swatch(curve, overlaid, shared) {
   const {palette, ink, shared: sharedColour} = state.theme;
   const stroke = !overlaid ? palette[curve.colour] : shared ? sharedColour : ink;
   return lineSwatch(stroke, overlaid || curve.limit ? curve.dash : [], curve.limit ? 2 : 2.5);
 }
 
-/** What marks and shades mean: [[class of the mark, text]]. */
+/** Explains marks and shades: [[class of the mark, text]]. */
 function makeKeys(keys) {
   return make("ul", {class: "keys"}, ...keys.map(([name, text]) =>
       make("li", {}, make("span", {class: `key ${name}`}), text)));
@@ -52,7 +52,7 @@ function shadeKeys(figure) {
 }
 
 /**
- * Fills `element` with the legend; `onToggle(curve)` is called when the reader shows or hides a
+ * Fills `element` with the legend. It calls `onToggle(curve)` when the reader shows or hides a
  * curve. Returns a function that shows the values at a time.
  */
 function makeLegend(element, figure, onToggle) {

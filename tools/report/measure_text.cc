@@ -15,10 +15,10 @@ namespace {
 constexpr int kSignificant = 4;
 constexpr std::string_view kPercent = "%";
 
-/// Decimals beyond which a measure of that unit says nothing about traffic.
+/// Largest number of decimals that are meaningful for a measure of this unit in traffic.
 int DecimalsOfUnit(std::string_view unit) {
   constexpr int kOther = 3;  // a millimetre, a millimetre per second ...
-  // Percentages are printed as the paper prints them.
+  // Percentages have the decimals of the paper.
   constexpr std::array<std::pair<std::string_view, int>, 5> kDecimals{
       {{kPercent, 2}, {"s", 2}, {"s2", 2}, {"1/min", 2}, {"1/h", 1}}};
   const auto* const found =

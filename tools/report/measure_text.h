@@ -1,5 +1,5 @@
-// How a measure's number is printed for a reader, on the page and in a terminal. JSON and CSV have
-// all digits.
+// Formats a measure's number for a reader, on the page and in a terminal. JSON and CSV have all
+// digits.
 #pragma once
 
 #include <string>
@@ -9,18 +9,19 @@
 
 namespace fogline {
 
-/// The longest time to collision that is printed as a number, s. It grows without bound as two
-/// speeds become equal. At a gap of 36 m, 1000 s are a closing speed of 4 cm/s, which is as small
-/// as the noise of a radar's range rate; critical ones are below 4 s (measures.critical_ttc_s).
+/// The longest time to collision that is printed as a number, s. The time grows without bound as
+/// two speeds become equal. At a gap of 36 m, 1000 s correspond to a closing speed of 4 cm/s, which
+/// is as small as the noise of a radar's range rate. Critical times are below 4 s
+/// (measures.critical_ttc_s).
 inline constexpr double kLongestTtc_s = 1000;
 
 /// Whether a measure of that name is a time to collision.
 bool IsTimeToCollision(std::string_view name);
 
-/// A finite value with the digits that mean something: at most those of the unit (a millimetre, a
-/// hundredth of a second), and at most four significant ones, percentages apart. A whole number
-/// without unit has no decimals. 0 is "0", and what is not 0 but rounds to it is "< 0.001" or
-/// "> -0.001". A time to collision above kLongestTtc_s is "> 1000".
+/// A finite value with its meaningful digits: at most those of the unit (a millimetre, a hundredth
+/// of a second), and, except for percentages, at most four significant digits. A whole number
+/// without unit has no decimals. 0 is "0". Another value that rounds to 0 is "< 0.001" or ">
+/// -0.001". A time to collision above kLongestTtc_s is "> 1000".
 /// @param name as in VisitMeasures()
 std::string MeasureText(std::string_view name, double value, std::string_view unit);
 

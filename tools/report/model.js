@@ -1,10 +1,10 @@
 "use strict";
-// What the page shows: the runs and figures that it carries, and what the reader has chosen.
+// State of the page: the runs and figures that it contains, and the reader's choices.
 
 const report = JSON.parse(document.getElementById("report-data").textContent);
 
 const PALETTE_SIZE = 8;
-const CORES = 3;  // a line is plain, or has a core of the page's colour, or of the ink's
+const CORES = 3;  // a line is plain, or has a core in the colour of the page or of the ink
 
 report.runs.forEach((run, index) => {
   run.index = index;
@@ -13,12 +13,12 @@ report.runs.forEach((run, index) => {
 });
 
 const state = {
-  runs: report.runs,  // those in the figures
-  apart: true,        // a panel for each run, instead of all in one
-  hidden: new Map(),  // names of the columns that a figure leaves out, by figure id
-  time: 0,            // where the cursor is, in s
-  span: [0, 1],       // what the time axes show, in s
-  zoomed: false,      // whether that is less than the whole
+  runs: report.runs,  // runs that the figures show
+  apart: true,        // whether each run has a panel of its own
+  hidden: new Map(),  // names of the columns that a figure hides, by figure id
+  time: 0,            // of the cursor, in s
+  span: [0, 1],       // range of the time axes, in s
+  zoomed: false,      // whether the range is less than the whole
   theme: null,
 };
 
@@ -41,7 +41,7 @@ function readTheme() {
   };
 }
 
-/** Place of the last of ascending `values` that is at most `x`; 0 if there is none. */
+/** Index of the last value that is at most `x`; 0 if there is none. `values` ascend. */
 function placeOf(values, x) {
   let low = 0;
   let high = values.length;
@@ -53,13 +53,13 @@ function placeOf(values, x) {
   return Math.max(0, low - 1);
 }
 
-/** Time between samples of the first run in the figures that has several, in s. */
+/** Time between samples, in s, of the first shown run that has several samples. */
 function timeStep() {
   const run = state.runs.find(({columns}) => columns.time_s.length > 1);
   return run ? run.columns.time_s[1] - run.columns.time_s[0] : 1;
 }
 
-/** Place of the sample nearest to that time; -1 after the end of the run. */
+/** Index of the sample nearest to this time; -1 after the end of the run. */
 function sampleAt(run, time) {
   const times = run.columns.time_s;
   const place = placeOf(times, time);
@@ -69,7 +69,7 @@ function sampleAt(run, time) {
   return times[next] - time < time - times[place] ? next : place;
 }
 
-/** First and last time of the runs in the figures. */
+/** First and last time of the shown runs. */
 function wholeSpan() {
   let first = Infinity;
   let last = -Infinity;
@@ -81,7 +81,7 @@ function wholeSpan() {
   return first < last ? [first, last] : [0, 1];
 }
 
-/** When, in the fog, the follower's gap is furthest below its safe distance; else its middle. */
+/** Time at which, in fog, the follower's gap is furthest below its safe distance; else the middle. */
 function tellingTime() {
   let worst = 0;
   let time = null;
@@ -96,17 +96,17 @@ function tellingTime() {
   return time ?? (fog ? (fog[0] + fog[1]) / 2 : wholeSpan()[0]);
 }
 
-/** True if several runs are laid over each other, in the figures that can be read so. */
+/** Whether several runs are drawn on top of each other, in the figures that allow it. */
 function sharesAxes() {
   return state.runs.length > 1 && !state.apart;
 }
 
-/** True if several runs share the figure's axes: a colour then says which run, a dash which curve. */
+/** Whether runs share the figure's axes: then the colour names the run and the dash the curve. */
 function isOverlaid(figure) {
   return sharesAxes() && !figure.strips;
 }
 
-/** Hides the details where several runs share the axes, and shows them else. */
+/** Hides the details if several runs share the axes, and shows them otherwise. */
 function resetHidden() {
   for (const figure of report.figures) {
     const details = figure.curves.filter((curve) => curve.detail);
@@ -119,14 +119,14 @@ function visibleCurves(figure) {
   return figure.curves.filter((curve) => !state.hidden.get(figure.id).has(curve.column));
 }
 
-/** True if the curve is one and the same in all these runs. */
+/** Whether the curve is the same in all these runs. */
 function isShared(runs, column) {
   const [first] = runs;
   return runs.every(({columns}) => columns[column] === first.columns[column] &&
                                    columns.time_s === first.columns.time_s);
 }
 
-/** What the axis of a figure's values shows while its time axes show [from, to]. */
+/** Range of a figure's value axis while its time axes show [from, to]. */
 function valueSpan(figure, from, to) {
   let low = Infinity;
   let high = -Infinity;

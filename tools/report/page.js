@@ -1,4 +1,4 @@
-// The page: builds the figures for what the reader has chosen, and keeps them in step.
+// The page: builds the figures for the reader's choices, and keeps them in step.
 
 const page = {
   charts: [],   // of all figures
@@ -10,7 +10,7 @@ const page = {
   whole: document.getElementById("whole"),
 };
 
-/** Runs `work` once before the next picture, however often it is asked for. */
+/** Runs `work` once before the next frame, however often it is requested. */
 function oncePerFrame(work) {
   let asked = false;
   return () => {
@@ -62,7 +62,7 @@ const fitCharts = oncePerFrame(() => {
 
 const sizes = new ResizeObserver(fitCharts);
 
-/** One panel for all runs where they are overlaid, else a panel for each. */
+/** One panel for all runs if they are overlaid, otherwise one for each run. */
 function panelsOf(figure) {
   return isOverlaid(figure) ? [state.runs] : state.runs.map((run) => [run]);
 }
@@ -117,13 +117,13 @@ function build() {
   showTime();
 }
 
-/** All figures again, such as in other colours. */
+/** Draws all figures again, for example in other colours. */
 function draw() {
   build();
   buildCurves();
 }
 
-/** After a change of what is compared. */
+/** Applies a change of the compared runs. */
 function compare(change) {
   const shared = sharesAxes();
   change();

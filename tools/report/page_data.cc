@@ -21,7 +21,8 @@ std::string Dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// Six decimals are a micrometre, and a third of the bytes. Beyond 1e9 a double has no more anyway.
+/// Rounds to six decimals, a micrometre: the text has a third of the bytes. Beyond 1e9 a double has
+/// no more decimals.
 double Rounded(double value) {
   constexpr double kGrid = 1e6;
   constexpr double kLargest = 1e9;
@@ -29,7 +30,7 @@ double Rounded(double value) {
   return std::round(value * kGrid) / kGrid + 0.0;  // + 0.0: no negative zero
 }
 
-/// Columns as JSON texts, equal ones once.
+/// Columns as JSON texts, each text stored once.
 class ColumnPool {
  public:
   std::size_t Place(const std::vector<double>& values) {
@@ -51,7 +52,7 @@ class ColumnPool {
 
  private:
   std::map<std::string, std::size_t> places_;
-  std::vector<std::string_view> texts_;  // into places_
+  std::vector<std::string_view> texts_;  // views of the keys of places_
 };
 
 std::string_view TextOf(Hold hold) {

@@ -1,4 +1,4 @@
-// What the page's script draws: figures and runs as JSON.
+// Data for the page's script: figures and runs as JSON.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 namespace fogline {
 
 /// JSON text: {"figures": [...], "columns": [[...], ...], "runs": [...], "curves": {...} or null}.
-/// A run names its columns by their places in "columns", where equal ones stand once: curves that
-/// runs share have one place. Their numbers are rounded to 1e-6; NaN is null.
+/// A run refers to its columns by their indices in "columns". Equal columns are stored once, so
+/// runs with equal curves share an index. Numbers of columns are rounded to 1e-6; NaN is null.
 std::string PageData(std::span<const ReportRun> runs,
                      const std::optional<ReportCurves>& curves = std::nullopt);
 

@@ -1,4 +1,4 @@
-// Figures A and B as files, for a paper.
+// Figures A and B as files for a paper.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,20 +22,21 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kSi = kPalette[0];
 constexpr std::string_view kRhe = kPalette[1];
-constexpr std::string_view kLight = "d8";  // how transparent the bands are, of ff
+constexpr std::string_view kLight = "d8";  // transparency of the bands, of ff
 constexpr std::string_view kDark = "98";
 constexpr double kHeight = 1000;              // in the unit of kWidth
-constexpr double kLeastThresholdSpan = 0.01;  // of an axis, so that a flat line does not fill it
+constexpr double kLeastThresholdSpan = 0.01;  // smallest range of an axis, so that a flat line does
+                                              // not fill it
 constexpr double kLeastPercentSpan = 1;
 
 std::string Number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "NaN"; }
 
-/// "#aarrggbb" of "#rrggbb", as gnuplot has it.
+/// "#rrggbb" as "#aarrggbb", the form of gnuplot.
 std::string Transparent(std::string_view colour, std::string_view alpha) {
   return fmt::format("#{}{}", alpha, colour.substr(1));
 }
 
-/// Mean, ends of its confidence interval, ends of the percentiles.
+/// Mean, ends of its confidence interval, and percentiles.
 std::string Cells(const Summary& of) {
   const double mean = of.mean.value_or(kNone);
   const double half = of.ci95.value_or(kNone);
@@ -61,7 +62,7 @@ std::string PublishedBlock(const ReportCurves& curves) {
   return block + "EOD\n";
 }
 
-/// RHE, SI, and whether it is on the front.
+/// RHE, SI, and whether the point is on the front.
 std::string PointsBlock(const std::vector<FrontPoint>& points) {
   std::string block = "$points << EOD\n";
   for (const FrontPoint& point : points) {
@@ -71,9 +72,9 @@ std::string PointsBlock(const std::vector<FrontPoint>& points) {
   return block + "EOD\n";
 }
 
-/// Commands for the thresholds below and beside their points, where there is room.
+/// Commands that write the thresholds below or beside their points, where there is room.
 std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& points) {
-  constexpr double kWidePct = 9;  // least distance of labels, in engagement or safety
+  constexpr double kWidePct = 9;  // smallest distance of labels, in engagement or safety
   constexpr double kHighPct = 4;
   std::vector<const FrontPoint*> labelled;
   std::string commands;
@@ -95,7 +96,7 @@ std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& po
   return commands;
 }
 
-/// Two bands of a measure whose mean is in `column`.
+/// The two bands of a measure whose mean is in `column`.
 std::string Bands(int column, std::string_view colour) {
   return fmt::format(
       "$curves using 1:{}:{} with filledcurves fillcolor rgb '{}' fillstyle solid noborder "
@@ -121,8 +122,8 @@ std::string Key(const std::vector<std::string>& entries) {
       fmt::join(entries, ", \\\n     "));
 }
 
-/// "set xrange" for all of `values` with a margin, NaN left out; a flat line fills no axis shorter
-/// than `least`.
+/// "set xrange" for all `values` except NaN, with a margin. The range is at least `least`, so that
+/// a flat line does not fill the axis.
 std::string Range(char axis, const std::vector<double>& values, double least) {
   constexpr double kMargin = 0.04;
   double low = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
-// The figures as files, for a paper: the panels of a figure share their axes, the key stands
-// above them.
+// The figures as files for a paper. The panels of a figure share their axes, and the key is above
+// them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -31,7 +31,8 @@ struct Span {
   double high;
 };
 
-/// Where the panels lie: below each other up to three, else in two columns; the key above them.
+/// Positions of the panels: up to three below each other, more in two columns. The key is above
+/// them.
 class Layout {
  public:
   explicit Layout(std::size_t panels)
@@ -44,7 +45,7 @@ class Layout {
   bool IsLeft(std::size_t panel) const { return panel % columns_ == 0; }
   bool IsLowest(std::size_t panel, std::size_t panels) const { return panel + columns_ >= panels; }
 
-  /// Of a panel.
+  /// Position of a panel.
   Place PlaceOf(std::size_t panel) const {
     const auto column = static_cast<double>(panel % columns_);
     const auto row = static_cast<double>(panel / columns_);
@@ -56,13 +57,13 @@ class Layout {
             top / height_};
   }
 
-  /// Middle of all panels, from below.
+  /// Middle of all panels, measured from below.
   double Middle() const { return (1 + (kRoomBelow - above_) / height_) / 2; }
 
   Place PlaceOfKey() const { return {0, 1, 1 - kRoomOfKey / height_, 1}; }
 
  private:
-  static constexpr double kLeastHeight = 1000;  // in the unit of kWidth, as are the following
+  static constexpr double kLeastHeight = 1000;  // in the unit of kWidth, as the following lengths
   static constexpr double kName = 50;
   static constexpr double kRowGap = 75;
   static constexpr double kColumnGap = 64;
@@ -75,7 +76,7 @@ class Layout {
   double height_;
 };
 
-/// Least and greatest value of some columns over all runs.
+/// Smallest and largest value of these columns over all runs.
 Span SpanOf(std::span<const ReportRun> runs, std::span<const Curve> curves) {
   Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const ReportRun& run : runs) {
@@ -90,7 +91,7 @@ Span SpanOf(std::span<const ReportRun> runs, std::span<const Curve> curves) {
   return span.low <= span.high ? span : Span{0, 1};
 }
 
-/// `span` with a margin, and no shorter than `least`.
+/// `span` with a margin, and at least `least` long.
 Span Widened(Span span, double least) {
   constexpr double kHalfWithMargin = 0.56;
   const double middle = (span.low + span.high) / 2;
@@ -108,14 +109,14 @@ Span TimeSpanOf(std::span<const ReportRun> runs) {
   return span.low < span.high ? span : Span{0, 1};
 }
 
-/// A line without a value: gnuplot refuses an empty block.
+/// A line without values, because gnuplot refuses an empty block.
 std::string NoValues(std::size_t curves) {
   std::string line = "NaN";
   for (std::size_t i = 0; i < curves; ++i) line += " NaN";
   return line + '\n';
 }
 
-/// The curves' values as a gnuplot data block: time first, a column for each curve.
+/// The curves' values as a gnuplot data block: time first, then one column for each curve.
 std::string DataBlock(std::size_t number, const ReportRun& run, std::span<const Curve> curves) {
   const std::span<const Sample> samples = run.samples;
   std::string block = fmt::format("$run{} << EOD\n", number);
@@ -150,7 +151,7 @@ std::string Shades(const ReportRun& run) {
          Rectangles(human, kHumanLines, "transparent pattern 4");
 }
 
-/// How a curve is drawn: width, dashes, colour.
+/// Line style of a curve: width, dashes, colour.
 std::string LineOf(const Curve& curve) {
   return fmt::format("linewidth {} dashtype {} linecolor rgb '{}'",
                      curve.part == Part::kDetail ? 1.0 : 1.5,
@@ -170,7 +171,7 @@ std::string_view StyleOf(Hold hold) {
   return "lines";
 }
 
-/// Of a curve in its data block, from 1.
+/// gnuplot's column of a curve in its data block. gnuplot counts from 1, and column 1 is the time.
 std::size_t PlaceOf(const Figure& figure, std::string_view column) {
   const auto found = std::ranges::find(figure.curves, column, &Curve::column);
   return static_cast<std::size_t>(found - figure.curves.begin()) + 2;
@@ -193,7 +194,7 @@ std::string Plot(const Figure& figure, std::size_t number) {
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
-/// The key, as a plot of nothing else.
+/// The key, as a plot that has nothing else.
 std::string Key(const Figure& figure, const Layout& layout) {
   std::vector<std::string> parts{"NaN notitle"};
   for (const Curve& curve : figure.curves) {

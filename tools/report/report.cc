@@ -44,7 +44,7 @@ std::string CollisionFact(const RunMeasures& measures) {
                           Decimal(*measures.collision_time_s, 1)));
 }
 
-/// Where a run comes from: its log, scenario and seed.
+/// Origin of a run: its log, scenario and seed.
 std::string OriginElement(const ReportRun& run) {
   std::string parts;
   for (const std::string& part : {run.log, run.scenario_title}) {
@@ -53,20 +53,20 @@ std::string OriginElement(const ReportRun& run) {
   return fmt::format("<span class=\"origin\">{}seed {}</span>", parts, run.seed);
 }
 
-/// How far a log goes that is not complete; nothing if it is.
+/// Where an incomplete log ends; "" for a complete one.
 std::string ShortageElement(const ReportRun& run) {
   if (run.shortage.empty()) return "";
   return fmt::format("<span class=\"origin\">{}</span>", EscapeHtml(run.shortage));
 }
 
-/// Says that a log is not complete; nothing if it is.
+/// A badge for an incomplete log; "" for a complete one.
 std::string BadgeElement(const ReportRun& run) {
   if (run.shortage.empty()) return "";
   return fmt::format(" <span class=\"badge\" title=\"{}\">{}</span>", EscapeHtml(run.shortage),
                      BadgeOf(run));
 }
 
-/// One entry of the run selector: where the run comes from, and the run in four numbers.
+/// One entry of the run selector: the origin of the run, and four numbers.
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
@@ -128,7 +128,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
-/// "7", or "7 to 9" where the runs differ.
+/// "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   const auto less = [&](const ReportRun& a, const ReportRun& b) { return get(a) < get(b); };
@@ -153,7 +153,7 @@ std::string SummaryOf(std::span<const ReportRun> runs, const std::optional<Repor
   return summary;
 }
 
-/// Keeps numbers and what they count on one line.
+/// Keeps a number and the word after it on one line.
 std::string WithFixedNumbers(const std::string& text) {
   std::string fixed;
   for (std::size_t i = 0; i < text.size(); ++i) {

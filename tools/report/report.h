@@ -1,5 +1,5 @@
 // The report of runs: one self-contained HTML page, and figures as files for a paper. This library
-// draws what it is given. It reads no log and runs nothing.
+// only draws its input: it reads no log and runs nothing.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,37 @@
 
 namespace fogline {
 
-/// One number that judges a run.
+/// A number that rates a run.
 struct ReportMeasure {
   std::string name;
-  double value = 0;  // NaN where the run gives none
-  std::string unit;  // "" if none
+  double value = 0;  // NaN if the run has none
+  std::string unit;  // "" if it has none
   std::string description;
 };
 
-/// One run, as the report shows it. Every text may hold anything; it is escaped.
+/// A run for the report. Every text may contain any characters; the library escapes it.
 struct ReportRun {
   std::string name;        // such as "threshold 0.5", or the name of its log
   std::string log;         // name of its log; "" if there is none
-  std::string shortage;    // what its log lacks; "" if it is complete
-  Scenario scenario = {};  // as run: how the LiDAR is mounted, who may drive, how many steps
+  std::string shortage;    // the part that its log lacks; "" if the log is complete
+  Scenario scenario = {};  // the effective one, for the LiDAR's mounting, the arbitrator and the
+                           // number of steps
   std::string scenario_title;
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;
   std::string digest;
-  std::vector<Sample> samples;  // in the order of time
+  std::vector<Sample> samples;  // in order of time
   std::vector<ReportMeasure> measures;
   std::optional<double> si_pct =
       {};  // safety improvement over the paired run without traded control
 };
 
-/// The paper's table. Standard deviations are those over seeds; published values come from the
-/// scenario.
+/// The paper's table. Standard deviations are over seeds; published values come from the scenario.
 struct ReportTable {
   struct Row {
     double threshold = 0;
-    std::optional<std::int64_t> seed = {};  // where rows are of several seeds
-    double si_pct = 0;                      // NaN where no seed has one
+    std::optional<std::int64_t> seed = {};  // if rows have different seeds
+    double si_pct = 0;                      // NaN if no seed has one
     double rhe_pct = 0;
     std::optional<double> si_std_pct = {};
     std::optional<double> rhe_std_pct = {};
@@ -56,11 +56,11 @@ struct ReportTable {
   std::string note;  // such as "mean and standard deviation over seeds 1 to 200"; "" if none
 };
 
-/// SI and RHE against the threshold, over seeds.
+/// SI and RHE as functions of the threshold, over seeds.
 struct ReportCurves {
   struct Point {
     double threshold = 0;
-    Summary si_pct;  // of the seeds that have one
+    Summary si_pct;  // over the seeds that have SI
     Summary rhe_pct;
   };
   std::string scenario_title;
@@ -70,21 +70,21 @@ struct ReportCurves {
   std::vector<PublishedRow> published;
 };
 
-/// The whole page. It refers to nothing outside itself.
+/// The whole page. It refers to no other file.
 std::string MakeReport(std::span<const ReportRun> runs, const std::optional<ReportTable>& table,
                        const std::optional<ReportCurves>& curves = std::nullopt);
 
-/// What a figure is written as: pixels, or lines that can be enlarged.
+/// File format of a figure: pixels (PNG), or scalable lines (SVG, PDF).
 enum class FigureFormat { kPng, kSvg, kPdf };
 
-/// Writes one file for each figure into `dir` (made if missing), with gnuplot: a panel for each
-/// run, all with the same axes. Files are named figure-1-speeds.png and so on.
-/// @throws std::runtime_error with gnuplot's own words if it fails or is not installed
+/// Writes one file for each figure into `dir` (made if missing), with gnuplot: one panel for each
+/// run, all with the same axes. File names are figure-1-speeds.png and so on.
+/// @throws std::runtime_error with gnuplot's own message if it fails or is not installed
 void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
                   std::span<const ReportRun> runs);
 
 /// The same for the curves: figure-a-thresholds.png and figure-b-front.png.
-/// @throws std::runtime_error likewise
+/// @throws std::runtime_error as WriteFigures()
 void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
                        const ReportCurves& curves);
 

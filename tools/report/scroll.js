@@ -1,20 +1,20 @@
-// Tables that are wider than their place say so: a shade where they go on, and a line below.
+// Marks tables that are wider than their containers: a shade at the hidden side, and a line below.
 
-/** Marks a table's place by whether it can be scrolled, and whether something lies to the right. */
+/** Marks a table's container by whether it can be scrolled, and whether more is on the right. */
 function markScroll(element) {
   const {scrollWidth, clientWidth, scrollLeft} = element;
-  const slack = 2;  // pixels: widths are rounded
+  const slack = 2;  // pixels, because widths are rounded
   element.classList.toggle("wide", scrollWidth > clientWidth + slack);
   element.classList.toggle("more", scrollWidth > clientWidth + scrollLeft + slack);
 }
 
-// A mark changes the size of what is observed, so it waits for the next picture.
+// A mark changes the size of the observed element, so it waits for the next frame.
 const scrollSizes = new ResizeObserver((entries) => {
   const changed = new Set(entries.map(({target}) => target.closest(".scroll")));
   requestAnimationFrame(() => changed.forEach(markScroll));
 });
 
-/** Keeps the marks of all tables below an element true. */
+/** Keeps the marks of all tables below an element up to date. */
 function watchScrolls(root) {
   for (const element of root.querySelectorAll(".scroll")) {
     element.addEventListener("scroll", () => markScroll(element), {passive: true});

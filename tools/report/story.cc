@@ -20,10 +20,10 @@
 namespace fogline {
 namespace {
 
-constexpr std::size_t kMostSituations = 3;  // that have a sentence each
+constexpr std::size_t kMostSituations = 3;  // that get a sentence each
 constexpr std::size_t kMostRuns = 3;        // with traded control that a sentence names
 
-/// A run with what the story takes from it.
+/// A run with the values that the story uses.
 struct Told {
   const ReportRun* run;
   std::string name;
@@ -34,8 +34,8 @@ struct Told {
 
 using Group = std::vector<Told>;
 
-/// Runs that differ in their arbitrator alone, together, in the order of their first ones. Runs
-/// without a step tell nothing.
+/// Groups of runs that differ only in their arbitrator, in the order of their first runs. Runs
+/// without a step are left out.
 std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
   std::vector<std::pair<std::string, Group>> situations;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
   return parts;
 }
 
-/// "3.9 cm": a length with the digits that a reader needs.
+/// "3.9 cm": a length with a readable number of digits.
 std::string LengthText(double length_m) {
   constexpr double kMillimetres = 1e3;
   constexpr double kCentimetres = 1e2;
@@ -100,11 +100,11 @@ std::string FogText(std::span<const Sample> samples) {
   return "In fog " + Listed(spans, ", ");
 }
 
-/// What the LiDAR made of the fog, over all runs of a group.
+/// Errors of the LiDAR in fog, over all runs of a group.
 struct Deception {
-  double short_m = 0;  // largest error towards the car
+  double short_m = 0;  // largest length by which the LiDAR read short
   double far_m = 0;
-  double lost_s = 0;  // without an echo, in the run with the most of it
+  double lost_s = 0;  // time without an echo, in the run with the most of it
 };
 
 Deception DeceptionOf(const Group& group) {
@@ -149,7 +149,7 @@ std::string FogSentence(const Group& group) {
   return fmt::format("{} the LiDAR {}", fog, Listed(effects, ", "));
 }
 
-/// How safe a run was by itself.
+/// Safety of a run by itself.
 std::string SafetyText(const RunMeasures& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
   if (!measures.max_compromised_safety_m) return "no car collided";
@@ -158,8 +158,8 @@ std::string SafetyText(const RunMeasures& measures) {
                      LengthText(*measures.max_compromised_safety_m));
 }
 
-/// Whether a run's safety improvement says what became of the whole baseline. Where a log or a run
-/// ends early, it is of the steps before that.
+/// Whether a run's safety improvement covers the whole baseline. If a log or a run ends early, the
+/// improvement covers only the steps before the end.
 bool IsComparable(const Told& told, const Told* baseline) {
   const auto is_whole = [](const Told& run) {
     return run.run->shortage.empty() && !run.measures.collision_time_s;
@@ -167,7 +167,7 @@ bool IsComparable(const Told& told, const Told* baseline) {
   return baseline != nullptr && told.run->si_pct && is_whole(told) && is_whole(*baseline);
 }
 
-/// What a run came to, beside its pair without traded control, if there is one.
+/// Outcome of a run, compared with its pair without traded control, if there is one.
 std::string OutcomeText(const Told& told, const Told* baseline) {
   if (!IsComparable(told, baseline)) {
     const bool saved = baseline != nullptr && baseline->measures.collision_time_s &&
@@ -194,7 +194,7 @@ std::string TradedText(const Told& told, const Told* baseline) {
                      told.name, comma, DrivingText(told), OutcomeText(told, baseline));
 }
 
-/// "10 to 100", "7" of values as `text` prints them.
+/// "10 to 100", or "7", for values in the form of `text`.
 template <class Value, class Text>
 std::string RangeText(const std::vector<const Told*>& runs, Value value, Text text) {
   double least = std::numeric_limits<double>::infinity();
@@ -213,7 +213,7 @@ std::string HumanTimes(const std::vector<const Told*>& runs) {
   return fmt::format("the human drove for {} s", RangeText(runs, time, TimeText));
 }
 
-/// Of more runs than a sentence can name.
+/// Summary of more runs than a sentence can name.
 std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline) {
   std::string text =
       fmt::format("in {} runs with traded control {}", runs.size(), HumanTimes(runs));
@@ -252,14 +252,14 @@ std::string SentenceOf(const Group& group) {
   return fmt::format("{}.", fmt::join(parts, "; "));
 }
 
-/// What tells a situation from others: its title, if they differ in it, and its seed.
+/// Heading of a situation: its title, if titles differ, and its seed.
 std::string HeadingOf(const Group& group, bool with_title) {
   const ReportRun& run = *group.front().run;
   return with_title ? fmt::format("{}, seed {}: ", run.scenario_title, run.seed)
                     : fmt::format("Seed {}: ", run.seed);
 }
 
-/// Of more situations than can be told one by one.
+/// Summary of more situations than the story can list one by one.
 std::string SummedUp(const std::vector<Group>& situations) {
   std::vector<const Told*> runs;
   for (const Group& group : situations) {

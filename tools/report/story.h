@@ -1,5 +1,5 @@
-// What happened in the runs, in one sentence for each situation: what the fog did to the LiDAR,
-// what came of it without traded control, and what traded control made of it.
+// Tells the runs in one sentence for each situation: how the fog deceived the LiDAR, the outcome
+// without traded control, and the outcome with traded control.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace fogline {
 
-/// Plain text, "" of no run. Runs that differ in their arbitrator alone are of one situation and
-/// share a sentence; more than three situations are summed up in one. Every number is of the
-/// samples; the safety improvement is the run's `si_pct`.
+/// Plain text, "" without runs. Runs that differ only in their arbitrator belong to one situation
+/// and share a sentence. More than three situations are summarised in one sentence. Every number
+/// comes from the samples, except the safety improvement, which is the run's `si_pct`.
 std::string StoryOf(std::span<const ReportRun> runs);
 
 }  // namespace fogline

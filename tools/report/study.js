@@ -1,15 +1,15 @@
 "use strict";
-// The figures of a page of studies: lines with bands over a quantity, or a row of points with
-// whiskers for each category. Each has a legend that shows, hides, and gives the values at the
+// The figures of a page of studies: lines with bands over a quantity, or rows of points with whiskers, one
+// row for each category. Each figure has a legend that shows and hides series, and prints the values at the
 // cursor.
 
 const figures = JSON.parse(document.getElementById("study-data").textContent);
 
 const COLOURS = 8;
-const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];  // one for each round of the colours
-const SPREAD = 0.6;  // share of a category's row over which its series stand
+const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];  // one pattern for each round through the colours
+const SPREAD = 0.6;  // share of a category's row in which its series lie
 const ROW = {point: 11, line: 14, gap: 10, names: 0.44};  // in pixels; names: share of the width
-const MOST_IN_LEGEND = 8;  // series; the others wait behind "more"
+const MOST_IN_LEGEND = 8;  // series; "more" unfolds the others
 
 let theme = null;
 let charts = [];
@@ -40,10 +40,10 @@ function numberText(value) {
   return value < 0 ? `−${text}` : text;
 }
 
-/** A series' colour and dashes. Those that any figure of the same series shows at first are first. */
+/** Colour and dashes of a series. Series that some figure shows at first get the first colours. */
 const strokeOf = (figure, index) => theme.palette[figure.rank[index] % COLOURS];
 const dashOf = (figure, index) => DASHES[Math.floor(figure.rank[index] / COLOURS) % DASHES.length];
-/** Where a value lies on the axis, and what lies there. */
+/** Position of a value on the axis, and the value at a position. */
 const placeOfX = (figure, x) => figure.logX ? Math.log10(x) : x;
 const xAtPlace = (figure, place) => figure.logX ? 10 ** place : place;
 const placeOfY = (figure, y) => !figure.logY || y == null ? y : y > 0 ? Math.log10(y) : null;
@@ -64,7 +64,7 @@ function columnsOf(figure) {
   const [xs, ...columns] = uPlot.join(tables);
   const every = (first) => figure.series.map((_, i) => columns[3 * i + first]);
   const values = every(0);
-  // A value beyond the axis has a mark of its own, and no interval.
+  // A value beyond the axis has a special mark and no interval.
   const placed = (column, i) => column.map((y, k) => {
     if (isBeyond(figure, values[i][k])) return null;
     return placeOfY(figure, isBeyond(figure, y) ? figure.most : y);
@@ -73,7 +73,7 @@ function columnsOf(figure) {
           low: every(1).map(placed), high: every(2).map(placed)};
 }
 
-/** Least and greatest of the shown values and intervals, with a margin. */
+/** Range of the shown values and intervals, with a margin. */
 function valueSpan(chart, figure, {data, values, low, high}) {
   let least = Infinity;
   let most = -Infinity;
@@ -102,7 +102,7 @@ function placeSpan(figure, xs) {
   return [first - margin, last + margin];
 }
 
-/** A band along a line. */
+/** Draws a band along a line. */
 function drawBand(chart, xs, low, high, colour) {
   const {ctx} = chart;
   const places = xs.map((_, i) => i).filter((i) => low[i] != null && high[i] != null);
@@ -117,7 +117,7 @@ function drawBand(chart, xs, low, high, colour) {
   ctx.fill();
 }
 
-/** A whisker at each point of the rows. */
+/** Draws a whisker at each point of the rows. */
 function drawWhiskers(chart, xs, low, high, colour) {
   const {ctx} = chart;
   const half = 3 * devicePixelRatio;
@@ -138,7 +138,7 @@ function drawWhiskers(chart, xs, low, high, colour) {
   });
 }
 
-/** At the end of the axis, an arrow and the value of each point that lies beyond it. */
+/** Draws an arrow and the value at the end of the axis for each point beyond it. */
 function drawBeyond(chart, figure, {data, values}) {
   const {ctx} = chart;
   const pixel = devicePixelRatio;
@@ -180,7 +180,7 @@ function drawIntervals(chart, figure, {data, low, high}) {
   ctx.restore();
 }
 
-/** The legend's list: the series that are shown at first, and the others folded if they are many. */
+/** The legend's list: the initially shown series, and the others folded if they are many. */
 function legendList(figure, items) {
   const list = (parts) => make("ul", {}, ...parts);
   if (items.length <= MOST_IN_LEGEND) return [list(items)];
@@ -194,7 +194,7 @@ function legendList(figure, items) {
   return [list(first), more];
 }
 
-/** The legend: a button for each series. Returns what shows the values at a place. */
+/** Makes a legend with a button for each series. Returns a function that shows the values at a place. */
 function makeLegend(element, figure, chart, columns) {
   const at = make("p", {class: "at"});
   const values = [];
@@ -226,7 +226,7 @@ function makeLegend(element, figure, chart, columns) {
     const category = figure.categories[Math.round(x)];
     at.textContent = category ?? `${figure.xLabel}: ${numberText(xAtPlace(figure, x))}`;
     figure.series.forEach((_, i) => {
-      // In a category each series has a place of its own.
+      // In a category each series has a position of its own.
       const own = figure.categories.length
           ? columns.data[0].findIndex((other, k) => Math.round(other) === Math.round(x) &&
                                                     columns.values[i][k] != null)
@@ -237,7 +237,7 @@ function makeLegend(element, figure, chart, columns) {
   };
 }
 
-/** The name of a category in lines that are no wider than `room`, where words allow it. */
+/** The name of a category in lines no wider than `room`, unless a single word is wider. */
 function linesOf(name, room) {
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `12px ${theme.font}`;
@@ -250,7 +250,7 @@ function linesOf(name, room) {
   return {lines, width: Math.max(...lines.map((line) => pen.measureText(line).width))};
 }
 
-/** Names of the rows, their room, and the height of a row, in a chart of that width. */
+/** Names of the rows, the room for them, and the height of a row, in a chart of this width. */
 function rowsOf(figure, width) {
   const names = figure.categories.map((name) => linesOf(name, ROW.names * width));
   const lines = Math.max(...names.map((name) => name.lines.length));
@@ -274,7 +274,7 @@ function axis(more) {
           ticks: {...lines, size: 4}, gap: 5, ...more};
 }
 
-/** The values of x that there are, as long as their texts do not touch. */
+/** The existing values of x, without those whose texts would touch. */
 function loggedTicks(figure, chart) {
   const room = 34;  // pixels
   let last = -Infinity;
@@ -373,7 +373,7 @@ new ResizeObserver(() => {
     }
   }
 }).observe(document.body);
-/** What stays as it was at first, whatever the reader shows and hides. */
+/** Sets the properties that stay the same when the reader shows and hides series. */
 function prepare(figure) {
   const names = ({series}) => series.map(({name}) => name).join();
   const alike = figures.filter((other) => names(other) === names(figure));

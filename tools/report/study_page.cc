@@ -14,13 +14,13 @@ namespace {
 
 using nlohmann::json;
 
-// What the page draws needs no more digits, and equal pages come out of equal numbers.
+// The drawings of the page need no more digits. With rounding, equal numbers give equal pages.
 constexpr int kDigits = 6;
 
 json Numbers(const std::vector<double>& values) {
   json numbers = json::array();
   for (const double value : values) {
-    // Through text: the shortest double that prints so.
+    // Goes through text, for the shortest double that prints with these digits.
     numbers.push_back(std::isfinite(value) ? json(std::stod(fmt::format("{:.{}g}", value, kDigits)))
                                            : json(nullptr));
   }
@@ -46,7 +46,7 @@ json FigureData(const StudyFigure& figure) {
           {"series", std::move(series)}};
 }
 
-/// What a reader must know of the axis of y.
+/// Notes on the y axis for the reader.
 std::string ScaleText(const StudyFigure& figure) {
   if (figure.log_y) return " <span class=\"unit\">(logarithmic)</span>";
   if (!std::isfinite(figure.most)) return "";

@@ -1,5 +1,5 @@
-// One self-contained HTML page of studies: what each asked, what it found, in words, figures with
-// intervals, and tables. This file draws what it is given and runs nothing.
+// One self-contained HTML page of studies: each study's question, and its answer in words, figures
+// with intervals, and tables. This file only draws its input and runs nothing.
 #pragma once
 
 #include <limits>
@@ -9,28 +9,29 @@
 
 namespace fogline {
 
-/// One quantity of a figure. NaN: no value there; an interval may be missing too.
+/// One quantity of a figure. NaN marks a missing value; an interval may be missing too.
 struct StudySeries {
   std::string name;
   std::vector<double> x;  // ascending
   std::vector<double> y;
-  std::vector<double> low;  // of the interval around y; empty if there is none
+  std::vector<double> low;  // lower ends of the intervals around y; empty if there are none
   std::vector<double> high;
-  bool shown = true;  // at first; the reader can show and hide any
+  bool shown = true;  // at first; the reader can show and hide each series
 };
 
 struct StudyFigure {
-  std::string id;  // unique on the page, of letters, digits and "-"
+  std::string id;  // unique on the page; letters, digits and "-"
   std::string title;
   std::string caption;
   std::string x_label;
   std::string y_label;
-  /// Names of the places 0, 1, 2 ... of x: a row for each then, with points and whiskers, and lines
-  /// with bands else.
+  /// Names of the values 0, 1, 2 ... of x. With names, each gets a row with points and whiskers;
+  /// without names, the figure has lines with bands.
   std::vector<std::string> categories;
   bool log_x = false;
-  bool log_y = false;  // such as of times to collision, which go from seconds to half an hour
-  /// Values of y above it are marked at the end of the axis, so that they flatten no others.
+  bool log_y = false;  // such as for times to collision, which range from seconds to half an hour
+  /// Values of y above this limit are marked at the end of the axis, so that they do not flatten
+  /// the others.
   double most = std::numeric_limits<double>::infinity();
   std::vector<StudySeries> series;
 };
@@ -38,10 +39,10 @@ struct StudyFigure {
 struct StudyTable {
   std::string caption;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  // the first cell names the row
+  std::vector<std::vector<std::string>> rows;  // the first cell is the name of the row
 };
 
-/// What one study has to say. Every text may hold anything; it is escaped.
+/// Content of one study. Every text may contain any characters; it is escaped.
 struct StudySection {
   std::string name;  // such as "policy"
   std::string title;
@@ -52,10 +53,10 @@ struct StudySection {
   std::vector<StudyTable> tables;
 };
 
-/// The page. @param command how it was made, such as "fogline study all"
+/// The page. @param command that makes it, such as "fogline study all"
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections);
 
-/// The same in Markdown, without figures, to be read where HTML is not shown.
+/// The same in Markdown without figures, for places that do not show HTML.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 
 }  // namespace fogline

@@ -18,9 +18,9 @@ namespace fogline {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPercentDecimals = 2;  // as the paper prints them
+constexpr int kPercentDecimals = 2;  // as in the paper
 
-/// A table in a container that scrolls by itself, so that the page never does sideways.
+/// A table in a container that scrolls sideways by itself, so that the page never does.
 std::string Scrolling(std::string_view label, std::string_view head, std::string_view body) {
   return fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n"
@@ -41,7 +41,7 @@ std::string PercentCell(double value) {
   return fmt::format("<td>{}</td>", DataElement(value, kPercentDecimals));
 }
 
-/// A cell for our own value and, after it, its standard deviation, if it has one.
+/// Cells for our own value and its standard deviation, if it has one.
 std::string OwnCells(double value, const std::optional<double>& deviation) {
   const std::string spread =
       deviation ? fmt::format("± {}", DataElement(*deviation, kPercentDecimals)) : "";
@@ -73,10 +73,10 @@ std::string SummaryCells(const Summary& summary) {
   return cells;
 }
 
-/// A measure's place in the table: runs may have different ones.
+/// A row of the table of measures; runs may have different measures.
 struct MeasureRow {
   ReportMeasure measure;
-  std::vector<std::optional<double>> values;  // of each run, if it has the measure
+  std::vector<std::optional<double>> values;  // of each run; nullopt if the run lacks the measure
 };
 
 void Put(std::vector<MeasureRow>& rows, const ReportMeasure& measure, std::size_t run,
@@ -123,7 +123,7 @@ std::string UnitText(const std::string& unit) {
   return EscapeHtml(text);
 }
 
-/// What a measure is, its unit, and its name in JSON and CSV.
+/// Description of a measure, its unit, and its name in JSON and CSV.
 std::string HeadOf(const ReportMeasure& measure) {
   const bool described = !measure.description.empty();
   std::string head = EscapeHtml(described ? measure.description : measure.name);
@@ -134,7 +134,7 @@ std::string HeadOf(const ReportMeasure& measure) {
   return head;
 }
 
-/// The scenario's fields by JSON pointer; empty if the text is no JSON.
+/// The scenario's fields by JSON pointer; empty if the text is not JSON.
 nlohmann::json FieldsOf(const ReportRun& run) {
   const auto scenario =
       nlohmann::json::parse(run.scenario_json, nullptr, /*allow_exceptions=*/false);
@@ -220,7 +220,7 @@ std::string MeasureTable(std::span<const ReportRun> runs) {
 }
 
 std::string DifferenceTable(std::span<const ReportRun> runs) {
-  constexpr std::size_t kMostRows = 50;  // recorded speeds may differ in thousands of places
+  constexpr std::size_t kMostRows = 50;  // recorded speeds may differ in thousands of fields
   std::vector<nlohmann::json> fields;
   nlohmann::json pointers = nlohmann::json::object();  // ordered by key
   for (const ReportRun& run : runs) {

@@ -10,22 +10,23 @@
 
 namespace fogline {
 
-/// The reproduced table beside the published one.
+/// The reproduced table next to the published one.
 std::string ThresholdTable(const ReportTable& table);
 
-/// All values of the curves, a row for each threshold; `points` say which are on the front.
+/// All values of the curves, one row for each threshold; `points` tell which are on the front.
 std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
-/// Every measure that any run has, a row each, the runs side by side.
+/// Every measure that any run has: one row for each measure, one column for each run.
 std::string MeasureTable(std::span<const ReportRun> runs);
 
-/// The scenario fields in which the runs differ, the runs side by side; "" if there are none.
+/// The scenario fields in which the runs differ, with one column for each run; "" if there are
+/// none.
 std::string DifferenceTable(std::span<const ReportRun> runs);
 
 /// Name of a run, or its number if it has none.
 std::string RunName(std::span<const ReportRun> runs, std::size_t index);
 
-/// Says of a run whose log is not complete where it ends; "" if it is complete.
+/// A badge for a run whose log is not complete, with the end of the log; "" for a complete log.
 std::string BadgeOf(const ReportRun& run);
 
 }  // namespace fogline

@@ -2,10 +2,10 @@
 //
 //   LD_PRELOAD=.../libfogline_hear_loopback.so java ...
 //
-// Fogline sends that over loopback (services/runtime/lcm_sockets.h). On Linux a socket hears a
-// multicast group on every interface where any process has joined it, unless it says no
-// (IP_MULTICAST_ALL, see ip(7)). Java says no for each of its sockets, and LCM's Java gives no way to
-// name an interface; so this says nothing in Java's place.
+// Fogline sends that traffic over loopback (services/runtime/lcm_sockets.h). On Linux a socket hears a
+// multicast group on every interface where any process has joined it, unless the socket has IP_MULTICAST_ALL
+// switched off (see ip(7)). Java switches it off for each of its sockets, and LCM's Java library has no way
+// to name an interface. So this library ignores Java's call.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>

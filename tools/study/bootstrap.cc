@@ -10,13 +10,13 @@ namespace fogline {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTail = 0.025;  // on either side of an interval of 95 %
+constexpr double kTail = 0.025;  // at each end of an interval of 95 %
 
 }  // namespace
 
 void Resampling::Draw(std::int64_t replicate, std::vector<double>& weights) const {
   weights.assign(runs_, 0.0);
-  // The runs are what is random; the draws are as fixed as a table.
+  // The draws are fixed, like a table of random numbers. Only the runs are random.
   const Random random(0, stream_);
   const auto runs = static_cast<double>(runs_);
   const auto take = [&](double u) {

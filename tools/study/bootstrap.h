@@ -1,4 +1,4 @@
-// Intervals of what is no plain mean, by drawing the runs again (Efron 1979).
+// Intervals for statistics other than a plain mean, by resampling the runs (Efron 1979).
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,17 @@
 
 namespace fogline {
 
-/// Replicates of an interval: its ends then are known to a tenth of its width and better.
+/// Number of replicates for an interval. With it the ends are known to a tenth of its width or
+/// better.
 inline constexpr std::int64_t kReplicates = 1000;
 
-/// Resamples of a number of runs: as many draws from them, with replacement. The same on every
-/// machine. What is computed from equal weights is paired, run by run.
+/// Resamples a number of runs: as many draws from the runs, with replacement. The draws are the
+/// same on every machine. Statistics computed with equal weights are paired, run by run.
 class Resampling {
  public:
   Resampling(std::size_t runs, Stream stream) : runs_(runs), stream_(stream) {}
 
-  /// How often each run is in a replicate, `weights[run]`; the sum is the number of runs.
+  /// Sets `weights[run]` to the count of each run in a replicate; the sum is the number of runs.
   void Draw(std::int64_t replicate, std::vector<double>& weights) const;
 
  private:
@@ -28,12 +29,12 @@ class Resampling {
   Stream stream_;
 };
 
-/// Mean under weights of the values that are there (not NaN); NaN without one.
+/// Weighted mean of the present values (not NaN); NaN if there is none.
 double WeightedMean(std::span<const double> values, std::span<const double> weights);
 
 /// A value over n runs with the interval from the 2.5th to the 97.5th percentile of its replicates
-/// (Efron & Tibshirani 1993, 13.3). No interval with fewer than two runs, or where a replicate has
-/// no value.
+/// (Efron & Tibshirani 1993, 13.3). There is no interval for fewer than two runs, or if a replicate
+/// has no value.
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates);
 
 }  // namespace fogline

@@ -125,7 +125,7 @@ std::size_t ReferenceCase(const Comparison& comparison, std::size_t test_case) {
 std::string VerdictFinding(const Comparison& comparison, std::size_t variant, std::size_t other) {
   std::map<CaseVerdict, std::vector<std::string>> by_verdict;
   std::vector<std::string> same;
-  std::vector<std::string> same_runs;  // with either variant
+  std::vector<std::string> same_runs;  // with both variants
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     const std::string& label = comparison.cases()[c].name;
     if (comparison.HasSameRuns({c, variant}, {c, other})) {
@@ -138,7 +138,7 @@ std::string VerdictFinding(const Comparison& comparison, std::size_t variant, st
     }
     const CaseVerdict verdict = VerdictOfCase(comparison, c, variant, other);
     const bool collides =
-        verdict <= CaseVerdict::kCutShort;  // of the verdicts, those that are about collisions
+        verdict <= CaseVerdict::kCutShort;  // the verdicts up to this one are about collisions
     by_verdict[verdict].push_back(collides ? WithCollisions(comparison, c, variant, other) : label);
   }
   const auto list = [](std::string_view what, const std::vector<std::string>& of) {

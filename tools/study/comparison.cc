@@ -29,8 +29,7 @@ std::vector<ComparedMeasure> AllMeasures() {
   return all;
 }
 
-/// The scenario of every cell, case by case, each case beginning with its run without traded
-/// control.
+/// The scenario of every cell, case by case. Each case begins with its run without traded control.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
   std::vector<Scenario> scenarios;
@@ -209,7 +208,8 @@ StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::
       .y_label = info.unit.empty() ? NameForReaders(measure)
                                    : fmt::format("{} ({})", NameForReaders(measure), info.unit),
       .log_y = IsTimeToCollision(measure)};
-  // No car brakes harder (MADR, Cunto & Saccomanno 2008): beyond it is as good as a collision.
+  // No car brakes harder than this (MADR, Cunto & Saccomanno 2008). A larger value amounts to a
+  // collision.
   if (measure.ends_with("drac_mps2")) figure.most = MeasuresSection{}.madr_most_mps2;
   const std::size_t series = cases_on_axis ? variants_.size() : cases_.size();
   const std::size_t places = cases_on_axis ? cases_.size() : variants_.size();

@@ -1,6 +1,6 @@
-// Variants of who drives, compared in several cases over many seeds: what most studies are made of.
-// All variants of a case see the same noise, seed by seed, and are paired with the same run without
-// traded control.
+// Compares variants of the arbitrator in several cases over many seeds; most studies consist of
+// this. All variants of a case have the same noise, seed by seed. They are paired with the same run
+// without traded control.
 #pragma once
 
 #include <cstddef>
@@ -17,26 +17,25 @@
 
 namespace fogline {
 
-/// A scenario file and what is different in it.
+/// A scenario file with overrides.
 struct StudyCase {
   std::string name;
   std::string file;
-  std::vector<std::string> overrides;  // as of --set
-  std::string group;  // cases that differ in one thing only, such as those in the same fog
+  std::vector<std::string> overrides;  // in the form of --set
+  std::string group;  // of cases that differ in one respect only, such as those in the same fog
 };
 
-/// Who drives, and how. Its overrides concern the arbitrator alone: the run without traded control
-/// is the same for all variants of a case.
+/// A rule for who drives. Its overrides concern only the arbitrator, so all variants of a case
+/// share the run without traded control.
 struct StudyVariant {
   std::string name;
   std::vector<std::string> overrides;
 };
 
-/// The override that makes a run one without traded control.
+/// The override for a run without traded control.
 inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=none";
 
-/// Which measure of a run. The safety improvement and "collided" (1 or 0) stand beside those of
-/// VisitMeasures().
+/// A measure of a run: one of VisitMeasures(), the safety improvement, or "collided" (1 or 0).
 struct ComparedMeasure {
   std::string name;
   std::string unit;
@@ -54,44 +53,46 @@ struct Cell {
 
 class Comparison {
  public:
-  /// Runs everything. @throws InputError, StudyStopped
+  /// Runs all cells. @throws InputError, StudyStopped
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
-  /// Of runs that are made already. @param values by case, variant, measure and seed
-  /// @throws std::invalid_argument if there are not as many
+  /// Uses finished runs. @param values by case, variant, measure and seed
+  /// @throws std::invalid_argument if the number of values is wrong
   Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> variants, std::int64_t seeds,
              std::vector<double> values);
 
   const std::vector<StudyCase>& cases() const { return cases_; }
   const std::vector<StudyVariant>& variants() const { return variants_; }
   std::int64_t seeds() const { return seeds_; }
-  /// Runs made, with those that others were paired with.
+  /// Number of runs, including those without traded control.
   std::int64_t runs() const;
 
-  /// A measure in the runs of a cell, seed by seed; NaN where the run has none.
+  /// A measure in the runs of a cell, seed by seed; NaN if a run lacks it.
   std::span<const double> Values(Cell cell, std::string_view measure) const;
   Estimate Mean(Cell cell, std::string_view measure) const;
-  /// Of a - b, seed by seed.
+  /// The difference a - b, paired seed by seed.
   Estimate Difference(Cell a, Cell b, std::string_view measure) const;
-  /// How often a car collides.
+  /// Share of runs with a collision.
   EventShare Collisions(Cell cell) const;
-  /// How often a measure is at most `limit`, of the runs that have it. runs is 0 if none has.
+  /// Share of runs in which a measure is at most `limit`, among the runs that have it. `runs` is 0
+  /// if no run has it.
   EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
   /// Whether two cells have the same runs: every measure, seed by seed.
   bool HasSameRuns(Cell a, Cell b) const;
-  /// In how many pairs of runs at least one of the two ends early: it collides, or the two have
-  /// not as many steps. What is summed or averaged over time leaves out what would have followed.
+  /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
+  /// differ in length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
-  /// Place of the variant of that name. @throws std::out_of_range
+  /// Index of the variant of this name. @throws std::out_of_range
   std::size_t VariantNamed(std::string_view name) const;
 
   /// A summary of every measure of every cell, and its difference from variant `reference`.
   std::string Csv(std::size_t reference) const;
-  /// Points with intervals: the variants on the x axis and a series for each case, or the other way
-  /// about.
+  /// Points with intervals: either the variants are on the x axis and each case is a series, or the
+  /// other way round.
   StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                        bool cases_on_axis = false) const;
-  /// A row for each variant (or, of a single variant, for each case) with means and intervals.
+  /// One row for each variant (or, if there is a single variant, for each case) with means and
+  /// intervals.
   StudyTable TableOfCase(std::size_t test_case, std::span<const std::string_view> measures) const;
   StudyTable TableOfVariant(std::size_t variant, std::span<const std::string_view> measures) const;
 
@@ -107,7 +108,7 @@ class Comparison {
   std::vector<double> values_;  // by case, variant, measure, seed
 };
 
-/// "safety improvement (SI)": how findings and figures call a measure.
+/// The name of a measure in findings and figures, such as "safety improvement (SI)".
 std::string NameForReaders(std::string_view measure);
 
 }  // namespace fogline

@@ -10,11 +10,12 @@
 namespace fogline {
 namespace {
 
-// Draws of the resamples. Streams below 1000 are those of roles, 1000 and 1001 of study threshold.
+// Random streams of the resamples. Streams below 1000 belong to roles, 1000 and 1001 to study
+// threshold.
 constexpr Stream kClearAir{1002};
 constexpr Stream kFog{1003};
 
-/// One measure at one threshold, under weights of the seeds: by visibility.
+/// Delay and detection of one measure at one threshold, by visibility, with weights of the seeds.
 struct Detection {
   std::vector<double> delay_s;
   std::vector<double> share;
@@ -46,7 +47,7 @@ Detection DetectionAt(const DetectorRuns& runs, double threshold, std::span<cons
 struct Replicates {
   std::vector<Detection> of;
 
-  /// Of a quantity of each.
+  /// A quantity of each replicate.
   template <class Value>
   std::vector<double> Of(const Value& value) const {
     std::vector<double> values;
@@ -77,7 +78,7 @@ DetectionMeans MeansOf(const Detection& all, const Replicates& replicates, std::
   return means;
 }
 
-/// The interval of a - b, replicate by replicate.
+/// The interval of a - b, from the differences of the replicates.
 template <class Value>
 Estimate Difference(const Detection& all_a, const Replicates& a, const Detection& all_b,
                     const Replicates& b, std::int64_t seeds, const Value& value) {

@@ -1,4 +1,4 @@
-// Intervals of what detectors do at thresholds that are estimates themselves.
+// Intervals for the detection by detectors whose thresholds are estimates themselves.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace fogline {
 
-/// What is known of one measure: runs in clear air to find its threshold in, and the records of its
-/// scores in fog, by visibility and seed.
+/// Runs of one measure: those in clear air, from which its threshold is found, and the records of
+/// its scores in fog, by visibility and seed.
 struct DetectorRuns {
   std::span<const ClearRun> clear;
   std::span<const std::vector<ScoreRecords>> fog;
 };
 
-/// What a threshold comes to in fog.
+/// Detection in fog at a threshold.
 struct DetectionMeans {
   struct InFog {
     Estimate delay_s;
@@ -28,19 +28,19 @@ struct DetectionMeans {
   Estimate delay_s;  // mean over the visibilities
 };
 
-/// Two measures at once: what they do, and the first less the second.
+/// Detection by one measure, and its differences from the reference measure.
 struct DetectionComparison {
   DetectionMeans detector;
   std::vector<Estimate> delay_minus_other_s;  // by visibility
   Estimate mean_delay_minus_other_s;
 };
 
-/// Detection by each of `detectors`, and against the one at `reference`, which may be none. A fog
-/// that is missed has the delay `missed_s`. Means are those at the thresholds found in all runs.
-/// Intervals are a bootstrap of both halves at once: the runs in clear air are drawn again and a
-/// threshold is found in them, and the seeds of the fog are drawn again, the same for all
-/// visibilities and measures. Where every replicate has the same detection, or nearly, the interval
-/// of Clopper and Pearson is wider, and is taken.
+/// Detection by each of `detectors`, and its difference from the detector at `reference`
+/// (optional). An undetected fog counts with the delay `missed_s`. Means use the thresholds that
+/// all runs give. Intervals come from a bootstrap of both halves at once: it resamples the runs in
+/// clear air and finds a threshold in them, and it resamples the seeds of the fog, with the same
+/// draws for all visibilities and measures. If all or nearly all replicates have the same
+/// detection, the interval of Clopper and Pearson is wider, and is used instead.
 std::vector<DetectionComparison> CompareDetection(std::span<const DetectorRuns> detectors,
                                                   std::optional<std::size_t> reference,
                                                   double arl_zero_s, double missed_s);

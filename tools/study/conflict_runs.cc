@@ -17,25 +17,26 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kFogModels{"bias", "beam"};
 
-/// Noise of the sensors, and what the filter is told of it.
+/// Noise of the sensors; the filter has matching parameters.
 struct Noise {
   std::string_view name;
   double radar_m;
   double lidar_m;
 };
-// The optimistic one of paper.json; data sheet values of a Continental ARS408 at near and at far
-// range beside a Velodyne VLP-16.
+// The optimistic noise of paper.json; then data sheet values of a Continental ARS408 at near and at
+// far range, with a Velodyne VLP-16.
 constexpr std::array kNoises{Noise{"calibrated", 0.01, 0.01}, Noise{kUsualNoise, 0.1, 0.03},
                              Noise{"far-range", 0.4, 0.03}};
 
-// Filters and windows are full, and the track has settled.
+// After this time filters and windows are full, and the track has settled.
 constexpr double kWarmUp_s = 5;
 
-// Seeds in clear air: far from those in fog, and from each other.
+// First seeds in clear air: far from the seeds in fog, and from each other.
 constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 constexpr std::int64_t kValidationSeeds = 2'000'000'000;
 
-// Fog of this level and more counts as fog in ROC and AUC; less is neither fog nor clear air.
+// Fog of at least this level counts as fog in ROC and AUC. Weaker fog counts neither as fog nor as
+// clear air.
 constexpr double kFogLevel = 0.5;
 
 std::vector<std::string> Overrides(std::string_view fog, const Noise& noise) {
@@ -49,7 +50,7 @@ std::vector<std::string> Overrides(std::string_view fog, const Noise& noise) {
           fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)};
 }
 
-/// Tells the measures how the sensors are mounted.
+/// Gives the measures the mounting offset of the sensors.
 Scenario KnownMounting(Scenario scenario) {
   scenario.arbitrator.measure_offset_m = scenario.radar.bias_m - scenario.lidar.bias_m;
   return scenario;
@@ -73,7 +74,7 @@ Scenario InFog(const StudyContext& context, std::string_view fog, const Noise& n
   return scenario;
 }
 
-/// All measures in one run in clear air.
+/// The runs of all measures in clear air with one seed.
 using ClearRuns = std::vector<ClearRun>;
 
 ClearRuns RunClear(DetectorBench& bench, const Scenario& scenario, std::int64_t seed) {
@@ -91,7 +92,7 @@ ClearRuns RunClear(DetectorBench& bench, const Scenario& scenario, std::int64_t 
   return runs;
 }
 
-/// Runs in clear air by measure. `show` is told of each.
+/// Runs in clear air, by measure. It calls `show` after each run.
 template <class Show>
 std::vector<std::vector<ClearRun>> CollectClear(const StudyContext& context,
                                                 const Scenario& scenario, std::int64_t first_seed,
@@ -110,11 +111,11 @@ std::vector<std::vector<ClearRun>> CollectClear(const StudyContext& context,
   return by_measure;
 }
 
-/// What is known of a measure from clear air.
+/// Results of a measure in clear air.
 struct Calibrated {
-  std::vector<ClearRun> runs;  // for the threshold
+  std::vector<ClearRun> runs;  // from which the threshold is found
   DetectorThreshold threshold;
-  std::vector<std::vector<double>> scores;  // of other runs; by batch, sorted
+  std::vector<std::vector<double>> scores;  // of other runs, by batch, sorted
 };
 
 std::size_t BatchOf(std::int64_t unit) { return static_cast<std::size_t>(unit % kBatches); }
@@ -144,8 +145,8 @@ std::vector<Calibrated> Calibrate(const StudyContext& context, const Scenario& c
 
 /// One measure in one run with fog.
 struct FogRun {
-  ScoreRecords records;        // since the begin of the fog
-  std::vector<double> scores;  // in fog of kFogLevel and more
+  ScoreRecords records;        // from the beginning of the fog
+  std::vector<double> scores;  // in fog of at least kFogLevel
   double auc = 0;
   std::array<double, kFalsePositives.size()> true_positives{};
 };
@@ -173,8 +174,8 @@ std::vector<FogRun> RunFog(DetectorBench& bench, const Scenario& scenario, std::
   return runs;
 }
 
-/// Means over the runs of each batch, which are independent of each other: every one has runs in
-/// fog and in clear air of its own.
+/// Means over the runs of each batch. Batches are independent of each other, because each has its
+/// own runs in fog and in clear air.
 class BatchMeans {
  public:
   explicit BatchMeans(std::size_t batches) : sums_(batches, 0.0), counts_(batches, 0.0) {}
@@ -193,7 +194,7 @@ class BatchMeans {
   std::vector<double> counts_;
 };
 
-/// What the seeds of one condition left of one measure.
+/// Results of one measure over the seeds of one condition.
 struct Gathered {
   explicit Gathered(std::size_t batches)
       : auc(batches), true_positives(kFalsePositives.size(), BatchMeans(batches)) {}
@@ -225,7 +226,7 @@ std::vector<Gathered> RunCondition(const StudyContext& context, const Scenario& 
   return gathered;
 }
 
-/// What needs no threshold.
+/// Adds AUC and ROC, which need no threshold.
 void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   const std::vector<double> doc = gathered.front().auc.Result();
   for (const Gathered& one : gathered) {
@@ -239,7 +240,7 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   }
 }
 
-/// Seeds that are noticed, and how soon these are.
+/// Adds the number of seeds with an alarm, and the mean delay of these alarms.
 void AddDetected(std::span<const ScoreRecords> records, double threshold,
                  DetectorOutcome& detector) {
   for (const ScoreRecords& one : records) {
@@ -251,7 +252,7 @@ void AddDetected(std::span<const ScoreRecords> records, double threshold,
   detector.delay_if_detected_s /= static_cast<double>(detector.detected);
 }
 
-/// What needs one. `records` by measure, visibility and seed.
+/// Adds the results that need a threshold. `records` are by measure, visibility and seed.
 void AddDetection(std::span<const Calibrated> calibrated,
                   std::span<const std::vector<std::vector<ScoreRecords>>> records,
                   ConflictSet& set) {

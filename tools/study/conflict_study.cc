@@ -1,5 +1,5 @@
-// Study `conflict`: every measure of conflict as a detector of fog, at an equal rate of false
-// alarms.
+// Study `conflict`: compares every measure of conflict as a detector of fog, at an equal rate of
+// false alarms.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ std::string NameOfSet(const ConflictSet& set) {
   return fmt::format("{}, {} noise", set.fog, set.noise);
 }
 
-/// Measures that have a threshold, soonest first.
+/// Measures with a threshold, the shortest delay first.
 std::vector<std::size_t> Rank(const ConflictSet& set) {
   std::vector<std::size_t> ranked;
   for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
@@ -36,7 +36,8 @@ std::vector<std::size_t> Rank(const ConflictSet& set) {
   return ranked;
 }
 
-/// Those that are tests of their own: a twin of another is told with it, and counts once.
+/// Measures without those that are the same test as an earlier one: a twin is named with that
+/// measure and counts once.
 std::vector<std::size_t> WithoutTwins(std::span<const std::size_t> ranked) {
   std::vector<std::size_t> own;
   for (const std::size_t m : ranked) {
@@ -48,7 +49,7 @@ std::vector<std::size_t> WithoutTwins(std::span<const std::size_t> ranked) {
   return own;
 }
 
-/// "cusum (sprt is the same test)".
+/// Name of a measure with its twin, such as "cusum (sprt is the same test)".
 std::string NameWithTwin(std::size_t measure) {
   std::string name(NameOfMeasure(measure));
   for (const ConflictMeasureRow& row : ConflictMeasures()) {
@@ -57,10 +58,10 @@ std::string NameWithTwin(std::size_t measure) {
   return name;
 }
 
-/// Measures without a threshold, in two kinds.
+/// Measures without a determined threshold, of two kinds.
 struct Unranked {
-  std::vector<std::string> never;   // no alarm in clear air at all
-  std::vector<std::string> seldom;  // too few
+  std::vector<std::string> never;   // without an alarm in clear air
+  std::vector<std::string> seldom;  // with too few alarms
 };
 
 Unranked UnrankedOf(const ConflictSet& set) {
@@ -92,7 +93,7 @@ std::string UnrankedText(const ConflictSet& set) {
   return text;
 }
 
-/// Names, at most some of them.
+/// The names as text, shortened if there are many.
 std::string Listed(std::vector<std::string> names) {
   constexpr std::size_t kMost = 6;
   if (names.size() <= kMost) return ListText(names);
@@ -102,7 +103,7 @@ std::string Listed(std::vector<std::string> names) {
   return ListText(names);
 }
 
-/// The others against the Degree of Conflict, which is measure 0.
+/// Compares the other measures with the Degree of Conflict, which is measure 0.
 std::string AgainstDoc(const ConflictSet& set, std::span<const std::size_t> ranked) {
   std::vector<std::string> sooner;
   std::vector<std::string> later;
@@ -159,8 +160,9 @@ std::string FindingOf(const ConflictSet& set, std::span<const std::size_t> ranke
   return text + UnrankedText(set);
 }
 
-/// Whether a measure gives alarms as often in other runs in clear air as in those that its
-/// threshold was found in: given the alarms of both, those of the former are binomial.
+/// Whether a measure alarms as often in other runs in clear air as in those from which its
+/// threshold was found. Given the alarms in both sets, those in the other runs have a binomial
+/// distribution.
 bool AlarmsAsCalibrated(const DetectorThreshold& threshold) {
   const AlarmCount& found = threshold.calibrated;
   const AlarmCount& other = threshold.clear;
@@ -174,7 +176,7 @@ std::string ArlText(const AlarmCount& clear) {
   return fmt::format("{} [{}, {}]", Text(clear.ArlZero_s(), 0), Text(low, 0), Text(high, 0));
 }
 
-/// Whether thresholds keep what they promise in runs that they were not found in.
+/// Says whether thresholds keep their rate of false alarms in runs from which they were not found.
 std::string FindingOfArlZero(const ConflictSet& set, std::span<const std::size_t> ranked) {
   std::vector<std::string> others;
   std::int64_t as_calibrated = 0;
@@ -284,7 +286,7 @@ void AddPoint(StudySeries& series, double x, const Estimate& estimate) {
   series.high.push_back(estimate.high);
 }
 
-/// Shows the Degree of Conflict, the three soonest, and the latest.
+/// Shows the Degree of Conflict, the three fastest measures, and the slowest one.
 void ShowTelling(StudyFigure& figure, std::span<const std::size_t> ranked) {
   constexpr std::size_t kSoonest = 3;
   for (StudySeries& series : figure.series) series.shown = false;
@@ -295,7 +297,7 @@ void ShowTelling(StudyFigure& figure, std::span<const std::size_t> ranked) {
   if (!ranked.empty()) figure.series[ranked.back()].shown = true;
 }
 
-/// A quantity of every measure over the visibility.
+/// A quantity of every measure as a function of the visibility.
 StudyFigure OverVisibility(const ConflictSet& set, std::span<const std::size_t> ranked,
                            std::string id, std::string title, std::string y_label,
                            Estimate DetectorOutcome::*value) {
@@ -310,7 +312,7 @@ StudyFigure OverVisibility(const ConflictSet& set, std::span<const std::size_t> 
   for (std::size_t m = 0; m < ConflictMeasures().size(); ++m) {
     StudySeries& series = figure.series.emplace_back();
     series.name = NameOfMeasure(m);
-    // The densest fog comes last in a set, and first on the axis.
+    // The densest fog is last in a set and first on the axis.
     for (auto outcome = set.outcomes.rbegin(); outcome != set.outcomes.rend(); ++outcome) {
       AddPoint(series, outcome->condition.visibility_m, outcome->detectors[m].*value);
     }

@@ -10,7 +10,7 @@
 namespace fogline {
 namespace {
 
-constexpr double kTail = 0.025;  // on either side of an interval of 95 %
+constexpr double kTail = 0.025;  // at each end of an interval of 95 %
 
 }  // namespace
 
@@ -97,8 +97,9 @@ double ThresholdFinder::Threshold(double arl_zero_s) const {
   return Threshold(std::vector<double>(durations_s_.size(), 1.0), arl_zero_s);
 }
 
-// From above all scores down, score by score: each lets some runs end sooner, so the mean time to
-// an alarm falls. The first score with which it is too short is just below the threshold.
+// Starts above all scores and goes down, score by score. Each score lets some runs end sooner, so
+// the mean time to an alarm falls. The threshold is just above the first score for which this time
+// is too short.
 double ThresholdFinder::Threshold(std::span<const double> weights, double arl_zero_s) const {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   double alarms = 0;

@@ -1,4 +1,4 @@
-// Study `driver`: humans who see and judge less than the truth.
+// Study `driver`: humans who perceive and judge less than the truth.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -33,7 +33,8 @@ std::vector<StudyCase> Kinds() {
           {"all of it", "dense_fog.json", kWholeHuman}};
 }
 
-/// The paper's driver and a whole human in fog of every density: pairs of cases, after Kinds().
+/// The paper's driver and a complete human model in fog of every density: pairs of cases that
+/// follow Kinds().
 std::vector<StudyCase> Densities() {
   std::vector<StudyCase> cases;
   for (const double visibility_m : kVisibilities_m) {
@@ -55,7 +56,8 @@ constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
                                                          "max_abs_jerk_mps3",
                                                          "min_follower_ttc_s"};
 
-/// A measure over the visibility: without traded control, and with either driver.
+/// A measure as a function of the visibility: without traded control, and with each of the two
+/// drivers.
 StudyFigure OverVisibility(const Comparison& comparison, std::string_view measure, std::string id,
                            std::string title) {
   StudyFigure figure{.id = std::move(id),
@@ -88,7 +90,8 @@ StudyFigure OverVisibility(const Comparison& comparison, std::string_view measur
   return figure;
 }
 
-/// At which visibilities a whole human is worse than the paper's driver, and than nobody.
+/// Lists the visibilities at which the complete human model is worse than the paper's driver, and
+/// worse than no traded control.
 std::string FindingOfDensity(const Comparison& comparison) {
   std::vector<std::string> worse_than_paper;
   std::vector<std::string> worse_than_none;
@@ -136,7 +139,7 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   result.runs = comparison.runs();
   StudySection& section = result.section;
   section.findings = CaseFindings(comparison, 1);
-  section.findings.resize(1 + kinds);  // the densities have a sentence of their own
+  section.findings.resize(1 + kinds);  // one finding is for the densities
   section.findings.push_back(FindingOfDensity(comparison));
   section.figures = {
       OverVisibility(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",

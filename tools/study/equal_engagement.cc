@@ -11,7 +11,8 @@
 namespace fogline {
 namespace {
 
-// Draws of the resamples. Streams below 1000 are those of roles, 1000 is the mix of situations.
+// Random stream of the resamples. Streams below 1000 belong to roles, 1000 to the mix of
+// situations.
 constexpr Stream kSituations{1001};
 
 CurvePoint PointOf(const RuleValues& rule, std::span<const double> weights) {
@@ -25,7 +26,7 @@ std::vector<CurvePoint> CurveOf(std::span<const RuleValues> fixed,
   return curve;
 }
 
-/// As BestAt(), of the curve's end where the RHE is beyond it.
+/// Gain as by BestAt(). If the RHE is beyond the curve, the end of the curve counts.
 double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   const auto [least, most] = std::ranges::minmax(curve, {}, &CurvePoint::rhe_pct);
   const std::optional<CurvePlace> place =
@@ -33,15 +34,16 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// As BestOfAtMost(), of the point that engages least where none engages as little.
+/// Gain as by BestOfAtMost(). If no point engages so little, the point with the smallest RHE
+/// counts.
 double GainOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
   const double least = std::ranges::min(curve, {}, &CurvePoint::rhe_pct).rhe_pct;
   const std::optional<std::size_t> best = BestOfAtMost(curve, std::max(rhe_pct, least));
   return best ? curve[*best].gain : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// How far a point of the curve is from the curve of the others; nullopt at the ends, and where the
-/// RHE stays as it is, so that nothing is interpolated.
+/// Distance of a point of the curve from the curve of the other points. nullopt at the ends, and
+/// where the RHE is constant, because nothing is interpolated there.
 std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
   if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
   const std::array neighbours{curve[point - 1], curve[point + 1]};
@@ -62,7 +64,7 @@ std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_p
     if (i + 1 == curve.size()) break;
     const auto [from, to] = std::pair(curve[i], curve[i + 1]);
     const double share = (rhe_pct - from.rhe_pct) / (to.rhe_pct - from.rhe_pct);
-    if (!(share > 0 && share < 1)) continue;  // also where the RHE stays as it is
+    if (!(share > 0 && share < 1)) continue;  // also false where the RHE is constant
     offer({.below = i, .share = share, .gain = std::lerp(from.gain, to.gain, share)});
   }
   return best;

@@ -1,5 +1,5 @@
-// Rules compared at equal redundant engagement. Fixed thresholds make a curve, what they give
-// against the RHE that they cost; a rule is compared with the place of the curve that has its RHE.
+// Compares rules at equal redundant engagement. Fixed thresholds form a curve of gain over RHE. A
+// rule is compared with the point of the curve that has its RHE.
 #pragma once
 
 #include <cstddef>
@@ -11,64 +11,68 @@
 
 namespace fogline {
 
-/// What a fixed threshold costs and gives, in means.
+/// Mean cost and mean gain of a fixed threshold.
 struct CurvePoint {
   double rhe_pct;
   double gain;
 };
 
-/// A place of the curve, a share of the way from point `below` to the one after it.
+/// A place on the curve: a share of the way from point `below` to the next point.
 struct CurvePlace {
   std::size_t below = 0;
   double share = 0;
   double gain = 0;
 };
 
-/// The best place of the curve, straight from point to point, that has this RHE. Several have it
-/// where the RHE stays as it is: thresholds that no clear air passes. nullopt beyond the curve.
+/// The best place with this RHE on the curve, which is straight between its points. Several places
+/// have it where the RHE is constant: thresholds that clear air never passes. nullopt beyond the
+/// curve.
 /// @param curve at least one point, in order of threshold
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct);
 
-/// One rule over the situations: NaN where a situation has none.
+/// Values of one rule over the situations; NaN where a situation has none.
 struct RuleValues {
   std::span<const double> rhe_pct;
-  std::span<const double> gain;  // the more the better
+  std::span<const double> gain;  // more is better
 };
 
-/// A rule beside the curve.
+/// Comparison of a rule with the curve.
 struct AtEqualEngagement {
-  std::optional<CurvePlace> place;  // nullopt: no fixed threshold engages as much, or as little
-  /// Gain of the rule less that of the place. Its interval is a bootstrap over the situations in
-  /// which curve, place and rule are made anew of every resample: it knows that equal situations
-  /// have equal noise, and that the RHE of either side is an estimate. In a resample where the
-  /// rule's RHE is beyond the curve, the curve's end is taken.
+  std::optional<CurvePlace> place;  // nullopt: no fixed threshold engages as much, or none as
+                                    // little
+  /// Gain of the rule minus gain of the place. Its interval is a bootstrap over the situations.
+  /// Each resample computes curve, place and rule from its own situations. So the interval takes
+  /// into account that equal situations have equal noise, and that both RHE are estimates. If the
+  /// rule's RHE is beyond the curve of a resample, the end of the curve counts.
   Estimate difference;
-  /// What the curve may be wrong by at the place (InterpolationErrorAt()), in units of gain.
+  /// Possible error of the curve at the place (InterpolationErrorAt()), in units of gain.
   double interpolation_error = 0;
-  /// The fixed threshold that gives most of those that engage at most as much; nullopt: none does.
-  /// At an RHE of 0 the curve may jump, and this one is better than any place of equal RHE.
+  /// The fixed threshold with the largest gain among those with at most the rule's RHE; nullopt if
+  /// there is none. At an RHE of 0 the curve may jump, and this threshold is better than any place
+  /// of equal RHE.
   std::optional<std::size_t> cheaper;
-  /// Gain of the rule less that of the best fixed threshold of at most its RHE, with an interval as
-  /// above; the threshold is chosen anew in each resample.
+  /// Gain of the rule minus gain of the best fixed threshold with at most its RHE, with an interval
+  /// as above. Each resample chooses its own threshold.
   Estimate against_cheaper;
 
-  /// What can be said at equal RHE: an interval that is no farther from 0 than the curve may be
-  /// wrong decides nothing.
+  /// Verdict at equal RHE. It is undecided if the interval comes as close to 0 as the possible
+  /// error of the curve.
   Verdict verdict() const;
 };
 
-/// Every rule beside the curve of the `fixed` ones, which are in order of threshold.
+/// Compares every rule with the curve of the `fixed` ones, which are in order of threshold.
 std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
                                             std::span<const RuleValues> rules);
 
-/// The best point of the curve that engages at most this much; nullopt if none does.
+/// The best point of the curve with at most this RHE; nullopt if there is none.
 std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct);
 
-/// What interpolation may be wrong by at a place of the curve. A fixed threshold at either end of
-/// the stretch is some way off the curve of the others, on which its neighbours are twice as far
-/// apart. A curve that bends once within the stretch, or steadily, errs by at most the larger of
-/// these times 4 s (1 - s), s being the share of the way; at a point of the curve that is 0. Of a
-/// stretch between two ends of the curve nothing is known, and the whole difference is taken.
+/// Possible error of the interpolation at a place of the curve. A fixed threshold at either end of
+/// the stretch has a distance from the curve of the other points, on which its neighbours are twice
+/// as far apart. If the curve bends once within the stretch, or steadily, the error is at most the
+/// larger of these two distances times 4 s (1 - s), where s is the share of the way. At a point of
+/// the curve it is 0. For a stretch between two ends of the curve the error is unknown, and the
+/// whole difference counts.
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline

@@ -15,7 +15,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPercent = 100;
 
-/// Collects values as an estimate counts them.
+/// Collects the values of an estimate.
 class Collection {
  public:
   void Add(double value) {

@@ -1,4 +1,4 @@
-// Study `followers`: who drives behind the host.
+// Study `followers`: drivers of the cars behind the host.
 #include <array>
 
 #include <fmt/format.h>
@@ -61,10 +61,11 @@ constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Where a string has settled before the fog, whatever the headways; fog as long as in the file.
+// Overrides with which a string settles before the fog, whatever the headways are. The fog is as
+// long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
-/// Strings of one kind of driver in every car.
+/// Strings in which every car has the same kind of driver.
 std::vector<StudyCase> Strings() {
   std::vector<StudyCase> kinds;
   const auto add = [&](std::string_view name, std::vector<std::string> overrides) {
@@ -84,7 +85,7 @@ std::vector<StudyCase> Strings() {
 const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
-/// How a disturbance goes along one string.
+/// Describes the course of a disturbance along one string.
 std::string FindingOf(const StringOutcome& string) {
   const CarInString& first = string.cars[1];
   const CarInString& last = string.cars[kStringCars];
@@ -119,7 +120,8 @@ std::string FindingOf(const StringOutcome& string) {
       Text(EstimateOf(last.min_ttc_s), 1));
 }
 
-/// A quantity by place in the string, for the strings behind one variant of the host.
+/// A quantity as a function of the place in the string, for the strings behind one variant of the
+/// host.
 StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view variant,
                     std::string id, std::string title, std::string y_label,
                     std::vector<double> CarInString::*values) {
@@ -147,7 +149,7 @@ StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view var
   return figure;
 }
 
-/// What is told of each place.
+/// A measure that the study reports for each place.
 struct StringMeasure {
   std::string_view name;
   std::vector<double> CarInString::*values;
@@ -218,7 +220,7 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   result.files.push_back({"followers-string.csv", CsvOf(strings)});
 }
 
-/// One of several parts of a study that has so many units in all.
+/// The context of one part of a study, whose progress counts `all` units in total.
 StudyContext Part(const StudyContext& whole, std::int64_t before, std::int64_t all) {
   StudyContext part = whole;
   part.progress = [&whole, before, all](std::int64_t done, std::int64_t) {

@@ -9,14 +9,14 @@
 namespace fogline {
 namespace {
 
-/// Where a pair of cars was there and never closed in, its least time to collision is infinite, not
-/// missing.
+/// If a pair of cars existed and never closed in, its smallest time to collision is infinite
+/// instead of missing.
 void KeepInfinite(PairMeasures& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
 }
 
-// In the order of ComparedMeasures().
+// The values are in the order of ComparedMeasures().
 RunValues ValuesOf(RunMeasures measures, const std::optional<double>& si_pct) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   KeepInfinite(measures.host);
@@ -61,7 +61,7 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
     Run(scenario, seed, [&](const StepView& step) {
       const Sample sample = step.ToSample();
       measures.Add(sample);
-      // Where one of the pair ended early, SI is over the steps of both.
+      // If one run of the pair ended early, SI covers only the steps that both have.
       if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);
     });
     runs.push_back(ValuesOf(measures.Result(), improvement.Pct()));

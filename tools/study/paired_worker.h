@@ -1,5 +1,5 @@
-// Runs that are compared with one another: equal seeds, equal noise, one run without traded control
-// for all of them.
+// Runs for comparison with one another: equal seeds give equal noise, and all share one run without
+// traded control.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace fogline {
 
-/// The measures of a run in the order of ComparedMeasures(); NaN where it has none.
+/// The measures of a run in the order of ComparedMeasures(); NaN for a missing measure.
 using RunValues = std::vector<double>;
 
-/// For one thread. Keeps its buffers.
+/// For use by one thread; it keeps its buffers.
 class PairedWorker {
  public:
-  /// Runs all `scenarios` with this seed. The first is the one without traded control that the
-  /// others are paired with; it is not in the result.
+  /// Runs all `scenarios` with this seed. The first scenario is the run without traded control,
+  /// with which the others are paired. It is not in the result.
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
 
  private:

@@ -1,4 +1,4 @@
-// Study `policy`: hand-over beside its rivals.
+// Study `policy`: compares hand-over with other policies.
 #include <array>
 #include <cmath>
 
@@ -21,8 +21,8 @@ std::vector<StudyVariant> Variants() {
   return variants;
 }
 
-/// The paper's fog; the same with a radar whose mounting offset is calibrated out and a DoC that
-/// knows it; and fog as physics.
+/// Three fogs: the paper's; the paper's with a radar whose mounting offset is calibrated out and a
+/// DoC that knows the offset; and fog as a physical model.
 std::vector<StudyCase> Cases() {
   return {{"bias fog", "paper.json", {}},
           {"bias fog with calibrated radar",
@@ -42,8 +42,8 @@ constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
                                                           "wrong_human_s",
                                                           "wrong_automation_s"};
 
-/// The policies that have a say in who drives, variant by variant: all but those whose rule is that
-/// nobody takes over.
+/// The policies that can change the driver, by variant: all except those whose rule is
+/// Rule::kNever.
 std::vector<std::size_t> HandOvers() {
   std::vector<std::size_t> handovers;
   for (std::size_t v = 0; v < Policies().size(); ++v) {
@@ -52,7 +52,7 @@ std::vector<std::size_t> HandOvers() {
   return handovers;
 }
 
-/// Every policy that hands over against `isolate`, which does not.
+/// Compares every policy that hands over with `isolate`, which never does.
 std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case) {
   const std::vector<std::size_t> handovers = Distinct(comparison, test_case, HandOvers());
   const std::size_t isolate = comparison.VariantNamed("isolate");

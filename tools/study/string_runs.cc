@@ -15,20 +15,20 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Before the fog, so that what it does is seen from its beginning.
+// The measurement starts this long before the fog, so that it includes the whole effect of the fog.
 constexpr double kBefore_s = 1;
 
-// Less is not braking: what noise does in clear air.
+// Smaller decelerations do not count as braking: noise causes them in clear air.
 constexpr double kLeastBraking_mps2 = 0.01;
 
-/// One run.
+/// Result of one run.
 struct StringRun {
   std::array<double, kStringCars + 1> max_deceleration_mps2{};
   std::vector<FollowerMeasures> followers;
   bool collided = false;
 };
 
-/// For one thread.
+/// For use by one thread.
 class StringWorker {
  public:
   StringRun Run(const Scenario& scenario, std::int64_t seed) {

@@ -1,4 +1,4 @@
-// Strings of cars behind the host: how a disturbance goes from car to car.
+// Runs strings of cars behind the host, to follow a disturbance from car to car.
 #pragma once
 
 #include <cstddef>
@@ -13,30 +13,30 @@
 
 namespace fogline {
 
-/// Cars behind the host.
+/// Number of cars behind the host.
 inline constexpr std::size_t kStringCars = 5;
 
-/// What happens to one car from a second before the fog on, seed by seed. Place 0 is the host, of
-/// which there is the deceleration alone.
+/// Values of one car from one second before the fog, seed by seed. Place 0 is the host, which has
+/// only a deceleration.
 struct CarInString {
   std::vector<double> max_deceleration_mps2;
-  /// The same over that of the car ahead: above 1 a disturbance grows. NaN behind a car that did
-  /// not brake.
+  /// Ratio of its deceleration to that of the car ahead: above 1 a disturbance grows. NaN behind a
+  /// car that did not brake.
   std::vector<double> amplification;
-  std::vector<double> min_ttc_s;  // infinite where it never closed in on the car ahead
+  std::vector<double> min_ttc_s;  // infinite if it never closed in on the car ahead
   std::vector<double> min_gap_m;
 };
 
-/// A kind of driver in all cars, and a variant of the host.
+/// One kind of driver in all cars, and one variant of the host.
 struct StringOutcome {
   std::string kind;
   std::string variant;
   std::vector<CarInString> cars;  // by place: the host, then the followers
-  std::int64_t collisions = 0;    // runs that end with one
+  std::int64_t collisions = 0;    // runs that end with a collision
 };
 
-/// All kinds with all variants, by kind. The scenarios of `kinds` begin their fog late enough for
-/// a string to have settled. @throws InputError, StudyStopped
+/// All kinds with all variants, ordered by kind. In the scenarios of `kinds` the fog must begin
+/// after the string has settled. @throws InputError, StudyStopped
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
 

@@ -6,7 +6,7 @@
 namespace fogline {
 namespace {
 
-// One row a study.
+// One row for each study.
 constexpr Study kStudies[] = {
     {"conflict",
      "Conflict measures at equal false-alarm rate",

@@ -1,4 +1,4 @@
-// What a study is: a question, runs that answer it, and the answer in words, figures and files.
+// A study: a question, runs that answer it, and the answer in words, figures and files.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@
 
 namespace fogline {
 
-/// Thrown out of a study that was told to stop.
+/// Thrown by a study whose progress callback returned false.
 class StudyStopped : public std::runtime_error {
  public:
   StudyStopped() : std::runtime_error("stopped") {}
 };
 
-/// What a study is given.
+/// Input of a study.
 struct StudyContext {
   std::filesystem::path scenarios;  // folder with paper.json and dense_fog.json
   SeedRange seeds;
   int jobs = 1;
-  /// Called again and again with what is done of how much; returns false to stop.
+  /// Called repeatedly with the finished and the total number of units; returns false to stop.
   std::function<bool(std::int64_t done, std::int64_t total)> progress;
 
-  /// A scenario of the folder with overrides. @throws InputError
+  /// A scenario of the folder with overrides applied. @throws InputError
   Scenario Load(std::string_view file, const std::vector<std::string>& overrides = {}) const;
   /// @throws StudyStopped
   void Show(std::int64_t done, std::int64_t total) const;
@@ -42,7 +42,7 @@ struct StudyFile {
   std::string content;
 };
 
-/// What a study comes to. Nothing in it depends on the number of threads, the clock or the machine.
+/// Result of a study. It does not depend on the number of threads, the clock or the machine.
 struct StudyResult {
   StudySection section;
   std::vector<StudyFile> files;
@@ -54,18 +54,18 @@ struct Study {
   std::string_view name;
   std::string_view title;
   std::string_view question;
-  SeedRange seeds;  // unless --seeds says otherwise
+  SeedRange seeds;  // default of --seeds
   StudyResult (*run)(const StudyContext& context);
 };
 
-/// THE table of studies, in the order of `fogline study all`: the command line, its help and the
-/// report come from it.
+/// The table of all studies, in the order of `fogline study all`. The command line, its help and
+/// the report use it.
 std::span<const Study> Studies();
 
 /// The study of that name; nullptr if there is none.
 const Study* FindStudy(std::string_view name);
 
-// One file each.
+// Each of these functions has a file of its own.
 StudyResult RunConflictStudy(const StudyContext& context);
 StudyResult RunPolicyStudy(const StudyContext& context);
 StudyResult RunTransferStudy(const StudyContext& context);

@@ -14,10 +14,10 @@
 namespace fogline {
 namespace {
 
-// The draws of the mix. Streams below 1000 are those of roles.
+// Random stream of the mix. Streams below 1000 belong to roles.
 constexpr Stream kMix{1000};
 
-/// What a situation is drawn from: even, or even in the logarithm.
+/// Range of a uniform distribution, or of a uniform distribution of the logarithm.
 struct Range {
   double least;
   double most;
@@ -26,22 +26,22 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice: from what the paper has to what is bad, in each respect.
+// The mix is our choice: in each respect it reaches from the paper's value to a bad one.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216
 constexpr Range kMounting_m{0.7, 1.0};
 constexpr Range kRadarStd_m{0.01, 0.1};
 constexpr Range kLidarStd_m{0.01, 0.03};
-// Half of the humans judge rightly and stay aware; the readiness of the others ends up here while
-// the automation drives.
+// Half of the humans judge correctly and stay aware. The readiness of the others falls to a value
+// in this range while the automation drives.
 constexpr double kErringShare = 0.5;
 constexpr Range kMonitoring{0.1, 1.0};
 constexpr Range kLeadAmplitude_mps{0, 1.5};
 
 constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 
-/// Sets what varies from situation to situation.
+/// Sets the fields that vary between situations.
 Scenario Draw(Scenario scenario, std::int64_t seed) {
   const Random random(seed, kMix);
   const auto u = [&](std::uint32_t index) { return random.Uniform2(0, index)[0]; };
@@ -80,8 +80,8 @@ RuleFamily FamilyOf(std::string name, std::string_view policy, std::string_view 
 }
 
 std::vector<RuleFamily> Families() {
-  // Dense, because others are compared with what lies between two of them; denser where the RHE
-  // falls fastest.
+  // The grid is dense, because other rules are compared with values between two points. It is
+  // denser where the RHE falls fastest.
   std::vector<double> fixed;
   for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
     fixed.push_back(permille / 1000.0);

@@ -12,14 +12,14 @@
 
 namespace fogline {
 
-/// A rule with a parameter that trades engagement for safety.
+/// A rule with a parameter that trades engagement against safety.
 struct RuleFamily {
   std::string name;
   std::vector<double> values;  // of its parameter, one for each member
   std::vector<StudyVariant> members;
 };
 
-/// One member over all situations.
+/// Results of one member over all situations.
 struct RuleMember {
   std::size_t family = 0;
   std::string name;
@@ -34,15 +34,15 @@ struct RuleMember {
 
 struct MixedRuns {
   std::vector<RuleFamily> families;
-  std::vector<RuleMember> members;  // family by family
+  std::vector<RuleMember> members;  // ordered by family
   std::int64_t situations = 0;
 };
 
-/// All situations: one for each seed, drawn alike for every rule. The first family is that of fixed
-/// thresholds, in ascending order. @throws InputError, StudyStopped
+/// Runs all situations: one for each seed, the same for every rule. The first family is that of
+/// fixed thresholds, in ascending order. @throws InputError, StudyStopped
 MixedRuns RunMix(const StudyContext& context);
 
-/// What the situations are, in words.
+/// Description of the situations.
 std::string MixText();
 
 }  // namespace fogline

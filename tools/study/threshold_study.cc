@@ -1,5 +1,5 @@
-// Study `threshold`: thresholds that move with the situation beside fixed ones of equal redundant
-// engagement, in a mix of situations.
+// Study `threshold`: compares thresholds that move with the situation with fixed ones of equal
+// redundant engagement, in a mix of situations.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,18 +18,19 @@
 namespace fogline {
 namespace {
 
-/// Every member beside the curve of fixed thresholds, in the order of MixedRuns::members; those
-/// that make the curve are compared with nothing.
+/// Every member compared with the curve of fixed thresholds, in the order of MixedRuns::members.
+/// Members on the curve itself are compared with nothing.
 struct Beside {
-  std::vector<AtEqualEngagement> si;         // points
-  std::vector<AtEqualEngagement> shortfall;  // m; less is better
-  std::vector<CurvePoint> curve;             // of SI
-  std::size_t fixed = 0;                     // how many members it is of, the first ones
+  std::vector<AtEqualEngagement> si;         // in points
+  std::vector<AtEqualEngagement> shortfall;  // in m; less is better
+  std::vector<CurvePoint> curve;             // for SI
+  std::size_t fixed = 0;                     // number of members on the curve; they are the first
+                                             // ones
 };
 
 Beside BesideFixed(const MixedRuns& mixed) {
   Beside beside;
-  // Of compromised safety less is better.
+  // Less compromised safety is better, so the gain has the opposite sign.
   std::vector<std::vector<double>> spared;
   for (const RuleMember& member : mixed.members) {
     std::vector<double>& of = spared.emplace_back(member.shortfall_m);
@@ -60,7 +61,7 @@ Beside BesideFixed(const MixedRuns& mixed) {
   return beside;
 }
 
-/// "fixed 0.341": the threshold that lies at a place of the curve.
+/// "fixed 0.341": the threshold at a place of the curve.
 std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
   const auto& fixed = mixed.families.front().values;
   const double threshold = place.share == 0
@@ -69,7 +70,7 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
   return fmt::format("fixed {:.3g}", threshold);
 }
 
-/// What the intervals say of one family, and whether that is what was hoped for.
+/// Verdict on one family by the intervals, and whether it agrees with the expectation.
 std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t family) {
   std::vector<std::string> above;
   std::vector<std::string> below;
@@ -77,7 +78,7 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
   std::vector<std::string> undecided;
   std::vector<std::string> too_few;
   std::vector<std::string> beyond;
-  std::vector<std::string> dominated;  // of those above
+  std::vector<std::string> dominated;  // among the members that are better at equal RHE
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {
     const RuleMember& member = mixed.members[i];
     if (member.family != family) continue;
@@ -141,7 +142,8 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
       answer);
 }
 
-/// The front of all rules, and who cannot be told apart from whom is on it.
+/// Describes the Pareto front of all rules, and lists the rules that cannot be told apart from a
+/// rule on it.
 std::string FrontText(const MixedRuns& mixed) {
   std::vector<TradeOff> points;
   for (const RuleMember& member : mixed.members) points.push_back({member.rhe(), member.si()});
@@ -191,7 +193,7 @@ void AddPoint(StudySeries& series, double x, const Estimate& estimate) {
   series.high.push_back(estimate.high);
 }
 
-/// The members of a family by RHE.
+/// The members of a family in order of RHE.
 std::vector<std::size_t> ByRhe(const MixedRuns& mixed, std::size_t family) {
   std::vector<std::size_t> members;
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {

@@ -1,4 +1,4 @@
-// Study `transfer`: how the wheel changes hands.
+// Study `transfer`: ways to hand over the control of the car.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +12,9 @@
 namespace fogline {
 namespace {
 
-/// ISO 15622 above 20 m/s, and where comfort ends: m/s3.
+/// Limit of ISO 15622 above 20 m/s, and the limit of comfort: m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
-/// What a smooth transfer may cost in safety, points of SI.
+/// Largest tolerable loss of safety by a smooth transfer, points of SI.
 constexpr double kTolerableLoss = 3;
 
 std::vector<StudyVariant> Variants() {
@@ -42,7 +42,7 @@ double Greatest(std::span<const double> values) {
   return greatest;
 }
 
-/// Jerk and safety of one variant beside the step.
+/// Compares jerk and safety of one variant with those of the step.
 std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::size_t v) {
   const Estimate jerk = comparison.Mean({c, v}, "max_handover_jerk_mps3");
   if (jerk.n == 0) {
@@ -71,7 +71,7 @@ std::string JerkText(const Comparison& comparison, Cell cell) {
                      Text(Greatest(comparison.Values(cell, "max_handover_jerk_mps3")), 2));
 }
 
-/// In which cases the step leaves anything to be won.
+/// Lists the cases in which the step leaves room for an improvement.
 std::string FindingOfStep(const Comparison& comparison) {
   std::vector<std::string> matters;
   std::vector<std::string> enough;
@@ -94,8 +94,8 @@ std::string FindingOfStep(const Comparison& comparison) {
   return text + ".";
 }
 
-/// Which variants, the step among them, are comfortable in every run and cost no more safety than
-/// is tolerable.
+/// Lists the variants, including the step, that are comfortable in every run and lose no more
+/// safety than is tolerable.
 std::string VerdictText(const Comparison& comparison, std::size_t c) {
   std::vector<std::string> meet;
   std::vector<std::string> fail;

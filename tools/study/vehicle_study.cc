@@ -17,8 +17,8 @@ std::vector<std::string> Cars(std::string_view car, std::string_view surface) {
           fmt::format("/road/surface={}", surface)};
 }
 
-/// A slope throughout. Of its 330 kW a loaded truck needs 260 to keep 20 m/s on it: what is left is
-/// an acceleration of 0.08 m/s2.
+/// Overrides for a slope along the whole road. A loaded truck has 330 kW and needs 260 kW to keep
+/// 20 m/s on it; the rest allows an acceleration of 0.08 m/s2.
 std::vector<std::string> Uphill(std::vector<std::string> overrides) {
   overrides.emplace_back(R"(/road/grade=[{"position_m":0,"grade":0.02}])");
   return overrides;
@@ -30,17 +30,17 @@ std::vector<std::string> TruckBehindSedan() {
   return overrides;
 }
 
-/// A kind of fog, or of fog and leader.
+/// A kind of fog, with or without a braking leader.
 struct Ground {
   std::string_view name;
   std::string_view file;
   std::vector<std::string> overrides;
-  bool is_dense;  // engine and brakes are asked for more than a little
-  bool brakes;    // for much
+  bool is_dense;  // the scenario demands more than a little of engine and brakes
+  bool brakes;    // the scenario demands hard braking
 };
 
-/// The leader brakes in the middle of the dense fog, to a third of its speed: as hard as in ASAM
-/// OSC-ALKS scenario 4.3_2.
+/// In the hard-braking case the leader brakes in the middle of the dense fog to a third of its
+/// speed, as hard as in ASAM OSC-ALKS scenario 4.3_2.
 std::vector<Ground> Grounds() {
   return {{"bias fog", "paper.json", {}, false, false},
           {"beam fog", "dense_fog.json", {}, true, false},
@@ -52,8 +52,8 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// Cases in which what they are called after binds. Cars of a kind that differ in limits which
-/// nobody reaches make equal runs, and are not here: MethodOf() says which.
+/// Cases in which the limit that their name mentions takes effect. Cars of a kind whose limits are
+/// never reached give equal runs, so they are left out; MethodOf() names them.
 std::vector<StudyCase> Cases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {
@@ -77,7 +77,7 @@ std::vector<StudyCase> Cases() {
   return cases;
 }
 
-// The variants, in their order.
+// Indices of the variants.
 constexpr std::size_t kNone = 0;
 constexpr std::size_t kTraded = 1;
 constexpr std::size_t kJerkLimited = 2;
@@ -91,7 +91,7 @@ constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
                                                          "max_handover_jerk_mps3",
                                                          "rms_jerk_mps3"};
 
-/// The hardest acceleration or braking of a host in any run.
+/// Largest magnitude of a host's acceleration in any run.
 double HardestOf(const Comparison& comparison) {
   double hardest = 0;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {

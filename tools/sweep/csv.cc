@@ -25,7 +25,7 @@ namespace fogline {
 namespace {
 
 constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC;
-// Bytes that are worth a call of the operating system.
+// Checksums are written in pieces of this size, to save system calls.
 constexpr std::size_t kSumBytesAtOnce = 1 << 16;
 
 std::string HeaderLine(const SweepPlan& plan) {
@@ -37,7 +37,7 @@ std::string HeaderLine(const SweepPlan& plan) {
   return line + "\n";
 }
 
-/// What a row begins with: the values of its axes and its seed.
+/// Appends the beginning of a row: the values of its axes and its seed.
 void AppendKey(const SweepPlan& plan, std::int64_t unit, std::int64_t index, std::string& text) {
   for (const std::string_view value : plan.ValuesOf(unit, index)) {
     text += value;
@@ -101,8 +101,9 @@ SweepFile::Handle::~Handle() {
   if (fd >= 0) close(fd);
 }
 
-// One writer at a time: two that append would mix their rows. A job that a cluster has started
-// again, while its first incarnation was only cut off, is told so.
+// Only one writer at a time: two writers would mix their rows. The lock catches a job that a
+// cluster starts a second time although its first process, only cut off from the network, still
+// writes.
 void SweepFile::Open() {
   file_.fd = open(path_.c_str(), kFlags, 0666);
   if (file_.fd < 0) ThrowCannotWrite(path_, errno);
@@ -122,7 +123,8 @@ void SweepFile::Cut(std::int64_t size, const Handle& file) const {
   }
 }
 
-// The description comes while the file is empty, so no row is ever taken for one of another sweep.
+// The description is written while the file is empty, so no row can be taken for a row of another
+// sweep.
 void SweepFile::Start(const Shard& shard) {
   if (sums_.fd < 0) OpenSums();
   Cut(0, file_);
@@ -134,13 +136,13 @@ void SweepFile::Start(const Shard& shard) {
 void SweepFile::Resume(const Shard& shard) {
   const std::int64_t all_rows =
       (plan_.ShardEnd(shard) - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
-  // Line by line, so that a file of any size takes no memory.
+  // Reads line by line, so that memory does not depend on the size of the file.
   std::ifstream in(path_, std::ios::binary);
   RowChecker checker(path_);
   std::string line;
   std::int64_t whole = 0;  // end of the last whole unit, or of the header
   std::int64_t position = 0;
-  std::int64_t row = -1;  // the header is none
+  std::int64_t row = -1;  // -1 is the header
   for (; std::getline(in, line) && !in.eof(); ++row) {
     std::int64_t index = row < 0 ? 0 : row % plan_.rows_per_unit();
     text_.clear();
@@ -153,7 +155,9 @@ void SweepFile::Resume(const Shard& shard) {
     const bool has_key = !text_.empty() && line.starts_with(text_);
     const auto verdict =
         row < 0 || !checker.has_sums() ? RowChecker::Verdict::kSame : checker.Check(line);
-    if (verdict == RowChecker::Verdict::kNoSum) break;  // computed again
+    if (verdict == RowChecker::Verdict::kNoSum)
+      break;  // the sweep computes this row and the
+              // following ones again
     if (!has_key || verdict == RowChecker::Verdict::kOther) {
       throw InputError(
           fmt::format("{}:{}: error: --out: not the line that this sweep {} there; "
@@ -199,7 +203,7 @@ void SweepFile::Append(const std::vector<SweepRow>& rows) {
   }
   Write(text_, file_);
   ++next_unit_;
-  if (sums_.fd < 0) return;  // a stream, which nothing reads again
+  if (sums_.fd < 0) return;  // a stream has no checksums, because no sweep reads it again
   Write(sums, sums_);
   RequireInPlace();
 }

@@ -1,6 +1,7 @@
-// The file of a sweep: a CSV that grows row by row in a defined order, and beside it FILE.json,
-// which says what the sweep is, and FILE.sums with checksums of its rows. A sweep that was killed
-// goes on where its file ends. A pipe or device gets the rows alone, and cannot be gone on with.
+// The file of a sweep: a CSV that grows row by row in a defined order. Beside it are FILE.json,
+// which describes the sweep, and FILE.sums with checksums of its rows. A killed sweep continues at
+// the end of its file. A pipe or device gets only the rows, and a sweep into it cannot be
+// continued.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +17,10 @@ namespace fogline {
 
 class SweepFile {
  public:
-  /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. What is
-  /// incomplete at its end is cut off. With `force` what is there is replaced.
-  /// @throws InputError if the file is there and is not of the same sweep, if somebody is writing
+  /// Opens the file of a shard: a new one, or an unfinished one of the same sweep. An incomplete
+  /// end is cut off. With `force` an existing file is replaced.
+  /// @throws InputError if the file exists and is not of the same sweep, if another process is
+  /// writing
   ///     it, or if it cannot be written; std::runtime_error when the disk is full
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
@@ -26,12 +28,12 @@ class SweepFile {
   /// First unit that is not in the file yet; the shard's end if it is complete.
   std::int64_t next_unit() const { return next_unit_; }
 
-  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the
-  /// file has been removed
+  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or
+  /// when the file has been removed or replaced
   void Append(const std::vector<SweepRow>& rows);
 
  private:
-  /// An open file, closed at the end.
+  /// A file descriptor; the destructor closes it.
   struct Handle {
     Handle() = default;
     ~Handle();
@@ -42,13 +44,13 @@ class SweepFile {
 
   void Open();
   void OpenSums();
-  /// Whether to begin anew. @throws InputError if what is there must stay
+  /// Whether to start with an empty file. @throws InputError if the existing file must stay
   bool IsToBeReplaced(const Shard& shard, bool force) const;
   void Cut(std::int64_t size, const Handle& file) const;
   void Start(const Shard& shard);
-  /// Checks the rows that are there, cuts off what follows the last whole unit.
+  /// Checks the existing rows and cuts off the bytes after the last whole unit.
   void Resume(const Shard& shard);
-  /// Makes the checksums of all rows that are there.
+  /// Writes the checksums of all existing rows.
   void SumRows();
   void RequireInPlace() const;
   void Write(std::string_view text, const Handle& file) const;
@@ -58,7 +60,7 @@ class SweepFile {
   std::int64_t next_unit_;
   std::string text_;
   Handle file_;
-  Handle sums_;  // none of a pipe or device
+  Handle sums_;  // not open for a pipe or device
 };
 
 }  // namespace fogline

@@ -1,5 +1,6 @@
-// What a sweep file holds, said in "FILE.json" beside it: grid, seeds, scenario, and which shard of
-// them. By it a sweep recognises its own file, and shards that belong together.
+// Description of a sweep file, in "FILE.json" beside it: grid, seeds, scenario, and which shard of
+// them the file has. By it a sweep recognises its own file, and a merge recognises shards of one
+// sweep.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,10 @@
 namespace fogline {
 
 struct Description {
-  std::string sweep;          // all but the shard, as JSON; equal sweeps have equal text
+  std::string sweep;          // everything except the shard, as JSON; equal sweeps have equal text
   Shard shard;                // of that sweep
-  std::int64_t rows = 0;      // of the shard's complete file
-  std::int64_t all_rows = 0;  // of the whole sweep
+  std::int64_t rows = 0;      // number of rows in the shard's complete file
+  std::int64_t all_rows = 0;  // number of rows of the whole sweep
 
   bool operator==(const Description&) const = default;
 };
@@ -24,15 +25,15 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file is that of a sweep: there is a description beside it.
+/// Whether a file belongs to a sweep: it does if a description lies beside it.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.
-/// @throws InputError if there is none, or it is damaged
+/// @throws InputError if there is no description, or it is damaged
 Description ReadDescription(const std::filesystem::path& csv);
 
-/// Puts the description beside a sweep's file, whole or not at all.
-/// @throws InputError if it cannot be there, std::runtime_error when the disk is full
+/// Writes the description beside a sweep's file, whole or not at all.
+/// @throws InputError if it cannot be created, std::runtime_error when the disk is full
 void WriteDescription(const std::filesystem::path& csv, const Description& description);
 
 }  // namespace fogline

@@ -52,7 +52,7 @@ SweepRow SweepWorker::ComputeRow() {
   Run([&](const StepView& step) {
     const Sample sample = step.ToSample();
     measures.Add(sample);
-    // Where one of the pair ended early, SI is over the steps of both.
+    // If one run of the pair ended early, SI covers only the steps that both have.
     if (policy != Policy::kNone && i < baseline_.size()) {
       improvement.Add(baseline_[i++], sample);
     }

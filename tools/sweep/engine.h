@@ -1,4 +1,4 @@
-// Runs the rows of a sweep over all cores and hands them on in their order, within constant memory.
+// Runs the rows of a sweep on all cores and delivers them in their order, within constant memory.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace fogline {
 
-/// What a row of a sweep comes to.
+/// Result of a row of a sweep.
 struct SweepRow {
   RunMeasures measures;
-  /// Safety improvement over the paired run in %; none for a run that is its own pair, and where
-  /// the paired run has no compromised safety to improve.
+  /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
+  /// for a paired run without compromised safety.
   std::optional<double> si_pct;
 };
 
-/// Computes units of a plan, one after another; for one thread. Keeps its buffers.
+/// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.
 class SweepWorker {
  public:
   explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}
 
-  /// The rows of a unit, in order. @throws InputError, std::runtime_error that name the row
+  /// The rows of a unit, in order. @throws InputError or std::runtime_error whose text names the
+  /// row
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// The row of scenario_, and before the first one of a unit its pair without traded control.
+  /// The row of scenario_. Before the first row of a unit it runs the pair without traded control.
   SweepRow ComputeRow();
   /// Runs scenario_ to its end.
   template <class Visit>
@@ -41,16 +42,17 @@ class SweepWorker {
   std::vector<Sample> baseline_;
 };
 
-/// Takes the rows of a unit, in order of units; returns false to stop.
+/// Takes the rows of a unit, in order of units. It returns false to stop.
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
-/// Computes units `begin` to before `end` on `jobs` threads. What the consumer sees does not depend
-/// on `jobs`. Exceptions of the consumer come out, and that of the first row that cannot be
-/// computed, when the units before have been handed on.
+/// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. The consumer
+/// sees the same rows for every `jobs`. RunSweep() passes on the consumer's exceptions, and the
+/// exception of the first row that cannot be computed, after it has delivered the units before that
+/// row.
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume);
 
-/// Threads that the machine can run at once.
+/// Number of threads that the machine can run at once.
 int AllCores();
 
 }  // namespace fogline

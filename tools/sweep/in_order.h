@@ -1,4 +1,4 @@
-// Units of work on all cores whose results are handed on in their order, within constant memory
+// Computes units of work on all cores and delivers their results in order, within constant memory
 // (oneTBB pipeline). Link TBB::tbb.
 #pragma once
 
@@ -17,14 +17,15 @@
 
 namespace fogline {
 
-/// Units under way for each thread: enough to keep all busy while the slowest is waited for.
+/// Units in progress for each thread: enough to keep all threads busy while the slowest unit holds
+/// up the delivery.
 inline constexpr int kUnitsPerJob = 4;
 
-/// Computes units `begin` to before `end` on `jobs` threads: `compute(worker, unit)` with a worker
-/// that `make_worker()` made for the thread. `consume(unit, result)` takes the results, in order of
-/// units, and returns false to stop; what it sees does not depend on `jobs`. Exceptions of
-/// `consume` come out, and that of the first unit that cannot be computed, when the units before it
-/// have been handed on.
+/// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. It calls
+/// `compute(worker, unit)` with a worker that `make_worker()` made for the thread. `consume(unit,
+/// result)` takes the results, in order of units, and returns false to stop. It sees the same
+/// results for every `jobs`. Exceptions of `consume` are passed on. So is the exception of the
+/// first unit that cannot be computed, after the units before it have been delivered.
 template <class MakeWorker, class Compute, class Consume>
 void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWorker& make_worker,
                     const Compute& compute, const Consume& consume) {
@@ -48,7 +49,8 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
     }
     return std::make_shared<Batch>(Batch{next++, std::nullopt, nullptr});
   };
-  // What cannot be computed fails in its turn, so that it is the same whatever `jobs` is.
+  // A unit that cannot be computed fails when its turn comes, so that the result does not depend on
+  // `jobs`.
   const auto work = [&](Item batch) {
     if (!go_on) return batch;
     try {

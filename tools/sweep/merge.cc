@@ -25,7 +25,7 @@ struct ShardFile {
   Description description;
 };
 
-/// The shards by number: all of one sweep, each once.
+/// The shards by number. Checks that all are of one sweep and that each is there once.
 std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::path>& shards) {
   std::map<std::int64_t, ShardFile> ordered;
   std::int64_t count = 0;
@@ -63,7 +63,7 @@ void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);
   std::string line;
-  std::int64_t rows = -1;  // the header is none
+  std::int64_t rows = -1;  // -1 is the header
   for (; std::getline(in, line) && !in.eof(); ++rows) {
     if (WasInterrupted()) throw Interrupted("interrupted; nothing is merged");
     if (rows >= 0 && checker.has_sums() && checker.Check(line) == RowChecker::Verdict::kOther) {
@@ -117,7 +117,7 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   std::string header;
   for (const auto& [index, shard] : ordered) Copy(shard, header, out, sums ? &*sums : nullptr);
   if (replaceable) {
-    // At no moment is a file there with another one's description.
+    // At no time does a file have the description of another one.
     out.RemoveOld();
     WriteDescription(merged, whole);
     sums->Finish();

@@ -1,5 +1,4 @@
-// Puts the files of a sweep's shards together into the file that the whole sweep would have
-// written.
+// Joins the files of a sweep's shards into the file that the unsharded sweep would have written.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +7,11 @@
 
 namespace fogline {
 
-/// Merges the complete files of all shards, in whatever order they are given. The merged file is
-/// there as a whole or not at all. Returns its rows.
+/// Merges the complete files of all shards, given in any order. The merged file is written whole or
+/// not at all. @return the number of its rows
 /// @throws InputError if a shard is missing, double, incomplete or of another sweep, or if `merged`
-///     exists and there is no `force`, or is no sweep; std::runtime_error when the disk is full;
+///     exists and `force` is false or `merged` is no sweep; std::runtime_error when the disk is
+///     full;
 ///     Interrupted
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force);

@@ -1,4 +1,4 @@
-// Which thresholds are worth considering: safety improvement against redundant human engagement.
+// Selects the thresholds worth considering, by safety improvement and redundant human engagement.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +7,16 @@
 
 namespace fogline {
 
-/// What a threshold gives (SI, the more the better) and what it costs (RHE, the less the better).
+/// Benefit of a threshold (SI, more is better) and its cost (RHE, less is better).
 struct TradeOff {
   double rhe_pct = 0;
   double si_pct = 0;
 };
 
-/// Places of the points that no other dominates, in order of ascending RHE, equal points in the
-/// order in which they are given. A point dominates another if it is no worse in both quantities
-/// and better in one; so equal points are all on the front. A point with NaN is not, and dominates
-/// none.
+/// Indices of the points that no other point dominates, in order of ascending RHE; equal points
+/// keep the given order. A point dominates another one if it is no worse in both quantities and
+/// better in one. So equal points are all on the front. A point with NaN is not on the front and
+/// dominates no point.
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points);
 
 }  // namespace fogline

@@ -10,16 +10,16 @@
 namespace fogline {
 namespace {
 
-/// The most points of an axis "first:last:count".
+/// Largest number of points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
 /// Largest seed of a scenario.
 constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
 
-/// The most rows of a sweep: more would take one core for years. Products with the number of a
-/// shard stay far within 64 bits.
+/// Largest number of rows of a sweep: more rows would take one core for years. Products with the
+/// number of a shard stay far within 64 bits.
 constexpr std::int64_t kMaxRows = 100'000'000'000;
 
-/// The most shards of a sweep.
+/// Largest number of shards of a sweep.
 constexpr std::int64_t kMaxShards = 1'000'000;
 
 template <class T>
@@ -38,8 +38,8 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
   }
 }
 
-/// "first:last:count" as values; empty if the text is something else. Fifteen digits are what a
-/// double keeps of a decimal number, so that 0.3 reads 0.3.
+/// The values of "first:last:count"; empty if the text has another form. A double keeps fifteen
+/// decimal digits, so with fifteen digits 0.3 reads 0.3.
 std::vector<std::string> Spaced(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   double first = 0;
@@ -58,7 +58,8 @@ std::vector<std::string> Spaced(std::string_view text) {
   return values;
 }
 
-/// Checks a value of a field by the rules of scenario files. `argument` is where it comes from.
+/// Checks a value of a field by the rules of scenario files. `argument` is its source, for
+/// messages.
 /// @throws InputError
 void CheckSetting(const std::string& argument, const std::string& base, const std::string& pointer,
                   const std::string& value) {

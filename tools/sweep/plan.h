@@ -1,5 +1,4 @@
-// What a sweep consists of: a grid over fields of a scenario and a range of seeds, in a defined
-// order.
+// The rows of a sweep: a grid over fields of a scenario and a range of seeds, in a defined order.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +11,14 @@
 
 namespace fogline {
 
-/// One field and the values that it takes, as they stand in a scenario file.
+/// One field and its values, as written in a scenario file.
 struct Axis {
   std::string pointer;
   std::vector<std::string> values;
 };
 
 /// Values as a person writes them: "a,b,c", or "first:last:count" for evenly spaced numbers.
-/// @param argument such as "--thresholds 1:2": what the message of an error begins with
+/// @param argument such as "--thresholds 1:2": the beginning of an error message
 /// @throws InputError
 std::vector<std::string> ParseValues(const std::string& argument, std::string_view values);
 
@@ -49,27 +48,27 @@ struct Shard {
 /// "I/N". @throws InputError
 Shard ParseShard(const std::string& text);
 
-/// The rows of a sweep. Axes of the arbitrator do not change a run without traded control, so the
-/// rows that differ only in these (and are next to each other) share their paired run: they are one
+/// The rows of a sweep. Axes of the arbitrator do not change a run without traded control. So rows
+/// that differ only in these axes share their paired run; they are next to each other and form one
 /// unit of work. Rows are ordered by the other axes as given, then by seed, then by the
 /// arbitrator's axes.
 class SweepPlan {
  public:
-  /// @param file where the scenario comes from, for messages
-  /// @throws InputError, ScenarioError if a value is none that its field can have
+  /// @param file source of the scenario, for messages
+  /// @throws InputError, ScenarioError if a value is not valid for its field
   SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std::string file = "scenario");
 
   std::int64_t units() const { return outer_points_ * seeds_.count(); }
   std::int64_t rows_per_unit() const { return inner_points_; }
   std::int64_t rows() const { return units() * rows_per_unit(); }
-  /// First unit of a shard; that of shard count + 1 is units().
+  /// First unit of a shard. For the shard count + 1 it is units().
   std::int64_t ShardBegin(const Shard& shard) const {
     return units() * (shard.index - 1) / shard.count;
   }
   std::int64_t ShardEnd(const Shard& shard) const { return units() * shard.index / shard.count; }
 
-  /// Sets the scenario of a unit's row, 0 to rows_per_unit() - 1. `scenario` is a copy of base()
-  /// that may have been that of any other row before.
+  /// Sets `scenario` to the one of a unit's row, 0 to rows_per_unit() - 1. `scenario` must be a
+  /// copy of base(); it may hold the values of any other row.
   void Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const;
   /// The value of every axis in a row, in the order in which the axes were given.
   std::vector<std::string_view> ValuesOf(std::int64_t unit, std::int64_t row) const;
@@ -84,16 +83,16 @@ class SweepPlan {
 
  private:
   void AddAxis(const std::string& base, const Axis& axis);
-  /// Place of an axis' value in a row.
+  /// Index of an axis' value in a row.
   std::size_t ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const;
 
   Scenario base_;
   std::string file_;
   std::vector<Axis> axes_;
   SeedRange seeds_;
-  std::vector<FieldAssignment> fields_;  // of each axis
-  std::vector<bool> inner_;              // of each axis: the arbitrator's
-  std::vector<std::int64_t> stride_;     // of each axis among those of its kind
+  std::vector<FieldAssignment> fields_;  // one for each axis
+  std::vector<bool> inner_;              // for each axis: whether it is one of the arbitrator's
+  std::vector<std::int64_t> stride_;     // of each axis among the axes of its kind
   std::int64_t outer_points_ = 1;
   std::int64_t inner_points_ = 1;
 };

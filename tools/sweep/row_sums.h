@@ -1,6 +1,6 @@
-// Checksums of the rows in a sweep's file, one line each in "FILE.sums" beside it. By them a sweep
-// that goes on, and a merge, see that a row is not the one that was written: a digit that was
-// edited, a file that a power cut has damaged. They are no protection against anybody's intent.
+// Checksums of the rows in a sweep's file, one line for each row in "FILE.sums" beside it. By them
+// a continued sweep and a merge detect a row that differs from the written one: an edited digit, or
+// a file that a power cut has damaged. They do not protect against deliberate changes.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ std::filesystem::path SumsFile(const std::filesystem::path& csv);
 /// The line of a row: its CRC-32 (that of zlib and POSIX's gzip) in hexadecimal digits.
 /// @param row without the line feed
 std::string SumLine(std::string_view row);
-/// Bytes of it.
+/// Bytes of such a line.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
 /// Checks the rows of a file in their order.
@@ -26,12 +26,12 @@ class RowChecker {
   enum class Verdict {
     kSame,
     kOther,  // not the row that was written
-    kNoSum,  // nor is there one for any row behind it
+    kNoSum,  // this row and all rows after it have no checksum
   };
 
   explicit RowChecker(const std::filesystem::path& csv);
 
-  /// Whether there are any: not beside a file that was copied without them.
+  /// Whether there are checksums. A file that was copied without "FILE.sums" has none.
   bool has_sums() const { return has_sums_; }
   Verdict Check(std::string_view row);
 

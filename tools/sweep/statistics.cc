@@ -9,10 +9,10 @@
 namespace fogline {
 namespace {
 
-/// Half of what a confidence interval of 95 % leaves out.
+/// Half of the probability outside a confidence interval of 95 %.
 constexpr double kTail = 0.025;
 
-/// `sorted` at a share in [0, 1] of the way from its first to its last value.
+/// Value of `sorted` at a share in [0, 1] of the way from the first to the last value.
 double At(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

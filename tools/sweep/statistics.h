@@ -1,4 +1,4 @@
-// What a measure comes to over the runs of several seeds.
+// Statistics of a measure over the runs of several seeds.
 #pragma once
 
 #include <cstdint>
@@ -7,31 +7,32 @@
 
 namespace fogline {
 
-/// Mean and spread of a sample, in the unit of its values. nullopt: there are too few values, one
-/// for the mean and two for all else.
+/// Mean and spread of a sample, in the unit of its values. nullopt means too few values: the mean
+/// needs one, everything else needs two.
 struct Summary {
   std::int64_t count = 0;
   std::optional<double> mean;
   /// Standard deviation of the values, with n - 1.
   std::optional<double> deviation;
   /// Half the width of the 95 % confidence interval of the mean, t deviation / sqrt(n) with
-  /// Student's t of n - 1 degrees of freedom. Says how well the mean is known, not how values lie.
+  /// Student's t of n - 1 degrees of freedom. It says how well the mean is known. It does not
+  /// describe the spread of the values.
   std::optional<double> ci95;
-  /// 5th and 95th percentile of the values, which need not be normal: linear between the two
-  /// nearest (Hyndman & Fan 1996, definition 7).
+  /// 5th and 95th percentile of the values, which need not be normally distributed: linear
+  /// interpolation between the two nearest values (Hyndman & Fan 1996, definition 7).
   std::optional<double> p5;
   std::optional<double> p95;
 };
 
-/// Collects values. Keeps them all, 8 bytes each, because percentiles need them: a hundred
-/// thresholds over 10,000 seeds are 8 MB for each measure.
+/// Collects values. It keeps them all, 8 bytes each, because percentiles need them: a hundred
+/// thresholds over 10,000 seeds take 8 MB for each measure.
 class Statistics {
  public:
   void Add(double value);
   std::int64_t count() const { return static_cast<std::int64_t>(values_.size()); }
   std::optional<double> mean() const;
   std::optional<double> deviation() const;
-  /// All of them, of the values so far. The last bits of the mean depend on their order.
+  /// Summary of the values so far. The last bits of the mean depend on the order of the values.
   Summary Result() const;
 
  private:

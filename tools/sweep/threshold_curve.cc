@@ -32,7 +32,7 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
     axis.values.push_back(fmt::format("{}", threshold));
     rows.push_back({.threshold = threshold, .si_pct = {}, .rhe_pct = {}, .collisions = 0});
   }
-  // A unit of this plan is a seed: its rows are the thresholds, and share their paired run.
+  // A unit of this plan is a seed. Its rows are the thresholds, which share their paired run.
   const SweepPlan plan(scenario, {axis}, seeds);
   RunSweep(plan, 0, plan.units(), jobs,
            [&](std::int64_t unit, const std::vector<SweepRow>& results) {

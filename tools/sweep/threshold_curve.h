@@ -1,5 +1,5 @@
-// SI and RHE against the arbitrator's threshold, over seeds: what `fogline table` prints and
-// `fogline report` draws.
+// SI and RHE as functions of the arbitrator's threshold, over seeds. `fogline table` prints them
+// and `fogline report` draws them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace fogline {
 
-/// What the runs of all seeds with one threshold come to.
+/// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
   /// Adds a run. SI and RHE may be missing: SI needs compromised safety in the paired run.
   void Add(const std::optional<double>& si, const RunMeasures& measures) {
@@ -28,19 +28,20 @@ struct ThresholdRow {
   double threshold = 0;
   Statistics si_pct;
   Statistics rhe_pct;
-  std::int64_t collisions = 0;  // runs with one
+  std::int64_t collisions = 0;  // runs with a collision
 };
 
-/// Refuses a scenario whose policy pays no heed to the threshold: its rows would all be the same.
-/// @param file where it comes from
-/// @throws InputError that names the policies which do
+/// Refuses a scenario whose policy does not use the threshold: all its rows would be equal.
+/// @param file source of the scenario, for messages
+/// @throws InputError that names the policies which use the threshold
 void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file);
 
 /// Called after every seed with the number of seeds done; returns false to stop.
 using SeedsDone = std::function<bool(std::int64_t seeds)>;
 
 /// Runs all seeds with every threshold and without traded control, on `jobs` threads. Rows are in
-/// the order of `thresholds`; not a bit of them depends on `jobs`. Incomplete if stopped.
+/// the order of `thresholds`. They are bit for bit the same for every `jobs`. They are incomplete
+/// if `done` stopped the work.
 std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
                                           std::span<const double> thresholds,
                                           const SeedRange& seeds, int jobs, const SeedsDone& done);

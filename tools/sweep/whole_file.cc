@@ -28,9 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bytes that are worth a call of the operating system.
+// Text is written in pieces of at least this size, to save system calls.
 constexpr std::size_t kWorthWriting = 1 << 16;
-// As the kernel follows them (path_resolution(7)).
+// Largest number of links that the kernel follows (path_resolution(7)).
 constexpr int kMostLinks = 40;
 
 [[noreturn]] void ThrowCannotWrite(const fs::path& file, std::string_view option,
@@ -48,15 +48,15 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Where a name leads, link by link.
+/// The file to which a name leads, link by link.
 struct Target {
   fs::path path;
   std::optional<int> descriptor;  // of this process, in place of the path
   fs::file_status status;
 };
 
-/// The descriptor that a name in /proc/self/fd stands for. Opened by that name, a file would be
-/// written from its beginning, over what the descriptor has written so far.
+/// The descriptor that a name in /proc/self/fd stands for. Opening a file by that name would write
+/// from the file's beginning, over the bytes that the descriptor has written so far.
 std::optional<int> DescriptorOf(const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(FolderOf(link), error);
@@ -72,7 +72,8 @@ Target TargetOf(const fs::path& file) {
     if (const auto descriptor = DescriptorOf(path)) {
       return {.path = path, .descriptor = descriptor, .status = fs::status(path, ignored)};
     }
-    path = FolderOf(path) / fs::read_symlink(path, ignored);  // an absolute one stays alone
+    path = FolderOf(path) / fs::read_symlink(path, ignored);  // an absolute link replaces the
+                                                              // folder
   }
   return {.path = path, .descriptor = {}, .status = fs::symlink_status(path, ignored)};
 }
@@ -81,12 +82,12 @@ bool IsStream(const Target& target) {
   return target.descriptor || fs::is_fifo(target.status) || fs::is_character_file(target.status);
 }
 
-/// Why nothing can be written there; "" if it can.
+/// Reason why the file cannot be written; "" if it can.
 std::string Obstacle(const fs::path& file, const Target& target) {
   if (fs::is_directory(target.status)) return "it is a folder";
   if (IsStream(target)) return "";
   if (fs::is_regular_file(target.status)) {
-    // The kernel may forbid to follow a link that another user has laid (protected_symlinks).
+    // The kernel may forbid following a link that another user has made (protected_symlinks).
     const bool is_link = target.path != file;
     return is_link && access(file.c_str(), W_OK) != 0 ? std::strerror(errno) : "";
   }
@@ -95,7 +96,7 @@ std::string Obstacle(const fs::path& file, const Target& target) {
   return fmt::format("it is a link to {}, which is not there", PathText(target.path));
 }
 
-/// A name that no other process has chosen or can foresee.
+/// A name that no other process has chosen or can predict.
 fs::path RandomName(const fs::path& folder) {
   std::array<std::uint64_t, 2> random{};
   if (getrandom(random.data(), sizeof(random), 0) != sizeof(random)) {
@@ -104,12 +105,12 @@ fs::path RandomName(const fs::path& folder) {
   return folder / fmt::format(".fogline-{:016x}{:016x}", random[0], random[1]);
 }
 
-/// Makes a new file, readable and writable as the umask says. @return -1 and errno if it cannot
+/// Makes a new file with the permissions of the umask. @return a descriptor, or -1 with errno
 int MakeNew(const fs::path& file) {
   return open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-/// Makes an empty file in a folder and removes it again. @throws InputError that speaks of `result`
+/// Makes an empty file in a folder and removes it again. @throws InputError that names `result`
 void TryFile(const fs::path& folder, const fs::path& result, std::string_view option) {
   const fs::path file = RandomName(folder);
   const int descriptor = MakeNew(file);
@@ -118,7 +119,8 @@ void TryFile(const fs::path& folder, const fs::path& result, std::string_view op
   unlink(file.c_str());
 }
 
-/// Opens a pipe or device for writing, or gives a copy of a descriptor. @return -1 and errno
+/// Opens a pipe or device for writing, or duplicates a descriptor. @return a descriptor, or -1 with
+/// errno
 int Open(const Target& target) {
   if (target.descriptor) {
     const int flags = fcntl(*target.descriptor, F_GETFL);
@@ -128,7 +130,7 @@ int Open(const Target& target) {
     }
     return fcntl(*target.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   }
-  // A pipe that no process reads is refused by this instead of waited for.
+  // O_NONBLOCK makes open() fail, instead of wait, if no process reads the pipe.
   const int fd = open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;
@@ -239,7 +241,7 @@ void RequireWritable(const fs::path& file, std::string_view option) {
   if (const std::string why = Obstacle(file, target); !why.empty()) {
     ThrowCannotWrite(file, option, why);
   }
-  if (IsStream(target)) return;  // opened and closed, a pipe would be at its end
+  if (IsStream(target)) return;  // opening and closing it would end the pipe for its reader
   RequireFolderOf(file, option);
   TryFile(FolderOf(target.path), file, option);
 }

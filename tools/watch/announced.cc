@@ -6,7 +6,8 @@
 namespace fogline {
 namespace {
 
-// The window is for the traffic. More runs than these are not on one machine, or are invented.
+// Most of the window is for the traffic. If there are more runs than these, they are not on one
+// machine, or they are forged.
 constexpr std::size_t kMaxLines = 8;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Announced runs for people and for programs.
+// Announced runs, as text for people and as JSON for programs.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace fogline {
 
-/// One line for each run. @param followed whether the first one is what is being shown
+/// One line for each run. @param followed whether the view shows the first run
 std::vector<Line> AnnouncedLines(const std::vector<Announcement>& runs, bool followed);
 
-/// A list of objects. @param followed whether the first one is what is being shown
+/// A list of objects. @param followed whether the view shows the first run
 nlohmann::ordered_json AnnouncedJson(const std::vector<Announcement>& runs, bool followed);
 
 }  // namespace fogline

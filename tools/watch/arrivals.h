@@ -1,4 +1,4 @@
-// How often messages of one kind arrive: count, rate, jitter, bandwidth. Fed with times and sizes.
+// Arrivals of messages of one kind: count, rate, jitter, bandwidth. It is fed with times and sizes.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 
 namespace fogline {
 
-/// What is known of arrivals at the end of an interval of observation.
+/// Statistics of arrivals at the end of an interval of observation.
 struct ArrivalView {
-  std::int64_t messages = 0;            // since the first
+  std::int64_t messages = 0;            // since the first message
   double rate_hz = 0;                   // messages of the interval / its length
-  double bandwidth_bytes_per_s = 0;     // payload: without what LCM, UDP and IP add
-  std::optional<double> jitter_s;       // of the interval; none below three arrivals
-  std::optional<double> longest_gap_s;  // of the interval; none below two arrivals
+  double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
+  std::optional<double> jitter_s;       // of the gaps that end in the interval; none below two gaps
+  std::optional<double> longest_gap_s;  // of the gaps that end in the interval; none without a gap
   double age_s = 0;                     // since the last message
 };
 
 /// Counts arrivals, interval by interval. Jitter is the sample standard deviation of the times
-/// between successive arrivals, computed by
-/// the recurrence of Welford (Technometrics 4, 1962).
-/// It needs no clock of the sender, which RFC 3550's interarrival jitter would: a paced run and a
-/// log that is played fast have none that runs like ours.
+/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). It
+/// needs no clock of the sender, unlike RFC 3550's interarrival jitter: a paced run and a log that
+/// is played fast have no clock that runs like the receiver's.
 class Arrivals {
  public:
   void Add(std::size_t bytes, TimePoint now);
 
-  /// Ends an interval of observation and begins the next. @param interval its length
+  /// Ends an interval of observation and begins the next one. @param interval length of the ended
+  /// one
   ArrivalView Observe(TimePoint now, Duration interval);
 
   TimePoint last() const { return last_; }
@@ -38,7 +38,7 @@ class Arrivals {
   // Of the interval:
   std::int64_t new_messages_ = 0;
   std::int64_t new_bytes_ = 0;
-  std::int64_t gaps_ = 0;  // times between arrivals whose second one is in the interval
+  std::int64_t gaps_ = 0;  // times between arrivals whose second arrival is in the interval
   double mean_gap_s_ = 0;
   double sum_of_squares_ = 0;  // of deviations from the mean
   double longest_gap_s_ = 0;

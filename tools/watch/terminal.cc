@@ -31,7 +31,7 @@ Terminal::Terminal() {
     has_keys_ = true;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // stopped, it would leave the shell without echo
+    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stop by Ctrl-Z would leave the shell without echo
     tcsetattr(fd_, TCSANOW, &keys);
   }
   Write(kEnter);
@@ -65,7 +65,7 @@ std::optional<char> Terminal::Key() {
   if (!has_keys_ || poll(&keys, 1, 0) <= 0) return std::nullopt;
   const ssize_t size = read(fd_, &key, 1);
   if (size == 1) return key;
-  // At its end, it would be readable for ever.
+  // At the end of stdin poll() would report it as readable forever.
   if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
   return std::nullopt;
 }

@@ -1,5 +1,5 @@
-// A terminal that is redrawn in place: alternate screen, no echo, one key at a time. ANSI escape
-// sequences (ECMA-48) that every terminal of today knows; nothing of a terminal's database.
+// A terminal that is redrawn in place: alternate screen, no echo, one key at a time. It uses ANSI
+// escape sequences (ECMA-48) that every current terminal knows, and no terminal database.
 #pragma once
 
 #include <termios.h>
@@ -14,20 +14,20 @@ namespace fogline {
 
 class Terminal {
  public:
-  /// Takes stdout, and stdin's keys if that is a terminal too.
+  /// Takes over stdout, and the keys of stdin if stdin is a terminal too.
   Terminal();
-  /// Gives back the screen as it was.
+  /// Restores the screen.
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Replaces what is shown, as much of it as fits.
+  /// Replaces the shown text; lines that do not fit are cut.
   void Draw(std::vector<Line> lines);
 
-  /// Whether the terminal takes nothing more, such as when its window was closed.
+  /// Whether output to the terminal fails, for example because its window was closed.
   bool gone() const { return gone_; }
 
-  /// To be waited on for keys, -1 if there are none.
+  /// Descriptor to wait on for keys; -1 if there are none.
   int fd() const { return has_keys_ ? fd_ : -1; }
   /// The next key that was pressed, if any.
   std::optional<char> Key();

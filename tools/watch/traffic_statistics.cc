@@ -31,7 +31,7 @@ const auto& KnownTypes() {
   return types;
 }
 
-/// Name of the type that the message says it is of, "" if it is none of ours.
+/// Name of the type whose fingerprint the message has; "" if it is no type of Fogline.
 std::string_view TypeNameOf(Bytes bytes) {
   if (bytes.size() < kRunIdOffset) return "";
   for (const KnownType& type : KnownTypes()) {
@@ -58,14 +58,14 @@ bool IsHousekeeping(std::string_view channel) {
 }
 
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
-  if (LooksSealed(bytes)) bytes = WithoutSeal(bytes);  // shown, not verified
+  if (LooksSealed(bytes)) bytes = WithoutSeal(bytes);  // shown, but not verified
   const std::size_t index = ChannelNamed(channel);
   if (index < kNumChannels && bytes.size() >= kHeaderEnd) {
     const std::int64_t run_id = ReadInt64(bytes, kRunIdOffset);
     if (KnownTypes()[index].decodes(bytes)) {
       return AddToRun(RunOf(run_id), index, bytes, now);
     }
-    // Undecodable, but it may say of which run it wants to be.
+    // The message cannot be decoded, but its header may name a run.
     if (RunRecord* run = FindRun(run_id); run != nullptr) {
       ChannelRecord& record = run->channels[index];
       record.any = true;
@@ -112,7 +112,7 @@ void TrafficStatistics::AddStatus(RunRecord& run, Bytes bytes, TimePoint now) {
   if (!Decode(bytes, status)) return;
   for (RoleRecord& role : run.roles) {
     if (role.status.instance != status.instance || role.status.role != status.role) continue;
-    if (status.sequence <= role.status.sequence) return;  // a copy, or overtaken
+    if (status.sequence <= role.status.sequence) return;  // a copy, or a newer one has overtaken it
     role.status = std::move(status);
     role.heard = now;
     return;
@@ -206,7 +206,8 @@ std::vector<RoleView> TrafficStatistics::ObserveRoles(RunRecord& run, TimePoint 
   std::vector<RoleView> views;
   for (RoleRecord& role : run.roles) {
     if (role.heard > role.base) {
-      // In double: the counters come from the network, and their difference may not fit.
+      // As double: the counters come from the network, and their difference may overflow an
+      // integer.
       const double cpu_ms =
           static_cast<double>(role.status.cpu_ms) - static_cast<double>(role.base_cpu_ms);
       role.cpu_percent = 100 * 1e-3 * cpu_ms / Seconds(role.heard - role.base);

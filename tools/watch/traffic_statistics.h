@@ -1,5 +1,6 @@
-// What goes over an LCM network, run by run, channel by channel, role by role. Not a subscriber and
-// not a clock: it is fed with messages and times, and shown by traffic_text and traffic_json.
+// Statistics of the traffic on an LCM network, by run, channel and role. It neither subscribes nor
+// reads a clock: its user feeds it with messages and times. traffic_text and traffic_json show the
+// result.
 #pragma once
 
 #include <array>
@@ -19,70 +20,72 @@
 
 namespace fogline {
 
-/// Messages that could not be decoded, by what they seem to be: a type by its fingerprint (then the
-/// channel or the size is wrong), or "unknown".
+/// Messages that could not be decoded, counted by the type that their fingerprint names (then the
+/// channel or the size is wrong), or by "unknown".
 using Undecodable = std::map<std::string, std::int64_t>;
 
 struct ChannelView {
   std::string channel;
-  std::string type;  // "" if no message of a known type has come
+  std::string type;  // "" if no message of a known type has arrived
   ArrivalView arrivals;
-  std::optional<StepSequence::Counts> steps;  // of channels with a message in every step
+  std::optional<StepSequence::Counts> steps;  // only for channels with a message in every step
   Undecodable undecodable;
 
   std::int64_t NumUndecodable() const;
 };
 
-/// A role as its last STATUS has it.
+/// A role according to its last STATUS.
 struct RoleView {
   status_t status;
-  std::optional<double> cpu_percent;  // of one processor; none before two readings
+  std::optional<double> cpu_percent;  // of one processor; none before the second reading
   double age_s = 0;                   // of the last STATUS
   bool silent = false;                // older than kSilent
 };
 
 struct RunView {
   std::int64_t run_id = 0;
-  std::int64_t step = -1;            // newest on any channel
+  std::int64_t step = -1;            // newest on all channels
   std::optional<std::int8_t> phase;  // of run_t, none before the first RUN message
   double pace = 0;
   std::string scenario_hash;
   std::vector<ChannelView> channels;  // in the order of kGraph
-  std::vector<RoleView> roles;        // in the order of kRoles, instances as they have come
+  std::vector<RoleView> roles;        // in the order of kRoles, instances in the order of their
+                                      // arrival
 };
 
 struct TrafficView {
   double interval_s = 0;
   std::vector<RunView> runs;        // in the order of their first message
-  std::vector<ChannelView> others;  // messages of no run, by channel's name
-  std::int64_t forgotten = 0;       // runs, channels and roles beyond what is kept
+  std::vector<ChannelView> others;  // messages that belong to no run, by the name of their channel
+  std::int64_t forgotten = 0;       // number of runs, channels and roles that were dropped for lack
+                                    // of room
 };
 
-/// Whether a channel carries no traffic of anybody: what LCM says to itself (its test of the
-/// network, and where mpudpm tells its ports), and the beacons of runs.
+/// Whether a channel carries no traffic of programs: LCM's own channels (its test of the network,
+/// and the announcements of ports by mpudpm), and the beacons of runs.
 bool IsHousekeeping(std::string_view channel);
 
-/// Statistics of everything that arrives. What it remembers is bounded, whatever arrives: where
-/// there is no room, what has been silent longest is forgotten.
+/// Statistics of everything that arrives. Its memory is bounded for any input: when there is no
+/// room, it forgets the entry that has been silent longest.
 class TrafficStatistics {
  public:
   explicit TrafficStatistics(TimePoint now) : observed_(now) {}
 
   void Add(std::string_view channel, Bytes bytes, TimePoint now);
 
-  /// What there is to see; ends an interval of observation and begins the next.
+  /// The current statistics. It ends an interval of observation and begins the next one.
   TrafficView Observe(TimePoint now);
 
-  /// How often a message came on a channel whose name was not known, or known no more.
+  /// Number of messages on channels whose names were unknown or forgotten.
   std::int64_t unknown_names() const { return unknown_names_; }
 
-  /// A role that has not sent STATUS for so long is silent: five heartbeats.
+  /// A role that has sent no STATUS for this long is silent: five heartbeats.
   static constexpr Duration kSilent = milliseconds(1000);
-  /// An instance of a role that another one has followed is forgotten when it is silent so long.
+  /// A replaced instance of a role is forgotten after this time of silence.
   static constexpr Duration kFollowed = milliseconds(10'000);
   static constexpr std::size_t kMaxRuns = 8;
   static constexpr std::size_t kMaxOthers = 64;
-  static constexpr std::size_t kMaxRoles = 32;  // of one run, with those that were restarted
+  static constexpr std::size_t kMaxRoles = 32;  // of one run, restarted ones included
 
  private:
   struct ChannelRecord {
@@ -95,7 +98,7 @@ class TrafficStatistics {
   struct RoleRecord {
     status_t status;
     TimePoint heard;
-    // Reading of processor time that the next one is compared with.
+    // The last reading of processor time; the next one is compared with it.
     std::int64_t base_cpu_ms = 0;
     TimePoint base;
     std::optional<double> cpu_percent;

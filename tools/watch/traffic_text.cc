@@ -12,7 +12,8 @@ namespace {
 constexpr double kMilli = 1e-3;
 constexpr double kKilo = 1e3;
 constexpr double kMega = 1e6;
-// Characters of a scenario's hash that tell two scenarios apart.
+// Number of characters of a scenario's hash that are shown; they suffice to tell two scenarios
+// apart.
 constexpr std::size_t kHashShown = 12;
 
 std::string Number(const std::optional<double>& value, double unit, int decimals) {
@@ -28,7 +29,7 @@ std::string NameOfUndecodable(const Undecodable& undecodable) {
   return text;
 }
 
-// What matters most fits 80 columns.
+// The most important columns fit into 80 characters.
 constexpr const char* kChannelRow =
     " {:<16}{:>9}{:>8}{:>10}{:>8}{:>7}{:>8}{:>6}{:>7}{:>6}{:>6}  {:<18}  {}";
 
@@ -63,7 +64,7 @@ Line RoleHeading() {
           Line::Style::kHeading};
 }
 
-/// What is wrong with a role or holds it up.
+/// Problems of a role, and what it waits for.
 std::string Remarks(const RoleView& role) {
   std::string text;
   const auto add = [&text](const std::string& remark) {

@@ -1,4 +1,4 @@
-// TrafficView for people: lines of text that fit a window, or one JSON document.
+// TrafficView for people: lines of text that fit into a window.
 #pragma once
 
 #include <string>
@@ -18,11 +18,11 @@ struct Line {
   Style style = Style::kPlain;
 };
 
-/// The view as a table. What came from the network is printed with '?' for everything but ASCII
-/// letters, digits, signs and spaces: nobody on it can send commands to the terminal.
+/// The view as a table. Text from the network is printed with '?' for everything but ASCII letters,
+/// digits, signs and spaces, so that no sender can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
-/// The lines that a window has room for; the last one says how many it has not.
+/// The lines that fit into a window. The last line says how many lines do not fit.
 std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows);
 
 nlohmann::ordered_json TrafficJson(const TrafficView& view, std::string_view url);

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# cluster_test.sh FOGLINE HOW: a sweep made of seven shards by HOW (parallel or slurm, of tools/cluster)
-# has the bytes of the sweep that was never split, also after one of its shards was lost half-way.
+# cluster_test.sh FOGLINE HOW: makes a sweep of seven shards with tools/cluster/HOW (parallel or
+# slurm). The merged file must have the bytes of an unsplit sweep, also after one shard was lost
+# half-way.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 export FOGLINE=$1
 how=$2
 folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-cluster-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
-# A folder's name that a shell must not take apart.
+# A folder name with a space, which a shell must not split.
 mkdir "$folder/my sweep"
 out="$folder/my sweep/made.csv"
 sweep=(scenario/paper.json --grid /arbitrator/threshold=0.2,0.5,0.8 --seeds 1:1000
@@ -33,13 +34,13 @@ compare() {
 make || fail "failed"
 compare "seven shards"
 
-# One shard torn as by a kill, one gone, and the merged file not made yet.
+# One shard is torn as by a kill, one is missing, and the merged file does not exist yet.
 truncate --size=-10000 "${out%.csv}.shard-3-of-7.csv"
 rm "${out%.csv}.shard-5-of-7.csv" "$out" "$out.json"
 make || fail "failed the second time"
 compare "resumed shards"
 
-# What is wrong with a sweep comes out as a failure, and no merged file.
+# A mistake in a sweep makes the script fail, and there is no merged file.
 rm "$out" "$out.json"
 sweep+=(--set /fog/bias_m=1)
 if make; then fail "took shards of another sweep"; fi

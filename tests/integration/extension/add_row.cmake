@@ -1,4 +1,5 @@
-# Copies a table with one row more, which stands in a README, at its end, and the #include for it.
+# Copies a table. The copy has one more row at its end, taken from a README, and the #include for
+# that row.
 file(READ "${README}" readme)
 string(FIND "${readme}" "${ROW}" begin)
 if(begin EQUAL -1)

@@ -1,4 +1,5 @@
-// A ninth policy and another measure of conflict are in every study of them by their row alone.
+// A policy and a measure of conflict that are added to their tables take part in every study. One
+// row in the table is enough.
 #include <map>
 #include <sstream>
 #include <string>
@@ -25,7 +26,7 @@ StudyResult Make(std::string_view name) {
                      .progress = {}});
 }
 
-/// The values of a column, by how many lines have each.
+/// How many lines have each value of a column.
 std::map<std::string, int> Column(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;
@@ -56,7 +57,7 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
   for (const std::string& finding : result.section.findings) {
     EXPECT_THAT(finding, HasSubstr("cautious "));
   }
-  // AND it is known as a rival of the same runs: the track is never uncertain in these scenarios
+  // AND the study tells that it gives the same runs as `traded`: the track is never uncertain here
   EXPECT_THAT(result.section.findings[0],
               testing::ContainsRegex("[Cc]autious.* the same runs as traded"));
   EXPECT_THAT(result.section.figures[0].categories, Contains("cautious"));

@@ -1,5 +1,5 @@
-// A human driver with nothing of Fogline but its message types. It shows what a role must do, in
-// any language. (In C++ there is a shorter way: my_driver.cc.)
+// A human driver that uses only Fogline's message types. It shows what a role must do in any
+// language. (In C++ there is a shorter way: my_driver.cc.)
 //
 //   c++ -O2 -ffp-contract=off bare_driver.cc -I PREFIX/include -llcm -o bare_driver
 //   ./bare_driver 'udpm://239.255.76.67:7700?ttl=0&recv_buf_size=2097152' &
@@ -39,7 +39,7 @@ double Idm(double v, double preceding_v, double gap, double headway) {
 class BareDriver {
  public:
   BareDriver(lcm::LCM& lcm, double headway) : lcm_(lcm), headway_(headway) {
-    // 0 is no limit: LCM's own, 30 messages that wait, drops the newest.
+    // 0 is no limit. LCM's default is 30 waiting messages, and it drops the newest beyond that.
     lcm_.subscribe("RUN", &BareDriver::OnRun, this)->setQueueCapacity(0);
     lcm_.subscribe("TRUTH", &BareDriver::OnTruth, this)->setQueueCapacity(0);
     lcm_.subscribe("RESEND", &BareDriver::OnResend, this)->setQueueCapacity(0);
@@ -48,7 +48,7 @@ class BareDriver {
     status_.role = "driver";
     status_.host = host;
     status_.pid = getpid();
-    status_.instance = getpid();  // no other driver of this run has it
+    status_.instance = getpid();  // a number that no other driver of this run has
     status_.type_fingerprint = TypeFingerprint();
     status_.header.step = -1;
   }
@@ -61,8 +61,8 @@ class BareDriver {
   }
 
  private:
-  // The first run that is announced is ours. The runner repeats PREPARE until every role has said
-  // READY, with the scenario's hash; then the world starts.
+  // The driver joins the first run that it hears. The runner repeats PREPARE until every role has
+  // said READY, with the scenario's hash. Then the world starts.
   void OnRun(const lcm::ReceiveBuffer*, const std::string&, const run_t* run) {
     if (status_.state == status_t::WAITING && run->phase == run_t::PREPARE) {
       status_.header.run_id = run->header.run_id;
@@ -74,7 +74,7 @@ class BareDriver {
     stopped_ = run->phase == run_t::STOP;
   }
 
-  // One answer to each step; a question that comes twice is no reason to answer twice.
+  // One answer to each step. A TRUTH that comes twice gets no second answer.
   void OnTruth(const lcm::ReceiveBuffer*, const std::string&, const truth_t* truth) {
     const int64_t step = truth->header.step;
     if (!IsOurs(truth->header) || answers_.count(step) > 0) return;
@@ -84,12 +84,13 @@ class BareDriver {
                                    truth->host_gap_m, headway_);
     answer.readiness = 1;
     lcm_.publish("DRIVER_COMMAND", &answer);
-    answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // nobody is that far behind
+    answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // no role lags that much
     status_.state = status_t::RUNNING;
     status_.header.step = step;
   }
 
-  // Somebody lacks an answer: give it again, or ask for the question if we lack that.
+  // Another role lacks an answer: repeat it. If this driver lacks the TRUTH of that step, ask for
+  // it.
   void OnResend(const lcm::ReceiveBuffer*, const std::string&, const resend_t* resend) {
     if (!IsOurs(resend->header) || resend->channel != "DRIVER_COMMAND") return;
     const auto answer = answers_.find(resend->header.step);
@@ -120,12 +121,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   lcm::LCM lcm(argv[1]);
-  if (!lcm.good()) return 3;  // LCM has said why
+  if (!lcm.good()) return 3;  // LCM has printed the reason
   BareDriver driver(lcm, argc > 2 ? std::atof(argv[2]) : 1.6);
   std::cout << "waiting for a run on " << argv[1] << std::endl;
   while (!driver.stopped()) {
     const int handled = lcm.handleTimeout(50);  // ms
     if (handled < 0) return 3;
-    if (handled == 0) driver.SayStatus();  // a sign of life whenever there is nothing else to do
+    if (handled == 0) driver.SayStatus();  // a sign of life if no message came
   }
 }

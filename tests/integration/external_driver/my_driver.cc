@@ -1,5 +1,6 @@
-// A driver of one's own: the linear car-following model, with the gains of Helly (1959). What its
-// Step takes and gives makes it the role "driver" (services/graph.h); RunService does the rest.
+// A driver of your own: the linear car-following model, with the gains of Helly (1959). The
+// argument and the result of Step() make it the role "driver" (services/graph.h). RunService does
+// the rest.
 #include "services/runtime/service.h"
 
 class MyDriver {

@@ -1,5 +1,5 @@
-// A page of the report in headless Chromium. Each test adds a script to a copy of the page; the
-// script puts what it finds into an attribute, which Chromium prints with the rest of the page.
+// A page of the report in headless Chromium. Each test adds a script to a copy of the page. The
+// script writes its findings into an attribute, which Chromium prints with the rest of the page.
 #pragma once
 
 #include <chrono>
@@ -21,24 +21,24 @@ struct ViewSize {
   int width;
   int height;
 };
-/// What the reader prefers, by Chromium's numbers.
+/// The colour scheme that the reader prefers, as Chromium numbers it.
 enum class Scheme { kDark = 0, kLight = 1 };
 
 inline constexpr ViewSize kDesktop{1280, 900};
 inline constexpr ViewSize kPhone{360, 740};
 
-/// The page in a frame of the wanted size (a window is never narrower than 500 pixels), and an
-/// unfinished document beside it: Chromium prints when everything is loaded, so the probe ends that
-/// document when it is done.
+/// The page in a frame of the wanted size (a window itself has at least 500 pixels), beside an
+/// unfinished document. Chromium prints when everything is loaded, so the probe ends that document
+/// when it is done.
 inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
 <iframe id="hold" hidden></iframe>
 <script>document.getElementById("hold").contentDocument.open();</script>
 <iframe style="border:0;width:{}px;height:{}px" srcdoc="{}"></iframe>)";
 
-/// For a browser that starts on a busy machine; a page takes about a second.
+/// The time limit for a browser on a busy machine. A page takes about a second.
 inline constexpr std::chrono::seconds kPatience(60);
 
-/// Runs before everything else in the page.
+/// This script runs before everything else in the page and collects its errors.
 inline constexpr std::string_view kWatch = R"(<script>
 const problems = [];
 addEventListener("error", (event) => problems.push(event.message));
@@ -47,7 +47,7 @@ addEventListener("securitypolicyviolation", (event) => problems.push(event.viola
 console.error = (...what) => problems.push(what.join(" "));
 </script>)";
 
-/// Runs last, with the test's own part in the middle.
+/// This script runs last. It contains the test's own script.
 inline constexpr std::string_view kProbe = R"(<script>
 const frame = () => new Promise(requestAnimationFrame);
 const settled = async () => {{ for (let i = 0; i < 5; ++i) await frame(); }};
@@ -87,8 +87,8 @@ inline std::string Replaced(std::string text, std::string_view what, std::string
 
 class BrowserTest : public ::testing::Test {
  protected:
-  /// Shows a page in a window and returns what `script` put into `found`, with "problems" and the
-  /// number of things "loaded" from outside.
+  /// Shows a page in a window and runs `script`. @return the object `found` of the script, with the
+  /// page's "problems" and with "loaded", the number of resources from outside
   nlohmann::json Show(std::string report, ViewSize window, std::string_view script,
                       Scheme scheme = Scheme::kLight) {
     report.insert(report.find("<meta"), kWatch);

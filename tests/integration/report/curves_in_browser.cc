@@ -97,7 +97,7 @@ TEST_F(CurvesInBrowserTest, HidesAMeasureWithItsBandsAndShowsItAgain) {
     await settled();
     found.again = counts();)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
-  EXPECT_EQ(found["before"], json::parse("[11, 4]"));  // threshold; two means, each with two bands
+  EXPECT_EQ(found["before"], json::parse("[11, 4]"));  // the threshold; 2 means, each with 2 bands
   EXPECT_EQ(found["hidden"], json::parse("[6, 2]"));
   EXPECT_EQ(found["again"], found["before"]);
   EXPECT_EQ(found["focus"], "SI");

@@ -1,5 +1,5 @@
-// The report of runs in a real browser: are the figures drawn, does it stay within the width of a
-// phone, does it do what the reader asks.
+// The report of runs in a real browser: it draws its figures, stays within the width of a phone,
+// and does what the reader asks.
 #include <limits>
 #include <span>
 #include <string>
@@ -213,7 +213,7 @@ TEST_F(ReportInBrowserTest, HidesACurveAndShowsItAgain) {
     found.after = series();
     found.focus = document.activeElement.textContent;)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
-  EXPECT_EQ(found["before"], 2);  // gap and safe distance
+  EXPECT_EQ(found["before"], 2);  // the lines gap and safe distance
   EXPECT_EQ(found["after"], 1);
   EXPECT_EQ(found["focus"], "gap");
 }

@@ -1,5 +1,5 @@
-// The page of studies in a real browser: has it every study, are its figures drawn, does it do what
-// the reader asks.
+// The page of studies in a real browser: it has every study, draws its figures, and does what the
+// reader asks.
 #include <string>
 #include <vector>
 
@@ -117,7 +117,7 @@ TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
 }
 
 TEST_F(StudyInBrowserTest, CutsNoNameOfARowOff) {
-  // A text that goes on beyond the canvas has ink in the last pixels of it.
+  // If a text is cut off at the canvas, it has ink in the outermost pixels.
   constexpr std::string_view kInk = R"(
     const hasInk = (canvas, x, y, width, height) =>
         canvas.getContext("2d").getImageData(x, y, width, height).data.some((v) => v > 0);

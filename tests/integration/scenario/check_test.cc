@@ -34,7 +34,7 @@ Outcome RunCheck(const std::vector<std::string>& arguments) {
   return test::RunCommand(command);
 }
 
-// Names of the files in scenario/bad that end in `extension`, without it.
+// The names, without their extension, of the files in scenario/bad that end in `extension`.
 std::vector<std::string> BadNames(const std::string& extension) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(SourceDirectory() / "scenario/bad")) {
@@ -44,7 +44,8 @@ std::vector<std::string> BadNames(const std::string& extension) {
   return names;
 }
 
-// Runs in the repository's folder, so that messages have the file names of the expected texts.
+// It runs in the repository's folder, so that error texts have the file names that the tests
+// expect.
 class BadScenarioTest : public testing::TestWithParam<std::string> {
  protected:
   BadScenarioTest() { fs::current_path(SourceDirectory()); }

@@ -27,7 +27,7 @@ RANDOM_MUTATIONS = 600
 
 
 def load(data):
-    """JSON as strict as RFC 8259 and I-JSON (RFC 7493) ask; raises ValueError otherwise."""
+    """Parses JSON as strictly as RFC 8259 and I-JSON (RFC 7493) demand. Raises ValueError for other text."""
 
     def refuse_duplicates(pairs):
         keys = [key for key, _ in pairs]
@@ -46,7 +46,7 @@ def load(data):
 
 
 def schema_verdict(validator, path):
-    """None if the schema accepts the file, otherwise why not."""
+    """None if the schema accepts the file, otherwise the reason."""
     try:
         document = load(path.read_bytes())
     except (ValueError, RecursionError) as error:
@@ -56,9 +56,9 @@ def schema_verdict(validator, path):
 
 
 def loader_verdicts(fogline, paths):
-    """For each path None if the loader accepts it, otherwise why not. What it says about the rows of
-    a recorded leader's own file (rules csv-*), or about fields that do not go together (impossible),
-    is none of a schema's business."""
+    """For each path None if the loader accepts it, otherwise the reason. It ignores mistakes that a schema
+    cannot find: in the rows of a recorded leader's own file (rules csv-*), and in fields that contradict
+    each other (rule impossible)."""
     names = [str(path) for path in paths]
     process = subprocess.run([fogline, "check", "--json", *names], capture_output=True, check=False)
     if process.returncode not in (0, 2):
@@ -71,7 +71,7 @@ def loader_verdicts(fogline, paths):
 
 
 def leaves(schema, path=()):
-    """Every field of the schema that is no section, as (path, its schema); * is a list's item."""
+    """Every field of the schema that is not a section, as (path, its schema). * stands for a list's item."""
     for name, part in schema.get("properties", {}).items():
         yield from leaves(part, path + (name,))
     if schema["type"] == "array":
@@ -81,7 +81,7 @@ def leaves(schema, path=()):
 
 
 def at_the_ends(schema):
-    """Values that are just allowed and just not allowed, and one of each wrong type."""
+    """Values just inside and just outside of the allowed range, and a value of each wrong type."""
     values = [None, True, -1, 0.5, 3.0, "text", "7", [], {}, [[]], [{}]]
     if "minimum" in schema:
         low, high = schema["minimum"], schema["maximum"]
@@ -114,7 +114,7 @@ def boundary_documents(schema):
 
 
 def places(node):
-    """Every container in a document, with the keys or indices in it."""
+    """Every pair of a container in a document and a key or index in it."""
     if isinstance(node, (dict, list)):
         items = list(node.items()) if isinstance(node, dict) else list(enumerate(node))
         for key, child in items:
@@ -123,7 +123,7 @@ def places(node):
 
 
 def mutate(document, fragments, rng):
-    """One to three values or keys of the document change, go, or are copied elsewhere."""
+    """A copy of the document: one to three values or keys are changed, removed or copied elsewhere."""
     document = copy.deepcopy(document)
     for _ in range(rng.randint(1, 3)):
         spots = list(places(document))
@@ -181,7 +181,7 @@ def check_defaults(schema):
 
 
 def compare(fogline, validator, what, paths, at_least):
-    """Number of files on which the two disagree, each with both reasons on stderr."""
+    """The number of files on which the two disagree. Prints both reasons for each of them on stderr."""
     disagreements = accepted = 0
     for path, loader in zip(paths, loader_verdicts(fogline, paths)):
         schema = schema_verdict(validator, path)

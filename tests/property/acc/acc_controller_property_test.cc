@@ -15,7 +15,8 @@ using Solver = AccController::Solver;
 
 constexpr double kTolerance = 1e-9;
 
-// From calm to hopeless, slow cars as often as fast ones.
+// From calm to hopeless situations. The speed is logarithmic, so slow cars are as frequent as fast
+// ones.
 AccController::Input RandomInput(Draw& draw, const AccSection& section) {
   const double scale = draw.LogUniform(0.01, 1);
   const double speed = draw.LogUniform(0.5, 55);
@@ -26,14 +27,15 @@ AccController::Input RandomInput(Draw& draw, const AccSection& section) {
           .has_target = true};
 }
 
-// The first control that a new controller counts its change from.
+// The control from which a new controller counts its first change.
 double PreviousControl(const AccSection& section, double acceleration_mps2) {
   return std::clamp(-acceleration_mps2 / section.engine_gain,
                     -section.max_acceleration_mps2 / section.engine_gain,
                     -section.min_acceleration_mps2 / section.engine_gain);
 }
 
-// Calls `check` with a section, a step, an input, and the first answer of a controller to it.
+// Calls `check` with a section, a step, an input, the controller, and its first answer to the
+// input.
 template <class Check>
 void ForRandomSituations(std::int64_t seed, Check&& check) {
   Draw draw(seed);
@@ -76,7 +78,7 @@ TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
   });
 }
 
-// The highest speed at which the car would settle during the fall-back plan.
+// The highest speed that the car reaches or would settle at during the fall-back plan.
 double HighestInFallback(const AccSection& section, double step_s,
                          const AccController::Input& input) {
   const AccProgram program(section, step_s);
@@ -91,7 +93,8 @@ double HighestInFallback(const AccSection& section, double step_s,
   return highest;
 }
 
-// Speeds by the model's integrals written out, also in the middle of each step.
+// The test computes speeds by the written-out integrals of the model, also in the middle of each
+// step.
 TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
   int close = 0;
   ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,
@@ -134,7 +137,7 @@ TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
   EXPECT_GT(faster, 100);
 }
 
-// The precomputed gain is taken only if the plan keeps the soft limits, too.
+// The controller takes the precomputed gain only if the plan also keeps the soft limits.
 TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
   int close = 0;
   ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
@@ -168,7 +171,7 @@ TEST(AccControllerPropertyTest, TheCommandGoesOnFromTheRealAcceleration) {
   });
 }
 
-// A leader that drives as the automation itself may, any time.
+// The leader drives at any time as the automation itself may drive.
 TEST(AccControllerPropertyTest, NeverHitsALeaderThatBrakesNoHarderThanItself) {
   Draw draw(7);
   const AccSection section;

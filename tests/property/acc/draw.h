@@ -1,4 +1,4 @@
-// Random numbers for properties: the same in every run.
+// Random numbers for property tests, the same in every execution.
 #pragma once
 
 #include <cmath>
@@ -10,17 +10,17 @@
 
 namespace fogline {
 
-/// Draws one number after the other from a seed.
+/// Draws a sequence of numbers from a seed.
 class Draw {
  public:
   explicit Draw(std::int64_t seed) : random_(seed, kTestStream) {}
 
   double Uniform(double min, double max) { return min + (max - min) * Next(); }
 
-  /// Every order of magnitude alike.
+  /// Every order of magnitude is equally likely.
   double LogUniform(double min, double max) { return min * std::pow(max / min, Next()); }
 
-  /// In [min, max].
+  /// A whole number in [min, max], uniform.
   Eigen::Index Integer(Eigen::Index min, Eigen::Index max) {
     return min + static_cast<Eigen::Index>(Next() * static_cast<double>(max - min + 1));
   }

@@ -1,7 +1,7 @@
 // Writes random quadratic programs and this project's solutions to standard output, for
-// qp_against_cvxopt.py: 500 of any kind and 500 of the ACC, all with active limits. Each is a row
-// of doubles of this machine: n, m, H (n x n), g (n), C (m x n), lower (m), upper (m), x (n);
-// matrices column by column.
+// qp_against_cvxopt.py. There are 500 general programs and 500 of the ACC, all with active limits.
+// Each program is a row of doubles in this machine's byte order: n, m, H (n x n), g (n), C (m x n),
+// lower (m), upper (m), x (n). Matrices are column by column.
 #include <cstdio>
 
 #include "services/acc/qp.h"
@@ -29,17 +29,18 @@ void Write(const QuadraticProgram& program, const Eigen::VectorXd& x) {
   Write(x);
 }
 
-// Writes the program and its solution if that has active limits.
+// Writes a program and its solution if the solution has active limits. @return whether it was
+// written
 bool SolveAndWrite(QpSolver& solver, const QuadraticProgram& program) {
   const QpSolver::Result result = solver.Solve(program.linear, program.lower, program.upper);
-  // An unsolved program is written, too: its comparison fails.
+  // It also writes an unsolved program, so that the comparison fails.
   if (result.status == QpSolver::Status::kOptimal && solver.multipliers().isZero(0)) return false;
   Write(program, solver.solution());
   return true;
 }
 
-// Whether the set of feasible plans has an inside, which an interior-point method needs. A car that
-// is too fast has to brake along one line, until it is slow enough.
+// Whether the set of feasible plans has an interior, which an interior-point method needs. A car
+// that is too fast has none: it must brake along one line until it is slow enough.
 bool HasInterior(const AccSection& section, const AccSituation& now) {
   return now.speed_mps + section.engine_time_constant_s * now.state(kOwnAcceleration) <
          section.max_speed_mps;

@@ -18,14 +18,14 @@ constexpr QpSolver::Options kOptions{.max_iterations = 10'000};
 
 double Largest(const VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; }
 
-// The conditions of Karush, Kuhn & Tucker, which are necessary and sufficient for the one minimum
-// of a strictly convex program. Returns the number of active limits.
+// Expects the conditions of Karush, Kuhn & Tucker. They are necessary and sufficient for the only
+// minimum of a strictly convex program. @return the number of active limits
 int ExpectMinimum(const QuadraticProgram& program, const QpSolver& solver) {
   const VectorXd& x = solver.solution();
   const VectorXd& y = solver.multipliers();
   const VectorXd slope = program.hessian * x + program.linear;
   const VectorXd pull = program.constraints.transpose() * y;
-  // Rounding of the sums, relative to their terms.
+  // The rounding of the sums, relative to their terms.
   const double scale = 1 + Largest(program.hessian.cwiseAbs() * x.cwiseAbs()) +
                        Largest(program.linear) +
                        Largest(program.constraints.cwiseAbs().transpose() * y.cwiseAbs());
@@ -58,7 +58,7 @@ TEST(QpPropertyTest, RandomProgramsAreSolvedToTheirMinimum) {
   EXPECT_GT(with_active_limits, 1500);
 }
 
-// One solver sees all situations of a section, so most of its starts are far from the minimum.
+// One solver solves all situations of a section, so most of its starts are far from the minimum.
 TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
   Draw draw(2);
   int with_active_limits = 0;
@@ -93,14 +93,14 @@ TEST(QpPropertyTest, TheMinimumDoesNotDependOnTheStart) {
   }
 }
 
-// A row that is a combination of others, with a limit that theirs rule out (Farkas' lemma).
+// A row is a combination of other rows, and its limit contradicts their limits (Farkas' lemma).
 TEST(QpPropertyTest, ContradictionsAreFound) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {
     QuadraticProgram program = RandomProgram(draw);
     const Index n = program.hessian.rows();
     const Index m = program.constraints.rows();
-    // GIVEN c = sum w_r c_r with w_r >= 0, so that c'x <= sum w_r upper_r
+    // GIVEN a row c = sum w_r c_r with w_r >= 0, so that c'x <= sum w_r upper_r
     const Index row = draw.Integer(0, m - 1);
     const Index other = draw.Integer(0, m - 1);
     const double weight = draw.Uniform(0.1, 2);
@@ -112,11 +112,11 @@ TEST(QpPropertyTest, ContradictionsAreFound) {
     program.upper.conservativeResize(m + 1);
     program.constraints.row(m) =
         program.constraints.row(row) + weight * program.constraints.row(other);
-    // WHEN c'x must be more than that
+    // WHEN c'x must be greater than that sum
     program.lower(m) =
         program.upper(row) + weight * program.upper(other) + draw.LogUniform(1e-6, 1);
     program.upper(m) = std::numeric_limits<double>::infinity();
-    // THEN there is no solution, whatever limits the solver has met before.
+    // THEN there is no solution
     QpSolver solver(program.hessian, program.constraints, kOptions);
     EXPECT_EQ(solver.Solve(program.linear, program.lower, program.upper).status,
               Status::kInfeasible)

@@ -23,9 +23,9 @@ struct QuadraticProgram {
   double Cost(const Eigen::VectorXd& x) const { return 0.5 * x.dot(hessian * x) + linear.dot(x); }
 };
 
-/// Feasible by construction, with up to 20 variables and up to three rows for each, some of which
-/// are one-sided, equalities, or multiples of another. The unconstrained minimum is outside as a
-/// rule. Condition numbers are up to 1e4.
+/// A program that is feasible by construction. It has up to 20 variables and up to three rows for
+/// each. Some rows are one-sided, equalities, or multiples of other rows. The unconstrained minimum
+/// is usually outside of the limits. Condition numbers are up to 1e4.
 inline QuadraticProgram RandomProgram(Draw& draw) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Index n = draw.Integer(1, 20);
@@ -84,7 +84,7 @@ inline AccSection RandomSection(Draw& draw) {
 
 inline double RandomStep(Draw& draw) { return draw.LogUniform(0.02, 0.5); }
 
-/// From calm to hopeless; the speed may be above the section's maximum.
+/// From calm to hopeless situations. The speed may be above the section's maximum.
 inline AccSituation RandomSituation(Draw& draw, const AccProgram& program) {
   AccSituation now;
   const double scale = draw.LogUniform(0.01, 1);

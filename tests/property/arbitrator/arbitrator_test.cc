@@ -16,7 +16,7 @@ namespace {
 constexpr auto kAbsolute = ConflictReading::kMeanOfAbsolute;
 constexpr auto kSigned = ConflictReading::kAbsoluteOfMean;
 
-// A difference of a metre or so; in one step of five there is none.
+// A difference of about a metre. In one step of five there is none.
 std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
   if (random.Uniform2(step, 0)[0] < 0.2) return std::nullopt;
   return random.Normal2(step, 1)[0];
@@ -28,7 +28,7 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
       const double doc = DegreeOfConflict(z, slope, 1);
       EXPECT_GE(doc, 0);
       EXPECT_LE(doc, 1);
-      // Strictly, as long as DoC is not within rounding of 1.
+      // DoC grows strictly, as long as it is not within rounding of 1.
       if (doc < 1 - 1e-12) {
         EXPECT_LT(doc, DegreeOfConflict(z + 0.01, slope, 1));
       }
@@ -37,7 +37,7 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
   }
 }
 
-// Against a window of the plainest kind, in exact agreement: nothing drifts, nothing is forgotten.
+// A simple window with deque and loops must agree exactly: no drift, and no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
     ConflictWindow window(length);
@@ -84,7 +84,7 @@ TEST(ConflictWindowPropertyTest, MeanOfAbsoluteIsNeverBelowTheOtherReading) {
   for (int k = 0; k < 2000; ++k) {
     window.Push(AnyDifference(random, k));
     const double absolute = window.Conflict(kAbsolute);
-    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // rounded in another order
+    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // another order of rounding
     ASSERT_GE(window.Conflict(kSigned), 0);
   }
 }

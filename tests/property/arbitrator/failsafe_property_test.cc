@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-// The newest messages of all inputs, with values that are anything within reason.
+// The newest messages of all inputs, with arbitrary plausible values.
 struct Messages {
   ego_t ego{};
   radar_t radar{};
@@ -32,7 +32,7 @@ void Refresh(Messages& m, const Random& random, const header_t& header) {
   m.ego.header = m.radar.header = m.lidar.header = m.track.header = header;
   m.automation.header = m.driver.header = header;
   m.radar.valid = m.lidar.valid = random.Uniform2(header.step, 2)[0] < 0.9;
-  m.radar.range_m = 32 + radar_noise;  // so z is about 1.1 m, where the DoC changes
+  m.radar.range_m = 32 + radar_noise;  // so z is about 1.1 m, where the DoC is steep
   m.lidar.range_m = 32 + lidar_noise;
   m.automation.acceleration_mps2 = -3 + 5 * automation;
   m.driver.acceleration_mps2 = -9 + 10 * driver;
@@ -71,7 +71,7 @@ TEST(FailsafePropertyTest, IsTheArbitratorBitByBitWhileAllInputsAreThere) {
   }
 }
 
-// An input that fails and recovers at random: AWAITED until it has come for the first time.
+// An input that fails and recovers at random. It is AWAITED until it comes for the first time.
 template <class M>
 class Flickering {
  public:
@@ -101,7 +101,7 @@ struct Previous {
   std::int8_t mode = arbitration_t::AUTOMATION;
 };
 
-// One command against what must hold of any.
+// Checks the rules that every command must obey.
 void Check(const arbitration_t& out, const ArbitratorInputs& inputs, const ego_t& ego,
            const MinimalRiskSection& limits, double step_s, const Previous& previous) {
   ASSERT_TRUE(std::isfinite(out.acceleration_mps2));
@@ -110,7 +110,7 @@ void Check(const arbitration_t& out, const ArbitratorInputs& inputs, const ego_t
   }
   if (out.mode != arbitration_t::MINIMAL_RISK) {
     ASSERT_EQ(out.lambda_automation + out.lambda_human, 1);
-    // One of the offers as it is, or the last command.
+    // The command is one of the offers, unchanged, or the last command.
     const bool is_offer = (inputs.automation.newest != nullptr &&
                            out.acceleration_mps2 == inputs.automation.newest->acceleration_mps2) ||
                           (inputs.driver.newest != nullptr &&
@@ -158,7 +158,7 @@ TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
       ++taken[arbitrator.decision()];
     }
   }
-  // Every decision is taken often, or the test would show little.
+  // Every decision must be frequent, or the test would prove little.
   for (const Decision decision : {Decision::kRegular, Decision::kAutomation, Decision::kHuman,
                                   Decision::kHold, Decision::kMinimalRisk}) {
     EXPECT_GT(taken[decision], 50) << static_cast<int>(decision);

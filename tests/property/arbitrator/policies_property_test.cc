@@ -1,4 +1,4 @@
-// What holds with every policy, every profile of transfer and whatever the inputs are.
+// Rules that hold with every policy, with every transfer profile and for any inputs.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -59,7 +59,7 @@ Scenario AnyScenario(Draw& draw, Policy policy) {
   return scenario;
 }
 
-/// The messages of a step, each of which may be anything that a network lets pass.
+/// The messages of a step, with any values that the network code accepts.
 struct Inputs {
   truth_t truth{};
   ego_t ego{};
@@ -122,7 +122,7 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
-      // The gate's own limit lies on the way too.
+      // The command may also be at the limit of the step gate.
       const TransferSection& transfer = scenario.arbitrator.transfer;
       const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
@@ -171,7 +171,7 @@ TEST(TransferProperty, ALimitedCommandNeverChangesFasterThanItsJerkAfterATransfe
   Draw draw(11);
   int limited = 0;
   for (int run = 0; run < 300; ++run) {
-    // GIVEN offers that stay where they are, and no emergency
+    // GIVEN constant offers and no emergency
     const bool gate = draw.Chance(0.5);
     const TransferSection section{.profile = TransferProfile::kJerkLimited,
                                   .jerk_mps3 = draw.LogUniform(0.1, 20),
@@ -188,11 +188,11 @@ TEST(TransferProperty, ALimitedCommandNeverChangesFasterThanItsJerkAfterATransfe
     Transfer transfer(section, step_s);
     double previous = offers.automation_mps2;
     double wanted = 0;
-    // WHEN authority goes to and fro
+    // WHEN authority changes often
     for (int k = 0; k < 200; ++k) {
       if (draw.Chance(0.1)) wanted = 1 - wanted;
       const Transfer::State state = transfer.Step(wanted, offers, previous);
-      // THEN no step breaks the limit, and what is wanted is what there is
+      // THEN no step breaks the limit, and the authority is the wanted one
       ASSERT_LE(std::abs(state.acceleration_mps2 - previous), jerk_mps3 * step_s + kRounding);
       ASSERT_EQ(state.lambda_human, wanted);
       const double target = wanted == 0 ? offers.automation_mps2 : offers.human_mps2;
@@ -253,8 +253,9 @@ TEST(SteadyWishProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
   EXPECT_GT(transfers, 1000);
 }
 
-// Wald's test errs no more often than it says, as long as the DoC is the probability that it is
-// taken for: with a reading x of N(+-m, 1), m with equal chances, P(human | x) = 1/(1 + e^(-2mx)).
+// Wald's test errs no more often than its parameters say, if the DoC really is the probability of a
+// conflict. For a reading x of N(+-m, 1), both signs equally likely, P(human | x) = 1/(1 +
+// e^(-2mx)).
 TEST(SteadyWishProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
   constexpr int kTests = 20'000;
   constexpr double kMean = 0.3;
@@ -264,8 +265,8 @@ TEST(SteadyWishProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     for (int test = 0; test < kTests; ++test) {
       SteadyWish steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha},
                         0.1);
-      // GIVEN no conflict WHEN the test runs until its first decision can be told, at the latest
-      // after 60 steps THEN it is for the human at most in alpha of the cases
+      // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN it
+      // decides for the human in at most a share alpha of the cases
       for (int k = 0; k < 60; ++k) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));
@@ -277,7 +278,7 @@ TEST(SteadyWishProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
         if (before != 0 && steady.evidence() == 0) break;  // decided for the automation
       }
     }
-    // Wald's bound alpha/(1 - beta), and four standard deviations of the count.
+    // Wald's bound is alpha/(1 - beta); four standard deviations of the count are added.
     const double bound = alpha / (1 - alpha);
     EXPECT_LE(errors, kTests * bound + 4 * std::sqrt(kTests * bound)) << alpha;
     EXPECT_GT(errors, 0) << alpha;

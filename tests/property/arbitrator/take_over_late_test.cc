@@ -1,5 +1,5 @@
-// How often drivers are late, and stay away: as often as the scenario says, within the exact
-// confidence interval of a binomial count.
+// How often drivers are late, and how often they never come: both as often as the scenario says,
+// within the exact confidence interval of a binomial count.
 #include <cstdint>
 #include <utility>
 
@@ -12,14 +12,14 @@ namespace fogline {
 namespace {
 
 constexpr std::int64_t kDraws = 20'000;
-constexpr double kMistrust = 1e-3;  // 99.9 %
+constexpr double kMistrust = 1e-3;  // 1 minus the confidence of 99.9 %
 
 struct Interval {
   double low;
   double high;
 };
 
-/// Clopper & Pearson 1934: the probabilities that `count` of kDraws does not speak against.
+/// Clopper & Pearson 1934: the probabilities that are compatible with `count` of kDraws.
 Interval Confidence(std::int64_t count) {
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(kDraws);
@@ -41,8 +41,7 @@ Scenario Asking(const TakeOverParameters& time, double lead_s) {
   return scenario;
 }
 
-/// The state at so many seconds after a request in step `request`, of a car that does not slow
-/// down.
+/// The state `steps` steps after a request in step `request`, if the car does not slow down.
 TakeOverState StateAfter(TakeOver& take_over, std::int64_t request, std::int64_t steps) {
   const TakeOverInputs inputs{.human_wanted = true, .readiness = 1, .speed_mps = 20};
   header_t header{};
@@ -84,7 +83,7 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
   }
 }
 
-// SUMO draws again what is negative, and for long requests that is a lot: 15 % for one of 20 s.
+// SUMO repeats a negative draw. Long requests have many of them: 15 % for a request of 20 s.
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};

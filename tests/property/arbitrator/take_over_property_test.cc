@@ -1,5 +1,5 @@
-// The fallback under random sequences of events, held against its table, and against a second
-// reckoning of everything that the table does not say.
+// The fallback under random sequences of events. The tests compare it with its table, and with an
+// independent computation of everything that the table does not say.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ using enum TakeOverState;
 constexpr std::int64_t kSequences = 10'000;
 constexpr std::int64_t kSteps = 300;
 
-/// How often each row has been taken, and has changed what is applied.
+/// How often a row was taken, and how often it changed the applied command.
 struct RowCount {
   int taken = 0;
   int changed = 0;
@@ -33,19 +33,21 @@ std::size_t PlaceOf(const TakeOverRow& row) {
   return static_cast<std::size_t>(&row - kTakeOverTable.data());
 }
 
-/// One step against the table.
+/// Checks one step against the table.
 void ExpectTheTable(const TakeOverRow* row, TakeOverState before, TakeOverState after) {
   EXPECT_EQ(after, row == nullptr ? before : row->next)
       << "from " << InfoOf(before).name << " to " << InfoOf(after).name;
 }
 
-/// A change of state is felt in its own step: what is applied is the command of the new state's
-/// controller, and not what the old one's would have been, by the same inputs. Between states of
-/// one controller it is that controller's in either.
+/// Expects that a change of state has its effect in its own step: the applied command is that of
+/// the new state's controller, and differs from what the old state's controller would have
+/// commanded with the same inputs. If both states have the same controller, the command is that
+/// controller's.
 ///
-/// One change may show later, that to the harder stage of the manoeuvre: while the jerk, or the
-/// stop that is near, allow less than the softer stage's deceleration, both do the same, which is
-/// all that is allowed.
+/// One change may have its effect later: that to the harder stage of the manoeuvre. While the jerk
+/// limit, or the near stop, allows less deceleration than even the softer stage wants, both stages
+/// command that same limit.
+/// @return whether the command changed
 bool ExpectTheChangeIsFelt(const TakeOverRow& row, const Witness& witness,
                            const TakeOverInputs& inputs, double applied_mps2) {
   const Authority old_authority = AuthorityOf(row.state);
@@ -77,12 +79,13 @@ void ExpectNoManoeuvreTooEarly(const TakeOverRow& row, const Witness& witness, s
 void ExpectTheLimits(const TakeOverOutcome& out, const TakeOverInputs& inputs,
                      const TakeOverSection& section, double step_s) {
   if (out.authority == Authority::kEasing) {
-    // It does not accelerate, but for what it takes to end an acceleration within the jerk.
+    // Easing does not accelerate, except while it ends an acceleration within the jerk limit.
     EXPECT_LE(out.acceleration_mps2,
               std::max(0.0, inputs.applied_mps2 - section.jerk_mps3 * step_s) + kTolerance);
   }
   if (out.authority < Authority::kComfort) return;
-  // Who brakes harder than the manoeuvre may when it begins releases the brake within the jerk.
+  // A car that brakes harder at the beginning than the manoeuvre may releases the brake within the
+  // jerk limit.
   EXPECT_GE(out.acceleration_mps2,
             std::min(-section.emergency_deceleration_mps2, inputs.applied_mps2) - kTolerance);
   const bool standing = inputs.speed_mps == 0 && out.acceleration_mps2 == 0;
@@ -139,9 +142,9 @@ class Sequence {
     events_.Apply(out.acceleration_mps2);
   }
 
-  /// Other offers, until the controllers of the old state and of the new one want different things:
-  /// where they want the same, nothing can be felt.
-  /// The two stages of the manoeuvre may both be bound by the jerk, whatever is offered.
+  /// Draws other offers until the controllers of the old and of the new state want different
+  /// commands. If they want the same, a change has no effect. Both stages of the manoeuvre may be
+  /// at the jerk limit, whatever the offers are.
   void LetTheControllersDiffer(const TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
     const Authority old_authority = AuthorityOf(row.state);
@@ -163,7 +166,7 @@ class Sequence {
     EXPECT_EQ(take_over_.outcome().state, kMrmDone);
   }
 
-  // Whoever has no authority may offer what he likes: nobody notices.
+  // The offers of a side without authority must have no effect, whatever they are.
   void ExpectNothingLingers(const header_t& header, TakeOverInputs inputs,
                             const TakeOverOutcome& out) {
     constexpr double kNonsense = 1e9;
@@ -186,7 +189,7 @@ class Sequence {
     log_.Add(command, events_.inputs().human_mps2);
   }
 
-  /// The first command of the driver that is not the one before he came.
+  /// Notes the first step with a driver's command that differs from the command before he came.
   void NoteTheDriver(TakeOverState before, std::int64_t step, const TakeOverOutcome& out) {
     if (out.state == kDemand && before == kAutomated) effective_.reset();
     if (out.authority != Authority::kHuman) return;

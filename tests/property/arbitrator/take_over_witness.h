@@ -1,6 +1,6 @@
-// What happens to the fallback, at random, and a second reckoning of what it must do about that:
-// from the inputs alone, beside services/arbitrator/take_over.cc. It shares with that file the
-// drawn take-over time and the course of a manoeuvre, which have tests of their own.
+// Random events for the fallback, and an independent computation of what the fallback must do. It
+// uses the inputs alone, not services/arbitrator/take_over.cc. Both share the drawn take-over time
+// and the course of a manoeuvre, which have tests of their own.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace fogline::test {
 /// Rounding of sums of seconds and of accelerations.
 inline constexpr double kTolerance = 1e-9;
 
-/// Random numbers of a sequence that nothing else draws.
+/// The random numbers of one sequence. No other object draws from them.
 class Dice {
  public:
   explicit Dice(std::int64_t sequence) : random_(sequence, Stream::kFaults) {}
@@ -53,8 +53,8 @@ inline Scenario AnyScenario(Dice& dice) {
   return scenario;
 }
 
-/// What happens to the state machine: offers, wishes and cars at random, and a car of its own whose
-/// brake may fail for a while.
+/// Random inputs of the state machine: offers, wishes and cars ahead, and a car of its own. The
+/// brake of this car may fail for a while.
 class Events {
  public:
   explicit Events(Dice& dice, double step_s)
@@ -77,7 +77,7 @@ class Events {
     return inputs_;
   }
 
-  /// Other offers, and nothing else: they have no say in what happens.
+  /// Draws other offers. They have no influence on the events.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
@@ -103,7 +103,8 @@ class Events {
   TakeOverInputs inputs_;
 };
 
-/// The second reckoning: from the inputs alone which events hold, and what each source would apply.
+/// The independent computation: it finds from the inputs alone which events hold, and which command
+/// each source would give.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario)
@@ -136,7 +137,7 @@ class Witness {
     return events;
   }
 
-  /// What `authority` applies in this step. Of the manoeuvre once per step.
+  /// The command of `authority` in this step. For a manoeuvre it may be called only once per step.
   double Source(Authority authority, const TakeOverInputs& inputs) {
     const double least =
         std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
@@ -176,13 +177,14 @@ class Witness {
                                                            : section_.emergency_deceleration_mps2);
   }
 
-  /// What `authority` would apply in this step, if it had the wheel.
+  /// The command that `authority` would give in this step if it had control.
   double Would(Authority authority, const TakeOverInputs& inputs) const {
     Witness other = *this;
     if (authority >= Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
-  /// What a manoeuvre without a limit on its deceleration would: bound by the jerk, or by the stop.
+  /// The command of a manoeuvre without a limit of deceleration: only the jerk or the stop limits
+  /// it.
   double WouldAtMost(const TakeOverInputs& inputs) const {
     Witness other = *this;
     other.manoeuvre_.Begin(inputs.applied_mps2);
@@ -199,8 +201,8 @@ class Witness {
   bool manoeuvred() const { return manoeuvre_.begun(); }
 
  private:
-  /// The bound of services/minimal_risk/README.md on the time to rest, on a level road: the brake
-  /// is applied, the car slows down, the brake is released, and three steps.
+  /// The upper bound of services/minimal_risk/README.md for the time to rest on a level road: apply
+  /// the brake, slow down, release the brake, and three steps.
   double LongestStop_s(const TakeOverInputs& inputs, double deceleration_mps2) const {
     const double push = std::max(inputs.applied_mps2, 0.0);
     const double jerk = section_.jerk_mps3;
@@ -220,8 +222,8 @@ class Witness {
   std::optional<std::int64_t> requested_;
   std::optional<std::int64_t> transferred_;
   double time_s_ = 0;
-  std::optional<std::int64_t> stage_;  // of the manoeuvre: its first step
-  double overdue_s_ = 0;               // after which it is overdue
+  std::optional<std::int64_t> stage_;  // first step of the current stage of the manoeuvre
+  double overdue_s_ = 0;               // the stage is overdue after this time
 };
 
 }  // namespace fogline::test

@@ -1,8 +1,8 @@
-// Checks that no step of the closed loop allocates memory after the first, nor do the measures: in
-// every shipped scenario, with every fog model, whoever drives, in one car or a column of vehicles
-// with whoever may be in them; and in no step of the ACC, whatever
-// path its solver takes, or of the models of vehicle, driver and follower. A program of its own,
-// because it replaces malloc. Exits with 1 and says what allocated.
+// Checks that no step of the closed loop after the first allocates memory, and that the measures
+// allocate none. It covers every shipped scenario, every fog model and policy, one car and a column
+// of mixed vehicles. It also checks each step of the ACC, whatever path its solver takes, and of
+// the models of vehicle, driver and follower. It is a separate program because it replaces malloc.
+// It prints the allocations and exits with 1 if there are any.
 #include <cstddef>
 #include <cstdio>
 
@@ -17,7 +17,7 @@
 #include "tests/property/acc/draw.h"
 #include "tests/property/closed_loop/shipped.h"
 
-// The C library's own, which the replacements below call.
+// Functions of the C library, which the replacements below call.
 extern "C" void* __libc_malloc(std::size_t size);                       // NOLINT
 extern "C" void* __libc_calloc(std::size_t count, std::size_t size);    // NOLINT
 extern "C" void* __libc_realloc(void* block, std::size_t size);         // NOLINT
@@ -47,7 +47,8 @@ extern "C" void* aligned_alloc(std::size_t align, std::size_t size) {
 namespace fogline::test {
 namespace {
 
-// Allocations during random steps with and without target, calm and hopeless. Counts the steps in
+// Allocations during random steps of the ACC with and without a target, calm and hopeless. It
+// counts the steps in which the solver ran.
 // which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
@@ -74,7 +75,8 @@ bool CheckController() {
   return made == 0 && solver_steps > 1000;
 }
 
-// Allocations while a human drives a car uphill and through fog, from the first step on.
+// Whether no allocation happens while a human drives a car uphill and through fog, from the first
+// step on.
 bool CheckModels() {
   LongitudinalVehicle car(kSedan, FrictionOf(Surface::kWet), GradeProfile({{0, 0}, {500, 0.05}}),
                           0.1);
@@ -98,7 +100,7 @@ bool CheckModels() {
   return made == 0;
 }
 
-// Allocations from the end of step 0 to the end of the last step.
+// The number of allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   ClosedLoop loop(scenario);
   MeasureAccumulator measures;
@@ -118,7 +120,7 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   return after_last - after_first;
 }
 
-// A driver with all weaknesses at once, who reads who drives.
+// A driver with all weaknesses at once, who also reads HOST_COMMAND.
 bool CheckHuman(Scenario scenario) {
   scenario.human.following = FollowingModel::kAccIdm;
   scenario.human.sight = Sight::kFog;
@@ -150,7 +152,7 @@ bool CheckLoop(const Shipped& shipped) {
   return clean;
 }
 
-/// A column of vehicles behind the host, on a hill.
+/// A column of vehicles behind the host on a hill.
 bool CheckTraffic(const Shipped& shipped) {
   Scenario scenario = shipped.scenario;
   scenario.world.end_on_collision = false;
@@ -169,7 +171,7 @@ bool CheckTraffic(const Shipped& shipped) {
   return made == 0 && steps > 100;
 }
 
-// With drivers who must be asked, and come, are late, or stay away.
+// Drivers whom the car must ask: some come in time, some are late, some never come.
 bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
   scenario.arbitrator.take_over.time.mean_s = scenario.arbitrator.take_over.lead_s;
@@ -195,7 +197,7 @@ bool Check() {
     clean = CheckTakeOver(shipped.scenario) && clean;
   }
   clean = CheckHuman(all.front().scenario) && clean;
-  // A program without any allocation would not be counting.
+  // Without any allocation at all, the counter itself would be broken.
   return clean && all.size() >= 2 && allocations > 0;
 }
 

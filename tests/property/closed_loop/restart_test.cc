@@ -1,4 +1,4 @@
-// A closed loop that is used again and again computes what a new one computes.
+// A closed loop that is restarted again and again computes the same as a new one.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
   scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
 }
 
-/// A scenario that shares some parts with the one before it and differs in others, as in a sweep.
+/// Changes a scenario so that it shares some parts with the one before and differs in others, as in
+/// a sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);
@@ -38,7 +39,7 @@ void Change(Draw& draw, Scenario& scenario) {
   scenario.arbitrator.transfer.gate = draw.Chance(0.3);
   scenario.arbitrator.threshold = draw.Uniform(0, 1);
   scenario.arbitrator.window_steps = draw.Integer(1, 20);
-  // Short gaps, so that the active-set solver has something to remember.
+  // With short gaps the active-set solver has a state that a restart must clear.
   scenario.world.host_gap_m = draw.Uniform(8, 40);
   scenario.world.follower_gap_m = draw.Uniform(8, 40);
   if (draw.Chance(0.3)) scenario.acc.horizon_steps = draw.Integer(5, 40);
@@ -51,17 +52,17 @@ void Change(Draw& draw, Scenario& scenario) {
 }
 
 TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {
-  // GIVEN a loop that has run something else every time
+  // GIVEN a loop that has computed a different run each time
   Draw draw(1);
   Scenario scenario;
   ClosedLoop loop(scenario);
   std::vector<std::string> digests;
   for (int i = 0; i < 60; ++i) {
-    // WHEN it restarts with the same or other parameters, with a run behind it or without
+    // WHEN it restarts with the same or with other parameters, after a run or without one
     Change(draw, scenario);
     loop.Restart(scenario);
     if (draw.Chance(0.2)) continue;
-    // THEN every message of the run has the bits that a new loop gives it
+    // THEN every message of the run has the same bits as in a new loop
     digests.push_back(DigestOf(loop));
     EXPECT_EQ(digests.back(), FreshDigest(scenario)) << "restart " << i;
   }

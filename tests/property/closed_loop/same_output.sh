@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# same_output.sh PROGRAM...: fails unless all of them print the same, and something.
+# same_output.sh PROGRAM...: fails unless all programs print the same text, and that text is not
+# empty.
 set -euo pipefail
 expected=$("$1")
 [ -n "$expected" ]

@@ -1,4 +1,4 @@
-// The scenarios that Fogline ships, and the digest of one in this process.
+// The scenarios that Fogline ships, and the digest of a scenario when it runs in this process.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace fogline::test {
 
-/// A recorded leader drives for many minutes; so many steps of it prove as much.
+/// A recorded leader drives for many minutes. So many steps of it prove as much.
 inline constexpr std::int64_t kMostSteps = 1000;
 
 struct Shipped {
@@ -36,7 +36,7 @@ inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder
   return shipped;
 }
 
-/// Runs to the end. @pre `loop` is new or restarted
+/// Runs to the end. @return the digest. @pre `loop` is new or restarted
 inline std::string DigestOf(ClosedLoop& loop) {
   Digest digest;
   std::vector<std::uint8_t> buffer;

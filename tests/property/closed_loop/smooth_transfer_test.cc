@@ -1,5 +1,5 @@
-// Hand-overs in the whole loop: what a smooth one is worth, and what it costs; and that the
-// automation comes back without a bump.
+// Transfers in the whole loop: the benefit and the cost of smooth ones, and the automation's return
+// without a bump.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -33,7 +33,7 @@ struct Outcome {
   double si_pct = 0;
 };
 
-/// Of the seeds 1 to `seeds`: the largest jerks of all, the mean of SI.
+/// Over the seeds 1 to `seeds`: the largest jerks and the mean of SI.
 Outcome OutcomeOf(Scenario scenario, int seeds) {
   Outcome outcome;
   for (scenario.seed = 1; scenario.seed <= seeds; ++scenario.seed) {
@@ -56,8 +56,8 @@ Outcome OutcomeOf(Scenario scenario, int seeds) {
 constexpr TransferProfile kProfiles[] = {TransferProfile::kLinear, TransferProfile::kSigmoid,
                                          TransferProfile::kJerkLimited};
 
-// The paper's experiment jumps by a few cm/s2 only: 0.3 to 0.4 m/s3, below the limit as it is. What
-// a profile must not do there is cost safety.
+// The jumps in the paper's experiment are only a few cm/s2 (0.3 to 0.4 m/s3), so even abrupt
+// transfers keep the limit. There a profile must not cost safety.
 TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePointsOfSafety) {
   for (const int seeds : {1, 40}) {
     Scenario scenario = Paper();
@@ -76,7 +76,7 @@ TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePo
   }
 }
 
-// Where the fog makes the automation brake, the paper's hand-over jumps by more than 1 m/s2.
+// If the fog makes the automation brake, the paper's abrupt transfer jumps by more than 1 m/s2.
 TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFogForNothing) {
   Scenario scenario = DenseFog();
   const Outcome abrupt = OutcomeOf(scenario, 20);
@@ -95,9 +95,9 @@ TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFog
 
 struct Step {
   bool human_wanted;
-  double automation_mps2;  // offers
+  double automation_mps2;  // the two offers
   double human_mps2;
-  double applied_mps2;  // of the host, before the command
+  double applied_mps2;  // acceleration of the host before this command
   double lambda_human;
   double command_mps2;
 };
@@ -115,13 +115,13 @@ std::vector<Step> StepsOf(const Scenario& scenario) {
   return steps;
 }
 
-/// S of services/arbitrator/transfer.h, with k = 10.
+/// The function S of services/arbitrator/transfer.h, with k = 10.
 double Sigmoid(double progress) {
   const auto logistic = [](double x) { return 1 / (1 + std::exp(-x)); };
   return (logistic(10 * (progress - 0.5)) - logistic(-5.0)) / (logistic(5.0) - logistic(-5.0));
 }
 
-/// The human's authority by definition: as far as time since the last change of the wish goes.
+/// The human's authority by definition, from the time since the wish last changed.
 class Ramp {
  public:
   explicit Ramp(const Scenario& scenario)
@@ -157,8 +157,8 @@ class Ramp {
   int steps_ = 0;
 };
 
-/// The command by definition, from what the authorities make of the offers: limited from a change
-/// of the wish on, until it has caught up.
+/// The command by definition, from the mixed offers. Each change of the wish starts the limit; it
+/// ends when the command has caught up with the offers.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)
@@ -172,7 +172,7 @@ class Limit {
     }
     human_wanted_ = human_wanted;
     if (!limited_) return target_mps2;
-    if (target_mps2 < -section_.yield_mps2) {  // an emergency is obeyed, and ends it
+    if (target_mps2 < -section_.yield_mps2) {  // the limit yields to an emergency and ends
       limited_ = false;
       return target_mps2;
     }
@@ -199,7 +199,7 @@ class Limit {
   double gated_s_ = 0;
 };
 
-/// Steps in which a transfer was under way.
+/// Numbers of steps in which a transfer to the human or back was in progress.
 struct UnderWay {
   int there = 0;
   int back = 0;
@@ -259,9 +259,9 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
   }
 }
 
-// The ACC plans from the acceleration that the host really has. So in every step of a return, jump
-// or ramp, what it offers is within the engine's share of one change of u of what was commanded
-// before, whoever commanded it; and the share of the command that is its own makes no bump.
+// The ACC plans from the real acceleration of the host. So in every step of a return (a jump or a
+// ramp) its offer differs from the last command by at most the engine's share of one change of u,
+// whichever side gave that command. The ACC's own share of the new command makes no bump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

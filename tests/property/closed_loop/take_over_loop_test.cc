@@ -1,4 +1,5 @@
-// The fallback in the closed loop of the shipped scenarios, with drivers who come and who do not.
+// The fallback in the closed loop of the shipped scenarios, with drivers who come and drivers who
+// do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,7 +45,8 @@ bool IsInTable(TakeOverState from, TakeOverState to) {
       kTakeOverTable, [&](const TakeOverRow& row) { return row.state == from && row.next == to; });
 }
 
-// What a log shows of the rules: the table's changes, whose command it is, the manoeuvre's limits.
+// Checks the rules that a log shows: the table's changes, the source of each command, and the
+// manoeuvre's limits.
 void ExpectTheRules(const Scenario& scenario, const Driven& driven) {
   const TakeOverSection& section = scenario.arbitrator.take_over;
   TakeOverState before = TakeOverState::kAutomated;
@@ -107,7 +109,7 @@ TEST_F(TakeOverLoopTest, KeepsTheRulesWhoeverComes) {
   EXPECT_GT(manoeuvres, 3);
 }
 
-/// What is left of the wheel, in [0, 1], for him who leaves it in the first step of a transfer.
+/// The share of control, in [0, 1], that the leaving side keeps in the first step of a transfer.
 double LeftInTheFirstStep(const Scenario& scenario) {
   const TransferSection& section = scenario.arbitrator.transfer;
   const double progress = scenario.step_s / section.duration_s;
@@ -122,14 +124,14 @@ double LeftInTheFirstStep(const Scenario& scenario) {
   }
 }
 
-// The command of the step in which the driver gets the wheel, or the automation has it back, is
-// made of the new one's offer: all of it, or, on a ramp, as much as its first step gives him. So it
-// differs from what the old one would have commanded by that share of the difference of the two.
-// Who ends a manoeuvre has all of it at once.
+// In the step in which the driver takes over, or the automation gets control back, the command
+// contains the new side's offer: all of it, or on a ramp the share of the ramp's first step. So the
+// command differs from what the old side would have commanded by that share of the difference
+// between both offers. A driver who ends a manoeuvre has full authority at once.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {
-    std::array<int, 3> felt{};  // to the driver, from a manoeuvre, to the automation
+    std::array<int, 3> felt{};  // to the driver, from a manoeuvre to the driver, to the automation
     for (std::int64_t seed = 1; seed <= 40; ++seed) {
       Scenario scenario = Paper();
       scenario.seed = seed;

@@ -1,5 +1,6 @@
-// Checks that no conflict measure allocates memory in a step, under no rule for missing values. A
-// program of its own, because it replaces operator new. Exits with 1 and says which one did.
+// Checks that no conflict measure allocates memory in a step, with any rule for missing values. It
+// is a separate program because it replaces operator new. It prints the measures that allocate, and
+// exits with 1 if there are any.
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +26,7 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-// Says and returns whether the measures of these rows allocate in any step.
+// Whether any measure of these rows allocates in a step; prints those that do.
 template <class Row>
 bool Allocates(std::span<const Row> rows, const ConflictParameters& parameters) {
   const Random random(1, Stream::kRadar);
@@ -50,7 +51,7 @@ bool Check() {
     any = Allocates(ConflictMeasures(), parameters) || any;
     any = Allocates(BlameMeasures(), parameters) || any;
   }
-  // Measures are made on the heap: without an allocation at all, nobody would be counting.
+  // Measures are made on the heap, so without any allocation the counter itself would be broken.
   return !any && allocations > 0;
 }
 

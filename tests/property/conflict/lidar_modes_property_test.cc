@@ -1,5 +1,5 @@
-// Whether the posterior of the LiDAR's modes is a probability: of all steps in which it says p, the
-// share p is deceived, where the world is as the model takes it to be.
+// Checks that the posterior of the LiDAR's modes is a probability: in a world that follows the
+// model, a share p of the steps with posterior p is deceived.
 #include "services/conflict/lidar_modes.h"
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 constexpr double kRadarStd_m = 0.8;
 constexpr double kLidarStd_m = 0.03;
 constexpr std::int64_t kSequences = 50'000;
-constexpr std::int64_t kLength = 12;  // steps; the last one is judged
+constexpr std::int64_t kLength = 12;  // steps; only the last one counts
 
-/// A LiDAR that is what the model says, which takes each step's gap by itself: it may be any.
+/// A LiDAR that behaves as the model says. It draws the gap of each step independently.
 class Lidar {
  public:
   Lidar(const ConflictParameters& model, const Random& random) : model_(model), random_(random) {}
@@ -57,7 +57,7 @@ class Lidar {
         break;
     }
     if (stray < model_.stray_share) return anywhere_m;
-    // Mean 1/11 and variance 40/(22^2 23) of Beta(2, 20).
+    // The distribution Beta(2, 20) has mean 1/11 and variance 40/(22^2 23).
     const double scatter_m2 = model_.fog_scatter_m * model_.fog_scatter_m * 40 / (22 * 22 * 23);
     return model_.fog_return_m + model_.fog_scatter_m / 11 +
            std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;
@@ -68,19 +68,19 @@ class Lidar {
   LidarMode mode_ = LidarMode::kClean;
 };
 
-/// What was said of some steps, and what was so. Their difference has mean 0.
+/// Posteriors and deceived steps of one class. The difference of their sums has mean 0.
 struct Claims {
   double said = 0;
-  double variance = 0;  // of the sum of what was so
+  double variance = 0;  // variance of the number of deceived steps
   int were_so = 0;
   int count = 0;
 };
 
 TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
-  // GIVEN many LiDARs, whose fog is about where the car is, so that every probability comes about
+  // GIVEN many LiDARs with a fog return near the car, so that all probabilities occur
   ConflictParameters model;
   model.fog_return_m = 40;
-  constexpr std::array kEdges{0.02, 0.5, 0.98};  // most steps are as good as certain
+  constexpr std::array kEdges{0.02, 0.5, 0.98};  // most steps are almost certain
   std::array<Claims, kEdges.size() + 1> claims{};
   for (std::int64_t sequence = 0; sequence < kSequences; ++sequence) {
     Lidar lidar(model, Random(sequence, Stream::kLidar));
@@ -94,7 +94,7 @@ TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
     claim.were_so += lidar.deceived() ? 1 : 0;
     ++claim.count;
   }
-  // THEN as many were deceived as the posteriors add up to, whether they are small or large
+  // THEN in each class the number of deceived steps is the sum of the posteriors
   for (const Claims& claim : claims) {
     EXPECT_GT(claim.count, 100) << claim.said;
     EXPECT_NEAR(claim.were_so, claim.said, 4 * std::sqrt(claim.variance)) << claim.count;

@@ -16,7 +16,7 @@ constexpr std::uint32_t kSituations = 100;
 
 double Between(double low, double high, double u) { return low + (high - low) * u; }
 
-// A driver anywhere in the usual range of the model.
+// A driver with parameters from the model's usual range.
 DriverSection AnyDriver(const Random& random, std::int64_t number) {
   DriverSection driver;
   driver.max_acceleration_mps2 = Between(0.3, 3, random.Uniform2(number, 1000)[0]);
@@ -58,7 +58,7 @@ TEST(IdmPropertyTest, EquilibriumGapNeedsNoAcceleration) {
     const double v = 0.99 * driver.desired_speed_mps * u;
     const double ratio = std::pow(v / driver.desired_speed_mps, driver.exponent);
     const double gap = (driver.standstill_m + v * driver.headway_s) / std::sqrt(1 - ratio);
-    // Terms of 1 that cancel, times a_max.
+    // Terms of size 1 cancel; a_max scales the result.
     ASSERT_NEAR(Idm(driver).Acceleration(v, v, gap), 0, 1e-14);
   });
 }
@@ -93,8 +93,8 @@ TEST(IdmPropertyTest, LargerGapNeverMeansLessAcceleration) {
 }
 
 TEST(IdmPropertyTest, FasterDriverNeverAcceleratesMore) {
-  // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not see the speed, but the free road
-  // does.
+  // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not depend on the speed. Only the
+  // free-road term does.
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
     const Idm idm(driver);
     const double slow = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m);

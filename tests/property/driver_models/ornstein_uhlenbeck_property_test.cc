@@ -11,15 +11,15 @@ namespace fogline {
 namespace {
 
 constexpr std::int64_t kProcesses = 20'000;
-constexpr double kDeviations = 4;  // of the estimate: exceeded by chance once in 16,000
+constexpr double kDeviations = 4;  // standard deviations; chance exceeds them once in 16,000
 
 struct Moments {
   double mean = 0;
   double variance = 0;
-  double covariance = 0;  // with the first value
+  double covariance = 0;  // covariance with the first value
 };
 
-// Over independent processes, after this many steps.
+// Moments over independent processes after so many steps.
 Moments After(std::int64_t steps, double correlation_time_s, double step_s) {
   Moments m;
   for (std::int64_t i = 0; i < kProcesses; ++i) {
@@ -40,7 +40,8 @@ TEST(OrnsteinUhlenbeckProperty, KeepsVarianceOneAndForgetsExponentially) {
   for (const std::int64_t steps : {0, 1, 3, 10, 40}) {
     const Moments m = After(steps, 2.0, 0.25);
     const double correlation = std::exp(-0.125 * static_cast<double>(steps));
-    // Deviations of the estimates: 1 / sqrt(n), sqrt(2 / n), sqrt((1 + correlation^2) / n).
+    // The standard deviations of the estimates are 1 / sqrt(n), sqrt(2 / n), sqrt((1 +
+    // correlation^2) / n).
     EXPECT_NEAR(m.mean, 0, kDeviations / std::sqrt(n)) << steps;
     EXPECT_NEAR(m.variance, 1, kDeviations * std::sqrt(2 / n)) << steps;
     EXPECT_NEAR(m.covariance, correlation,

@@ -9,7 +9,7 @@ namespace fogline {
 namespace {
 
 constexpr std::int64_t kDraws = 10'000;
-constexpr double kAlpha = 1e-4;  // chance of a false alarm, on either side
+constexpr double kAlpha = 1e-4;  // probability of a false alarm, on either side
 
 using Binomial = boost::math::binomial_distribution<>;
 
@@ -50,8 +50,9 @@ TEST(TakeOverTimeProperty, HasTheMeanAndDeviationAskedFor) {
     squares += drawn_s * drawn_s;
   }
   const double mean = sum / kDraws;
-  // Four standard deviations of the mean; those of the deviation, with a log-normal's kurtosis of
-  // 5.3 or so, are sqrt((5.3 - 1) / (4 n)) of it.
+  // The tolerances are four standard deviations: of the mean, and of the deviation. The latter is
+  // relative, sqrt((5.3 - 1) / (4 n)), because a log-normal variable has a kurtosis of about 5.3
+  // here.
   EXPECT_NEAR(mean, 4.57, 4 * 1.63 / 100);
   EXPECT_NEAR(std::sqrt(squares / kDraws - mean * mean), 1.63, 4 * 1.63 * 0.0104);
 }

@@ -1,6 +1,6 @@
-// A run in real time without the time: all roles in one process, on a clock that is counted. Each
-// role can fall silent at a step. Who lacks an input then falls silent too, as its process would,
-// but for the arbitrator and the world, which do with what there is.
+// A run in real time with a counted clock: all roles are in one process. Each role can fall silent
+// at a step. A role that lacks an input then falls silent too, as its process would. The arbitrator
+// and the world go on with the inputs that they have.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace fogline::test {
 
-/// One channel at its reader: what has come, and how it is.
+/// One channel at its reader: the newest message and the state of the input.
 template <class M>
 class Line {
  public:
@@ -34,7 +34,7 @@ class Line {
     health_.Arrived(message.header.step, now);
   }
   Heard<M> At(TimePoint now) { return {health_.Update(now), newest_ ? &*newest_ : nullptr}; }
-  /// Something of this step may still come.
+  /// Whether a message of this step may still come.
   bool Waits(std::int64_t step, TimePoint now) {
     return health_.Update(now) != InputState::kLost && health_.newest() < step;
   }
@@ -44,8 +44,8 @@ class Line {
   std::optional<M> newest_;
 };
 
-/// What is to be seen of a step: its truth, the offers and the arbitrator's command for it (nullptr
-/// from who is silent), and the command that the vehicle carries out in it.
+/// The visible data of a step: the truth, the offers, the arbitrator's command (all nullptr if
+/// their role is silent), and the command that the vehicle carries out in this step.
 struct Moment {
   const truth_t& truth;
   const accel_command_t* automation;
@@ -85,7 +85,7 @@ class RealTimeLoop {
     silent_from_[static_cast<std::size_t>(role)] = step;
   }
 
-  /// Runs to the end; `visit(const Moment&)` for every step.
+  /// Runs to the end and calls `visit(const Moment&)` for every step.
   template <class Visit>
   void Run(Visit&& visit) {
     const auto* output = &world_.Start(1);
@@ -132,7 +132,7 @@ class RealTimeLoop {
     return {automation, human};
   }
 
-  // At once if nothing is missing that may still come, at the deadline otherwise.
+  // The arbitrator decides at once if no missing message can still come, otherwise at the deadline.
   const arbitration_t& Arbitrate(const ego_t& ego, TimePoint now) {
     const std::int64_t step = ego.header.step;
     const bool waits = std::apply([&](auto&... line) { return (line.Waits(step, now) || ...); },

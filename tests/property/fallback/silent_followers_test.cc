@@ -1,4 +1,4 @@
-// The role that drives the following cars falls silent: do all of them stop?
+// The role that drives the following cars falls silent. The tests check that all these cars stop.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ using test::RealTimeLoop;
 
 constexpr std::size_t kCars = 5;
 constexpr double kRounding = 1e-9;
-constexpr std::int64_t kInForce = 4;  // periods after the last command: noticed, and carried out
+constexpr std::int64_t kInForce = 4;  // periods from the last command to the fallback
 
 /// The paper's scenario with people and ACCs behind the host.
 Scenario Column() {
@@ -70,7 +70,7 @@ TEST(SilentFollowersTest, NobodySilentIsTheLockstepRun) {
   Follower follower(scenario);
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
-    // GIVEN the same host, the followers' commands are those that a run in lockstep has
+    // GIVEN the same host, THEN the followers' commands are those of a run in lockstep
     const follower_command_t& command = follower.Step(lockstep.truth());
     ASSERT_EQ(m.truth.follower_position_m, lockstep.truth().follower_position_m);
     ASSERT_EQ(m.vehicle.followers().acceleration_mps2, command.acceleration_mps2);

@@ -1,4 +1,5 @@
-// Each role falls silent at many steps of the shipped scenarios: what does the vehicle do?
+// Each role falls silent at many steps of the shipped scenarios. The tests check what the vehicle
+// does.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,7 +21,7 @@ using test::RealTimeLoop;
 
 constexpr double kRounding = 1e-9;
 constexpr std::int64_t kDetection = 3;       // periods
-constexpr std::int64_t kInForce = 1;         // further period
+constexpr std::int64_t kInForce = 1;         // one period more
 constexpr std::int64_t kBetweenDeaths = 13;  // steps
 
 Scenario Shipped(const std::string& name) {
@@ -30,17 +31,17 @@ Scenario Shipped(const std::string& name) {
 // The longest manoeuvre from the speeds of these scenarios.
 constexpr std::int64_t kManoeuvre = 260;  // steps
 
-// Holds what a car does, moment by moment, against the limits of the manoeuvre.
+// Compares the motion of a car, step by step, with the limits of the manoeuvre.
 class Braking {
  public:
   explicit Braking(const Scenario& scenario)
       : limits_(scenario.minimal_risk), step_s_(scenario.step_s) {}
 
-  /// @param in_force in the step that begins now
+  /// @param in_force whether the manoeuvre is in force in the step that begins
   void Take(bool in_force, double speed_mps, double applied_mps2) {
     if (in_force_) {
       ASSERT_LE(std::abs(applied_mps2 - last_mps2_), limits_.jerk_mps3 * step_s_ + kRounding);
-      // One that braked harder before releases the brake.
+      // A car that braked harder before releases the brake.
       ASSERT_GE(applied_mps2, std::min(-limits_.deceleration_mps2, last_mps2_) - kRounding);
       ASSERT_TRUE(!stands_ || speed_mps == 0) << "drives off";
       stands_ = speed_mps == 0;
@@ -60,7 +61,8 @@ class Braking {
 
 class SilentRolesTest : public testing::TestWithParam<const char*> {
  protected:
-  // Runs with these roles silent, from every so many steps on: check(silent from, moment).
+  // Runs once for every kBetweenDeaths-th step, with these roles silent from that step on. Calls
+  // check(that step, moment).
   template <class Check>
   void ForEachDeath(std::initializer_list<Role> roles, Check&& check) {
     for (std::int64_t death = 0; death < scenario_.steps - 10; death += kBetweenDeaths) {
@@ -70,7 +72,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
       double last_mps2 = 0;
       loop.Run([&](const Moment& m) {
         ASSERT_EQ(m.truth.collision, truth_t::COLLISION_NONE) << "at step " << m.truth.header.step;
-        // What the command of the step before says is what the car has done since.
+        // The acceleration of the car is the command of the step before.
         if (m.truth.host_speed_mps > 0 && m.truth.header.step > 0) {
           ASSERT_EQ(m.truth.host_acceleration_mps2, last_mps2);
         }
@@ -86,7 +88,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }
 
-  // From `death` on the host must come to a standstill.
+  // Checks that the host comes to a standstill after `death`.
   void CheckHostStops(std::int64_t death, const Moment& m) {
     CheckStops(death, m, m.truth.host_speed_mps, m.truth.host_acceleration_mps2);
   }

@@ -1,6 +1,6 @@
-// Is the filter as good as it says? Over many runs of the very model that it assumes, its errors
-// and innovations have to have the covariances that it reports (Bar-Shalom, Li & Kirubarajan 2001,
-// section 5.4).
+// The filter must be as good as it says. Over many runs of exactly the model that it assumes, its
+// errors and innovations must have the covariances that it reports (Bar-Shalom, Li & Kirubarajan
+// 2001, section 5.4).
 #include <array>
 #include <vector>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr int kSeeds = 100;
 constexpr std::size_t kSteps = 100;
 
-// Sums over the seeds, at each step.
+// Sums over the seeds for each step.
 struct Ensemble {
   std::vector<double> nees = std::vector<double>(kSteps);    // error' P^-1 error
   std::vector<double> nis = std::vector<double>(kSteps);     // sum of nu^2 / S
@@ -29,8 +29,8 @@ struct Ensemble {
       std::vector<Eigen::Vector3d>(kSteps, Eigen::Vector3d::Zero());
 };
 
-// A car that wanders by some 15 m in these steps: it stays ahead of the host, and near enough for
-// the sensors' lateral offsets to tell.
+// A car that wanders by some 15 m in these steps. It stays ahead of the host, and near enough for
+// the lateral offsets of the sensors to have an effect.
 Scenario GentleScenario() {
   Scenario scenario;
   scenario.fusion.jerk_density_m2ps5 = 0.02;
@@ -38,7 +38,8 @@ Scenario GentleScenario() {
   return scenario;
 }
 
-// The model that the world follows, and the one that the filter believes.
+// @param world the scenario that the simulated car follows
+// @param believed the scenario that the filter assumes
 Ensemble Simulate(const Scenario& world, const Scenario& believed, double dropout = 0) {
   Ensemble sums;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -82,15 +83,15 @@ int NisOutside(const Ensemble& sums) {
   return outside;
 }
 
-// The innovations of different steps are independent, so the number of steps outside is binomial;
-// more than its 99.9 % quantile are too many.
+// Innovations of different steps are independent, so the number of steps outside is binomial. At
+// most its 99.9 % quantile is allowed.
 constexpr double kOutsideChance = 0.05;
 int MostOutside() {
   return static_cast<int>(quantile(boost::math::binomial(kSteps - 1, kOutsideChance), 0.999));
 }
 
-// Errors of neighbouring steps are alike, so one unlucky spell counts several times: twice as many,
-// a quarter of the steps.
+// Errors of neighbouring steps are correlated, so one unlucky period counts several times. Twice as
+// many are allowed: a quarter of the steps.
 int MostNeesOutside() { return 2 * MostOutside(); }
 
 double Mean(const std::vector<double>& sums) {
@@ -119,8 +120,8 @@ class ConsistencyTest : public ::testing::TestWithParam<Case> {
 TEST_P(ConsistencyTest, ErrorsHaveTheReportedCovariance) {
   const Ensemble sums = Simulate(World(), World(), GetParam().dropout);
   EXPECT_LE(NeesOutside(sums), MostNeesOutside());
-  // 3 is the state's dimension. Other hundreds of seeds have means that scatter by 0.06, which is
-  // more than for independent values (0.025): the tolerance is three of that.
+  // 3 is the dimension of the state. The means of other hundreds of seeds scatter by 0.06 (0.025 if
+  // the values were independent). The tolerance is about three times 0.06.
   EXPECT_NEAR(Mean(sums.nees), 3.0, 0.2);
 }
 
@@ -141,7 +142,7 @@ TEST_P(ConsistencyTest, EstimateIsUnbiased) {
   for (int component = 0; component < 3; ++component) {
     int outside = 0;
     for (std::size_t k = 1; k < kSteps; ++k) {
-      // The sum of the errors is normal with the sum of the variances.
+      // The sum of the errors is normal; its variance is the sum of the variances.
       const double z_squared =
           sums.error[k][component] * sums.error[k][component] / sums.variance[k][component];
       outside += Outside(z_squared, 1);

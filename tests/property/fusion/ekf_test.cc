@@ -18,14 +18,15 @@ Eigen::Matrix3d CovarianceOf(const track_t& track) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(track.covariance[0]);
 }
 
-// From 10^low to 10^high, evenly in the exponent.
+// From 10^low to 10^high, uniform in the exponent.
 double Magnitude(const Random& random, std::uint32_t index, double low, double high) {
   return std::pow(10.0, low + (high - low) * random.Uniform2(0, index)[0]);
 }
 
 TEST(EkfPropertyTest, CovarianceStaysSymmetricAndPositiveDefinite) {
   for (int seed = 1; seed <= 200; ++seed) {
-    // GIVEN a filter somewhere in the scenario's ranges, and sensors that often fail
+    // GIVEN a filter with parameters from the whole range of a scenario, and sensors that often
+    // fail
     const Random random(seed, Stream::kLidar);
     Scenario scenario;
     scenario.step_s = Magnitude(random, 0, -3, 0);
@@ -43,7 +44,7 @@ TEST(EkfPropertyTest, CovarianceStaysSymmetricAndPositiveDefinite) {
       // WHEN it has made a step
       const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);
       if (!track.valid) continue;
-      // THEN
+      // THEN the covariance is symmetric and positive definite
       const Eigen::Matrix3d p = CovarianceOf(track);
       ASSERT_EQ(p, p.transpose()) << "seed " << seed << ", step " << k;
       ASSERT_EQ(p.llt().info(), Eigen::Success) << "seed " << seed << ", step " << k << "\n" << p;
@@ -51,7 +52,7 @@ TEST(EkfPropertyTest, CovarianceStaysSymmetricAndPositiveDefinite) {
   }
 }
 
-// What the host does is known, so it must not show in the estimate of what the other car does.
+// The host's own motion is known, so it must not change the estimate of the other car's motion.
 TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
   const Scenario scenario;
   const double t = scenario.step_s;
@@ -72,7 +73,7 @@ TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
     other.lidar.range_m += distance_shift;
     const track_t& a = steady.Step(step.ego, step.radar, step.lidar);
     const track_t& b = braking.Step(other.ego, other.radar, other.lidar);
-    // Up to rounding of distances that have grown to some 1000 m.
+    // The tolerance covers the rounding of distances that grow to some 1000 m.
     ASSERT_NEAR(a.state[2] + step.ego.acceleration_mps2, b.state[2] + other.ego.acceleration_mps2,
                 1e-8)
         << "step " << k;
@@ -81,7 +82,8 @@ TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
   }
 }
 
-// One value after the other, against all three at once as in the textbook.
+// Corrections by one value after the other must equal the textbook's correction by all three at
+// once.
 TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Scenario scenario;
   const FusionSection& f = scenario.fusion;
@@ -90,7 +92,7 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Eigen::Vector3d stds(f.radar_range_std_m, f.radar_range_rate_std_mps, f.lidar_range_std_m);
   const Eigen::Matrix3d r = stds.cwiseAbs2().asDiagonal();
   testing::LeadSimulation lead(scenario, 2);
-  Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // predicts; corrected here
+  Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // only predicts; this test corrects
   Fusion fusion(scenario);
   for (int k = 0; k < 100; ++k) {
     const testing::LeadStep step = lead.Step();
@@ -107,7 +109,7 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
     const Eigen::Matrix3d gain = p * h.transpose() * (h * p * h.transpose() + r).inverse();
     const Eigen::Vector3d x = joint.state() + gain * (z - h * joint.state());
     joint.Start(x, (Eigen::Matrix3d::Identity() - gain * h) * p);
-    // The same numbers by other operations; 1e-10 is some 1000 roundings of 33 m.
+    // The same numbers come from other operations. 1e-10 is about 1000 roundings of 33 m.
     ASSERT_LT((own - x).cwiseAbs().maxCoeff(), 1e-10) << "step " << k;
     ASSERT_LT((CovarianceOf(track) - joint.covariance()).cwiseAbs().maxCoeff(), 1e-12);
   }
@@ -134,7 +136,7 @@ TEST(LineOfSightPropertyTest, JacobiansAreTheSlopes) {
     const double d = 100 * random.Normal2(0, i)[0] / 2;
     const double y = random.Normal2(1, i)[0];
     const double dv = 5 * random.Normal2(1, i)[1];
-    if (std::abs(d) < 0.5) continue;  // the range jumps at 0
+    if (std::abs(d) < 0.5) continue;  // the range has a kink at 0
     const LineOfSight sight(d, y);
     const LineOfSight nearer(d - kStep, y);
     const LineOfSight farther(d + kStep, y);

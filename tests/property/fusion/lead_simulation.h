@@ -1,4 +1,4 @@
-// A car ahead that moves, and sensors that measure, exactly as the filter's model says.
+// A car ahead that moves, and sensors that measure, exactly as the filter's model assumes.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ struct LeadStep {
   lidar_t lidar{};
 };
 
-/// White-noise jerk on the preceding car, a host that brakes and accelerates, white sensor noise of
-/// the standard deviations that section `fusion` assumes.
+/// The preceding car has white-noise jerk, the host brakes and accelerates, and the sensors have
+/// white noise with the standard deviations that section `fusion` assumes.
 class LeadSimulation {
  public:
   LeadSimulation(const Scenario& scenario, std::int64_t seed)
@@ -31,8 +31,8 @@ class LeadSimulation {
     const double t = scenario.step_s;
     transition_ << 1, t, t * t / 2, 0, 1, t, 0, 0, 1;
     input_ << -t * t / 2, -t, 0;
-    // Integral of (v v') q over a step, v = [s^2/2, s, 1], by Gauss's rule of 3 points: exact, for
-    // its elements are polynomials of degree 4 at most.
+    // The integral of (v v') q over a step, v = [s^2/2, s, 1], by Gauss's rule of 3 points. The
+    // rule is exact, because the elements are polynomials of degree 4 at most.
     const double node = std::sqrt(0.6);
     Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
     for (const auto& [x, weight] :
@@ -42,12 +42,12 @@ class LeadSimulation {
       noise += t * weight * scenario.fusion.jerk_density_m2ps5 * v * v.transpose();
     }
     noise_root_ = noise.llt().matrixL();
-    // As uncertain at the start as the filter believes.
+    // The initial state is as uncertain as the filter assumes.
     const double spread = scenario.fusion.initial_acceleration_std_mps2;
     state_ << 60.0, 0.0, spread * random_.Normal2(0, 9)[0];
   }
 
-  /// Chance that a sensor has no value in a step.
+  /// The probability that a sensor has no value in a step.
   void set_dropout(double probability) { dropout_ = probability; }
 
   LeadStep Step() {

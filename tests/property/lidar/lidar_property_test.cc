@@ -81,13 +81,13 @@ TEST(LidarProperty, DropsOutAtItsRate) {
   }
 }
 
-// Chances of what one beam sees.
+// Probabilities of the outcomes of one beam.
 struct Outcomes {
   double none;
   double target;
 };
 
-// With independent normal log powers t + s X of the target and f + s Y of the fog:
+// The log powers of the target, t + s X, and of the fog, f + s Y, are independent and normal:
 //   no echo  X < -t / s and Y < -f / s
 //   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
 Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {
@@ -126,7 +126,7 @@ TEST(LidarProperty, ABeamsOutcomesHaveTheirProbabilities) {
 }
 
 TEST(LidarProperty, OfTwoEchoesTheNearerOneCounts) {
-  // Two beams report the target if both see it, or if one does and the other sees nothing.
+  // Two beams report the target if both see it, or if one sees it and the other sees nothing.
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 2;
   const auto [none, seen] = OutcomesOf(scenario.lidar.beam, 70.0, 250.0);
@@ -138,7 +138,8 @@ TEST(LidarProperty, OfTwoEchoesTheNearerOneCounts) {
 }
 
 TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
-  // At the range where one beam has an echo with chance 1/2, so have 15 with a majority rule.
+  // At the range where one beam has an echo with probability 1/2, the majority of 15 beams has one
+  // with probability 1/2, too.
   Scenario scenario = Beam();
   scenario.fog.clear_visibility_m = 1e5;
   scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
@@ -149,7 +150,7 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
     for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
     ExpectShare(detections, 0.5, "detection");
   }
-  // Half of an even number is enough: one beam of two, with chance 3/4.
+  // Half of an even number is a majority: one beam of two, with probability 3/4.
   scenario.lidar.beam.beams = 2;
   int detections = 0;
   for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
@@ -159,7 +160,7 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
 TEST(LidarProperty, FogScattersByABetaDistribution) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
-  scenario.lidar.beam.log_std = 0.01;  // every echo is one of the fog
+  scenario.lidar.beam.log_std = 0.01;  // only the fog gives echoes
   const EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
   const double peak_m = model.At(60.0, 25.0).fog_range_m;
   const boost::math::beta_distribution beta(2.0, 20.0);
@@ -174,7 +175,7 @@ TEST(LidarProperty, FogScattersByABetaDistribution) {
 TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
-  scenario.lidar.beam.fog_range_scale_m = 100.0;  // would scatter far behind the target
+  scenario.lidar.beam.fog_range_scale_m = 100.0;  // a scatter far beyond the target
   Lidar lidar(scenario);
   for (double gap_m = 0.5; gap_m < 120.0; gap_m *= 1.1) {
     for (double visibility_m = 20.0; visibility_m < 20000.0; visibility_m *= 1.3) {
@@ -189,7 +190,7 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 }
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
-  // The same step with the same draws: once the fog has won, more fog does not lose.
+  // With the same draws in the same step, more fog never lets the target win again.
   Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;

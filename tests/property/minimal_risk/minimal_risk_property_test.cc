@@ -21,8 +21,8 @@ struct Case {
 
 double Between(double low, double high, double u) { return low + (high - low) * u; }
 
-// Over the ranges of the scenario; the step from 1 ms to 1 s, the acceleration from full braking to
-// full throttle, the speed often near 0.
+// Parameters from the scenario's ranges: a step from 1 ms to 1 s, an acceleration from full braking
+// to full throttle, a speed often near 0.
 Case AnyCase(std::int64_t index) {
   const Random random(7, Stream::kRadar);
   const auto [d, j] = random.Uniform2(index, 0);
@@ -34,7 +34,7 @@ Case AnyCase(std::int64_t index) {
           .acceleration_mps2 = Between(-9, 4, a)};
 }
 
-// The bound of the README.
+// The upper bound that the README gives.
 double LongestTimeToRest(const Case& c) {
   const double d = c.limits.deceleration_mps2;
   const double j = c.limits.jerk_mps3;
@@ -43,16 +43,16 @@ double LongestTimeToRest(const Case& c) {
          (c.speed_mps + push * push / (2 * j) + push * c.step_s) / d + d / j + 3 * c.step_s;
 }
 
-// Sums of a few thousand steps.
+// The rounding of sums over a few thousand steps.
 constexpr double kRounding = 1e-9;
 
 struct Drive {
   bool rests = false;
   double rest_s = 0;
-  double jump_mps2 = 0;  // largest change of what is applied from one step to the next
+  double jump_mps2 = 0;  // largest change of the applied acceleration from one step to the next
 };
 
-// Drives the car of the world until it stands, holding every step against the limits.
+// Drives a car as the world moves it until it stands, and checks the limits in every step.
 Drive DriveToRest(const Case& c, std::int64_t index) {
   MinimalRisk manoeuvre(c.limits, c.step_s);
   manoeuvre.Begin(c.acceleration_mps2);
@@ -78,7 +78,7 @@ Drive DriveToRest(const Case& c, std::int64_t index) {
     const Motion next = Advance(motion, command, c.step_s);
     EXPECT_GE(next.position_m, motion.position_m - kRounding) << index;
     const double before = applied;
-    applied = (next.speed_mps - motion.speed_mps) / c.step_s;  // on average, where it stops
+    applied = (next.speed_mps - motion.speed_mps) / c.step_s;  // the mean over the step
     drive.jump_mps2 = std::max(drive.jump_mps2, std::abs(applied - before));
     motion = next;
     last = command;
@@ -105,7 +105,7 @@ TEST(MinimalRiskPropertyTest, EndsAsGentlyAsItBegins) {
     const double release_mps = brake * brake / (2 * c.limits.jerk_mps3) + brake * c.step_s;
     if (c.speed_mps < release_mps) continue;
     ++checked;
-    // What is left of the speed for the last step has the rounding of all steps before it.
+    // The speed that is left for the last step has the rounding of all steps before it.
     const double rounding_mps2 = 1e-10 / c.step_s;
     EXPECT_LE(DriveToRest(c, i).jump_mps2 - c.limits.jerk_mps3 * c.step_s, rounding_mps2) << i;
   }
@@ -127,7 +127,7 @@ TEST(MinimalRiskPropertyTest, NeverDrivesOffAgain) {
   }
 }
 
-// A measured speed that is off by noise moves the command; it never breaks a limit of it.
+// Noise of the measured speed changes the command but never breaks its limits.
 TEST(MinimalRiskPropertyTest, KeepsItsLimitsUnderAnySpeeds) {
   const Random random(11, Stream::kLidar);
   for (std::int64_t i = 0; i < 300; ++i) {

@@ -51,7 +51,8 @@ TEST(RadarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
   }
   ExpectStandardNormalMoments(range);
   ExpectStandardNormalMoments(rate);
-  // Independent of each other and from step to step: correlation 0 with deviation 1 / sqrt(n).
+  // They are independent of each other and from step to step: the correlation is 0, with deviation
+  // 1 / sqrt(n).
   double cross = 0.0;
   double lag = 0.0;
   for (std::size_t i = 0; i < range.size(); ++i) cross += range[i] * rate[i];
@@ -83,7 +84,7 @@ TEST(RadarProperty, DropsOutAtItsRate) {
 }
 
 TEST(RadarProperty, NoStepDependsOnAnother) {
-  // Whatever the order, and whatever was asked before, a step has its own draws.
+  // A step has its own draws, whatever the order of the steps and whatever was asked before.
   Scenario scenario;
   scenario.radar.dropout_probability = 0.2;
   Radar forwards(scenario);
@@ -109,7 +110,7 @@ TEST(RadarProperty, ErrorsDoNotDependOnTheTarget) {
     far.host_gap_m = 133.0;
     const double at_near = radar.Step(near).range_m - 33.0;
     const double at_far = radar.Step(far).range_m - 133.0;
-    EXPECT_NEAR(at_near, at_far, 1e-12);  // a rounding of 133 m
+    EXPECT_NEAR(at_near, at_far, 1e-12);  // the rounding of 133 m
   }
 }
 

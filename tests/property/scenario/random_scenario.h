@@ -1,4 +1,4 @@
-// Visitors for property tests: any scenario that a file can describe, and every field of one.
+// Visitors for property tests: one fills a scenario with random values, one lists every field.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@
 
 namespace fogline {
 
-/// Random values whose order is the same everywhere (std:: distributions are not).
+/// Random values in a sequence that is the same on all systems, unlike that of std:: distributions.
 class ValueDraw {
  public:
   explicit ValueDraw(std::uint64_t seed) : engine_(seed) {}
@@ -24,7 +24,7 @@ class ValueDraw {
   std::size_t Below(std::size_t n) { return static_cast<std::size_t>(engine_() % n); }
 
   /// A number in [min, max] of any magnitude: an end, a round number, zero of either sign, a tiny
-  /// one, or any other.
+  /// number, or any other.
   double Number(double min, double max) {
     const double share = static_cast<double>(engine_() >> 11U) * 0x1p-53;
     double value = min + (max - min) * share;
@@ -113,7 +113,7 @@ inline Scenario RandomScenario(ValueDraw& draw) {
   return scenario;
 }
 
-/// Every field as pointer and JSON text of its value, doubles with all their bits.
+/// Lists every field as a pointer and the JSON text of its value, doubles with all their bits.
 class Flattener {
  public:
   using Fields = std::vector<std::pair<std::string, std::string>>;

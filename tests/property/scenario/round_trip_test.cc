@@ -25,7 +25,8 @@ TEST(RoundTripProperty, PrintedScenariosReadBackBitByBit) {
   }
 }
 
-// An override for each field of a scenario; a list of sections first becomes one of empty sections.
+// Writes an override for each field of a scenario. For a list of sections, the first override makes
+// a list of empty sections.
 class OverrideWriter {
  public:
   void Number(std::string_view name, const double& value, const NumberSpec&) {

@@ -19,7 +19,7 @@ bool Dominates(const TradeOff& a, const TradeOff& b) {
 
 class ParetoFrontPropertyTest : public ::testing::TestWithParam<std::int64_t> {
  protected:
-  /// Points of whole numbers within a few, so that many are equal in one or both.
+  /// Points with small whole numbers, so that many are equal in one or both values.
   static std::vector<TradeOff> Points(std::int64_t seed) {
     const Random random(static_cast<std::uint64_t>(seed), Stream::kRadar);
     std::vector<TradeOff> points;

@@ -33,7 +33,7 @@ GradeProfile AnyHill(const Random& random, std::int64_t index) {
                        {300, Between(-0.1, 0.1, d)}});
 }
 
-// Commands far beyond what any car can do, often the same for some steps.
+// Commands far beyond the abilities of any car. A command often stays the same for some steps.
 double AnyCommand(const Random& random, std::int64_t index, std::int64_t step) {
   const auto [a, b] = random.Uniform2(index * kSteps + step / 7, 3);
   return b < 0.2 ? 0 : Between(-12, 6, a);
@@ -58,11 +58,11 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       ASSERT_GE(next.position_m, motion.position_m);
       const double path_m = next.position_m - motion.position_m;
 
-      // What the engine gives, and no more than its power allows.
+      // The energy from the engine, which its power limits.
       const double engine_j = car.traction_n() * path_m;
       ASSERT_LE(engine_j, vehicle.power_w * step_s * (1 + 1e-2));
-      // Kinetic energy of car and wheels, and height. Between its ends the path is flatter by what
-      // the grade changes at most: 0.2 in 40 m.
+      // Kinetic energy of car and wheels, and potential energy. Between its ends the path may be
+      // flatter, at most by the change of the grade: 0.2 in 40 m.
       const double kinetic_j =
           0.5 * vehicle.rotating_mass_factor * vehicle.mass_kg *
           (next.speed_mps * next.speed_mps - motion.speed_mps * motion.speed_mps);
@@ -71,7 +71,7 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       const double height_j =
           vehicle.mass_kg * kGravity_mps2 * path_m * grade / std::sqrt(1 + grade * grade);
       ASSERT_LE(kinetic_j + height_j, engine_j + 1e-6) << "drive " << drive << " step " << step;
-      // The tyres' limits: down the hill gravity may add to either.
+      // The tyres' limits. On a slope gravity may add to either limit.
       const double slope_mps2 = kGravity_mps2 * 0.1;
       const double drag_mps2 = 0.5 * kAirDensity_kgpm3 * vehicle.drag_coefficient *
                                vehicle.frontal_area_m2 * motion.speed_mps * motion.speed_mps /
@@ -83,7 +83,7 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
   }
 }
 
-// Commands that change at 0, 4, 8, ... s; the coarsest step divides 4 s.
+// The commands from 0, 4, 8, ... s on. The coarsest step divides 4 s.
 using Commands = std::array<double, 6>;
 
 struct Error {
@@ -91,7 +91,7 @@ struct Error {
   double position_m = 0;
 };
 
-// Where 24 s over a hill lead.
+// The motion after 24 s over a hill.
 Motion DriveWith(const Commands& commands, double step_s) {
   LongitudinalVehicle car(kSedan, 0.9, GradeProfile({{0, 0.0}, {800, 0.06}}), step_s);
   Motion motion{0, 22};
@@ -105,7 +105,7 @@ Motion DriveWith(const Commands& commands, double step_s) {
   return motion;
 }
 
-// Against a step of 1/640 s.
+// The error against a step of 1/640 s.
 Error ErrorOf(const Commands& commands, double step_s) {
   const Motion reference = DriveWith(commands, 0.4 / 256);
   const Motion motion = DriveWith(commands, step_s);
@@ -124,8 +124,9 @@ TEST(LongitudinalVehicleProperty, HalvingTheStepQuartersTheError) {
   }
 }
 
-// Where a limit begins to hold, or a pedal is changed, within a step, the error depends on where in
-// it, so only the whole way tells: sixteen times less step, at least as much less error.
+// If a limit begins to hold, or the pedal changes, within a step, the error depends on the place
+// within the step. So the test compares only the ends: a step sixteen times smaller must have an
+// error at least sixteen times smaller.
 TEST(LongitudinalVehicleProperty, ConvergesThroughPowerLimitAndPedalChanges) {
   const Commands hard{0.4, 3.5, 3.5, -2.0, 0.2, -0.5};
   const Error coarse = ErrorOf(hard, 0.4);

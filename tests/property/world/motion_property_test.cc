@@ -33,7 +33,7 @@ TEST(MotionProperty, SplittingAStepChangesNothing) {
     const double duration_s = cases.Duration();
     const Motion whole = Advance(from, a, duration_s);
     const Motion halves = Advance(Advance(from, a, duration_s / 2), a, duration_s / 2);
-    // A few roundings of numbers up to 1e3: 1e-12 of that.
+    // A few roundings of numbers up to 1e3, 1e-12 relative.
     EXPECT_NEAR(halves.position_m, whole.position_m, 1e-12 * 1e3);
     EXPECT_NEAR(halves.speed_mps, whole.speed_mps, 1e-12 * 60.0);
   }
@@ -82,7 +82,7 @@ TEST(ContactProperty, IsTheFirstMomentAtWhichTheGapIsClosed) {
     if (contact_s) {
       ++contacts;
       ASSERT_LE(*contact_s, duration_s);
-      // Distances up to 1e3 m with a few roundings each.
+      // Distances up to 1e3 m, with a few roundings each.
       EXPECT_NEAR(gap_at(*contact_s), 0.0, 1e-9);
     }
     constexpr int kProbes = 50;

@@ -1,5 +1,5 @@
-// Properties of whole runs with several followers, people among them, and with cars that are more
-// than a point mass.
+// Properties of whole runs with several followers (some of them people), and with cars that are
+// more than a point mass.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,7 +20,7 @@ Scenario Shipped() {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/world/end_on_collision=false"});
 }
 
-/// The paper's scenario with this many followers, whoever they are.
+/// The paper's scenario with so many followers of any kind.
 Scenario Drawn(std::int64_t seed, std::int64_t count) {
   Scenario scenario = Shipped();
   scenario.seed = seed;
@@ -72,7 +72,7 @@ TEST(TrafficProperty, KeepsItsOrderBehindThePapersHost) {
       for (std::size_t car = 0; car < 12; ++car) {
         const double rear_m = ahead_m - scenario.world.vehicle_length_m;
         ASSERT_LT(truth.follower_position_m[car], rear_m) << "seed " << seed << " car " << car;
-        // Positions are some hundred metres: half an ulp for each of three operations.
+        // Positions are some hundred metres; each of three operations rounds by half an ulp.
         ASSERT_NEAR(truth.follower_gap_m[car], rear_m - truth.follower_position_m[car], 1e-12);
         ahead_m = truth.follower_position_m[car];
       }
@@ -80,7 +80,7 @@ TEST(TrafficProperty, KeepsItsOrderBehindThePapersHost) {
   }
 }
 
-// What the tyres and the engine of a sedan can do on this road, in m/s2.
+// The limits of a sedan's tyres and engine on this road, in m/s2.
 struct Limits {
   double braking;
   double traction;
@@ -100,7 +100,7 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
   Draw draw(5);
   int rested = 0;
   for (int run = 0; run < 60; ++run) {
-    // GIVEN sedans on a hilly road, wet, dry or icy, on which they are told the impossible
+    // GIVEN sedans on a hilly road (wet, dry or icy) that get impossible commands
     Scenario scenario;
     scenario.world.end_on_collision = false;
     scenario.world.substeps = draw.Integer(1, 4);
@@ -120,7 +120,7 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
       for (double& one : followers) one = draw.Chance(0.1) ? draw.Uniform(-12, 6) : one;
       const truth_t now =
           std::get<truth_t>(world.Step(HostCommand(host), FollowerCommands(followers)));
-      // THEN each moves forwards, as its tyres and its engine let it
+      // THEN each moves forwards within the limits of its tyres and its engine
       const Limits limits = LimitsOf(scenario.road.surface, kSteepest, before.host_speed_mps);
       ASSERT_GE(now.host_speed_mps, 0);
       ASSERT_GE(now.host_position_m, before.host_position_m);
@@ -133,7 +133,7 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
         ASSERT_GE(now.follower_position_m[car], before.follower_position_m[car]);
         ASSERT_GE(now.follower_acceleration_mps2[car], -own.braking - 1e-9);
         ASSERT_LE(now.follower_acceleration_mps2[car], own.traction + 1e-9);
-        // The acceleration that is reported is the change of speed, as a point mass's is.
+        // The reported acceleration is the change of speed, as for a point mass.
         ASSERT_NEAR(now.follower_acceleration_mps2[car],
                     (now.follower_speed_mps[car] - before.follower_speed_mps[car]) / 0.1, 1e-10);
       }

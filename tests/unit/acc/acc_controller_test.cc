@@ -19,7 +19,7 @@ constexpr double kStep = 0.1;
 constexpr double kSpeed = 20;
 constexpr double kSafe = 33;
 
-// What a run of the closed loop was like.
+// Extremes and the end of a run of the closed loop.
 struct Trip {
   TwoCars cars;
   double smallest_gap_m = 1e9;
@@ -93,7 +93,7 @@ TEST(AccControllerTest, ConvergesToTheSafeDistance) {
   }
 }
 
-// The gap comes back to the safe distance from the side that it left to, but for this much.
+// The gap returns to the safe distance and overshoots by at most this much.
 TEST(AccControllerTest, HardlyOvershootsTheSafeDistance) {
   constexpr double kOvershoot = 0.05;  // m
   for (const double error_m : {-18.0, -5.0, -0.5}) {
@@ -133,7 +133,7 @@ TEST(AccControllerTest, TheMinimumGapOverrulesTheSafeDistance) {
   section.min_gap_m = 10;
   for (const double gap_m : {6.0, 8.0, 15.0}) {
     const Trip trip = Drive(section, {gap_m, 12, 12}, 300);
-    // THEN that holds in the end; its limit is soft, so it gives way by centimetres.
+    // THEN the minimum gap holds in the end, up to some centimetres because its limit is soft
     EXPECT_NEAR(trip.cars.gap_m, section.min_gap_m, 0.05) << gap_m;
     EXPECT_NEAR(trip.cars.speed_mps, 12, 1e-3) << gap_m;
     EXPECT_GE(trip.smallest_gap_m, std::min(gap_m, section.min_gap_m) - 0.05) << gap_m;
@@ -150,8 +150,8 @@ TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
 TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
   const AccSection section;
   const Trip trip = Drive(section, {200, 45, 30}, 600);
-  // The plan keeps the limit exactly; the car holds a command for a whole step, which the engine
-  // of the model reaches only gradually.
+  // The plan keeps the limit exactly. But the car holds a command for a whole step, which the
+  // engine of the model reaches only gradually.
   EXPECT_LE(trip.fastest_mps, section.max_speed_mps + 1e-3);
   EXPECT_NEAR(trip.cars.speed_mps, section.max_speed_mps, 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
@@ -159,9 +159,9 @@ TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
 
 TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
   const AccSection section;
-  // GIVEN a car that its driver has brought to 4 m/s too much, still accelerating
+  // GIVEN a car that its driver has made 4 m/s too fast, and that still accelerates
   const Trip trip = Drive(section, {200, 45, 44, 1.0}, 100);
-  // THEN its speed is back at the limit by braking as in a fallback, without one.
+  // THEN it brakes back to the limit as in a fallback, but without one
   EXPECT_LE(trip.cars.speed_mps, section.max_speed_mps + 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
 }
@@ -179,7 +179,7 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep);
     cars.Advance(output.acceleration_mps2);
   }
-  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 is left
+  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 remains
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
@@ -200,34 +200,34 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   AccSection section;
   section.max_iterations = 1;
   AccController acc(section, kStep);
-  // GIVEN a situation in which braking as hard as possible takes many active limits
+  // GIVEN a situation in which the hardest braking has many active limits
   const AccController::Output output = acc.Step({.distance_m = 10,
                                                  .relative_speed_mps = -10,
                                                  .speed_mps = kSpeed,
                                                  .acceleration_mps2 = 0,
                                                  .has_target = true});
-  // THEN the command is the first step of the fall-back plan.
+  // THEN the command is the first step of the fall-back plan
   EXPECT_EQ(output.solver, Solver::kFallback);
   EXPECT_EQ(output.iterations, 1);
   EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep / section.engine_gain);
 }
 
-// Taking over from a driver at any acceleration a: the engine goes (1 - e^(-h/T_e)) of its way
-// towards -K_e u within the step, and -K_e u differs from a by one change of u, and by how much a
-// is outside what the automation may command.
+// The car may have any acceleration a when the automation takes over from a driver. Within the step
+// the engine goes (1 - e^(-h/T_e)) of its way towards -K_e u. And -K_e u differs from a by one
+// change of u, and by the part of a that is outside of the automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep / section.engine_time_constant_s);
   for (double a = -8; a <= 5; a += 0.25) {
     for (const double gap_m : {10.0, 33.0, 90.0}) {
-      // GIVEN an ACC that was not obeyed for a while
+      // GIVEN an ACC that had no effect on the car for a while
       AccController acc(section, kStep);
       TwoCars cars{.gap_m = gap_m, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
       for (int k = 0; k < 10; ++k) acc.Step(cars.Sense());
-      // WHEN the driver does something of its own
+      // WHEN the driver accelerates or brakes
       cars.acceleration_mps2 = a;
       const double offered = acc.Step(cars.Sense()).acceleration_mps2;
-      // THEN the automation goes on from there.
+      // THEN the automation continues from this acceleration
       const double outside =
           std::abs(a - std::clamp(a, section.min_acceleration_mps2, section.max_acceleration_mps2));
       EXPECT_LE(std::abs(offered - a), share * (section.max_jerk_mps3 * kStep + outside) + 1e-9)
@@ -244,7 +244,8 @@ TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLe
   // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
   for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
   cars.acceleration_mps2 = -1;
-  // THEN the control starts where it would hold this acceleration, and changes as fast as it may.
+  // THEN the control begins at the value that would hold this acceleration, and changes at its
+  // fastest rate
   const double change = section.max_jerk_mps3 * kStep / section.engine_gain;
   EXPECT_NEAR(acc.Step(cars.Sense()).control, 1 / section.engine_gain - change, 1e-9);
 }

@@ -15,13 +15,13 @@ AccSection Section(double headway_s, double time_constant_s, double gain) {
   return section;
 }
 
-// Phi and Gamma written out: the integrals of a(t) = e^(-t/T) a(0) - K (1 - e^(-t/T)) u.
+// Phi and Gamma in closed form: the integrals of a(t) = e^(-t/T) a(0) - K (1 - e^(-t/T)) u.
 DiscreteAccModel ClosedForm(const AccSection& section, double h) {
   const double tau = section.engine_time_constant_s;
   const double gain = section.engine_gain;
-  const double rise = -std::expm1(-h / tau);        // of a, from u
-  const double speed = h - tau * rise;              // integral of that
-  const double distance = h * h / 2 - tau * speed;  // and once more
+  const double rise = -std::expm1(-h / tau);        // of a, caused by u
+  const double speed = h - tau * rise;              // the integral of rise
+  const double distance = h * h / 2 - tau * speed;  // the integral of speed
   DiscreteAccModel model;
   model.phi << 1, h, -tau * speed - section.headway_s * tau * rise,  //
       0, 1, -tau * rise,                                             //
@@ -44,8 +44,8 @@ TEST(AccModelTest, SettlesAtMinusGainTimesControl) {
   // WHEN 10 s have passed, more than twenty time constants
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (int k = 0; k < 100; ++k) x = model.phi * x + model.gamma * control;
-  // THEN the car decelerates by K u, and has become slower and farther away than it should be.
-  EXPECT_NEAR(x(kOwnAcceleration), -0.732 * control, 1e-9);  // e^-21 is left
+  // THEN the car decelerates by K u, is slower than the car ahead, and too far behind it
+  EXPECT_NEAR(x(kOwnAcceleration), -0.732 * control, 1e-9);  // e^-21 remains
   EXPECT_GT(x(kDeltaV), 0);
   EXPECT_GT(x(kDeltaD), 0);
 }

@@ -19,7 +19,7 @@ struct Drive {
   double largest_acceleration_mps2 = 0;
 };
 
-// Behind a car of 20 m/s that brakes to 12 m/s after 5 s, at 2 m/s2, for a minute.
+// A car follows another car of 20 m/s for a minute. After 5 s that car brakes to 12 m/s at 2 m/s2.
 Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
                         const VehicleParameters& car = kSedan) {
   AccController acc(section, kStep_s, model);
@@ -56,10 +56,11 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     const Drive ideal = FollowABrakingCar(section, VehicleModel::kPointMass);
     for (const VehicleParameters& car : {kCompact, kSedan, kTruck}) {
       const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
-      // Delay and lag are half a second, in which 2 m/s2 make 0.25 m, more while they build up.
+      // Delay and lag are half a second. In this time 2 m/s2 make 0.25 m, and more while both add
+      // up.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
-      // In the end it is where it should be, but for what the pedals' dead band leaves.
+      // In the end speed and gap are right, except for the dead band of the pedals.
       EXPECT_NEAR(real.last_speed_mps, 12, 0.1) << "headway " << headway_s;
       EXPECT_NEAR(real.last_gap_m, SafeDistance(section, 12), 0.5) << "headway " << headway_s;
     }
@@ -67,7 +68,7 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
 }
 
 TEST(AccOnVehicleTest, DoesNotRunAwayFromACarThatSomebodyElseDrives) {
-  // GIVEN a gap that is far too small while somebody else keeps the car rolling steadily
+  // GIVEN a gap that is far too small, and a driver who keeps the car at a steady speed
   const AccSection section;
   AccController acc(section, kStep_s, VehicleModel::kLongitudinal);
   double command_mps2 = 0;
@@ -79,7 +80,8 @@ TEST(AccOnVehicleTest, DoesNotRunAwayFromACarThatSomebodyElseDrives) {
                              .has_target = true})
                        .acceleration_mps2;
   }
-  // THEN its command is braking, and within a jerk-limited ramp's lead of what the car does
+  // THEN the command is to brake, and differs from the car's acceleration by one jerk-limited ramp
+  // at most
   EXPECT_LT(command_mps2, -1);
   EXPECT_GE(command_mps2, -section.max_jerk_mps3 * (section.engine_time_constant_s + kStep_s));
 }

@@ -28,7 +28,7 @@ AccSection ShortSection() {
 
 const AccSituation kSituation{.state = {1.5, -0.8, 0.4}, .speed_mps = 21, .previous_control = -0.3};
 
-// The cost as it is written in acc_program.h, by simulation.
+// The cost by its definition in acc_program.h, from a simulation.
 double Cost(const AccSection& section, const AccSituation& now, const VectorXd& z) {
   const DiscreteAccModel model = Discretise(MakeAccModel(section), kStep);
   Eigen::Vector3d x = now.state;
@@ -66,7 +66,7 @@ TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
   }
 }
 
-// Limits are compared through the distance to them, limit - C z, which has a meaning of its own.
+// The test compares limits through the distance to them, limit - C z, which has a physical meaning.
 TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   AccSection section = ShortSection();
   section.max_speed_mps = 21.5;
@@ -90,7 +90,8 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
     const double settled = speed + section.engine_time_constant_s * x(kOwnAcceleration);
     const double gap = x(kDeltaD) + SafeDistance(section, speed);
     const Index row = 5 * j;
-    // Under the fall-back plan this car stays below its maximum speed, which is so the limit.
+    // Under the fall-back plan this car stays below its maximum speed. So the maximum speed is the
+    // limit.
     EXPECT_NEAR(above(row), section.max_speed_mps - settled, 1e-12) << j;
     EXPECT_NEAR(below(row + 1), settled + z(0), 1e-12) << j;
     const double forgiven = z(0) * static_cast<double>(6 - j) / 6;
@@ -104,12 +105,12 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
 }
 
 TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
-  // GIVEN a car in the middle of its speeds, far behind the next one
+  // GIVEN a car at a medium speed, far behind the next car
   const AccProgram program(ShortSection(), kStep);
   VectorXd lower(30);
   VectorXd upper(30);
   program.Limits(kSituation, lower, upper);
-  // THEN only the limits of u and its change are left.
+  // THEN only the limits of u and of its change are left
   EXPECT_EQ((upper.array() < std::numeric_limits<double>::infinity()).count(), 12);
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12);
 }
@@ -123,7 +124,7 @@ TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   double u = -0.5;
   std::vector<double> plan;
   for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
-  // u is 1.2 / 0.5 in the end and changes by 5 * 0.1 / 0.5 a step.
+  // u ends at 1.2 / 0.5 and changes by 5 * 0.1 / 0.5 in a step.
   const std::vector<double> expected{0.5, 1.5, 2.4, 2.4, 2.4};
   for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(plan[j], expected[j], 1e-15);
 }

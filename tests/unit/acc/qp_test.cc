@@ -22,7 +22,8 @@ VectorXd Vector(std::initializer_list<double> values) {
   return v;
 }
 
-// Distance from the point (3, 2) in the plane, 1/2 |x - p|^2: every optimum can be seen.
+// The squared distance from the point (3, 2) in the plane, 1/2 |x - p|^2. Every optimum is easy to
+// see.
 class PlaneTest : public testing::Test {
  protected:
   QpSolver::Result Solve(const MatrixXd& constraints, const VectorXd& lower, const VectorXd& upper,
@@ -53,7 +54,7 @@ TEST_F(PlaneTest, ProjectsOntoABox) {
   const auto result = Solve(MatrixXd::Identity(2, 2), Vector({0, 5}), Vector({1, 9}));
   EXPECT_EQ(result.status, Status::kOptimal);
   EXPECT_TRUE(x_.isApprox(Vector({1, 5}), 1e-15));
-  // Multipliers are the pull of the limits: negative at an upper one, positive at a lower one.
+  // Multipliers are the forces of the limits: negative at an upper one, positive at a lower one.
   EXPECT_TRUE(y_.isApprox(Vector({-2, 3}), 1e-15));
 }
 
@@ -65,7 +66,8 @@ TEST_F(PlaneTest, ProjectsOntoALine) {
 }
 
 TEST_F(PlaneTest, DropsALimitThatIsNoLongerActiveAtTheOptimum) {
-  // x + 100 y <= 50 is broken most, but x <= 0 and y <= 0.1 alone decide.
+  // The point violates x + 100 y <= 50 most, but only x <= 0 and y <= 0.1 are active at the
+  // optimum.
   const MatrixXd constraints{{1, 100}, {1, 0}, {0, 1}};
   const auto result =
       Solve(constraints, Vector({-kInfinity, -kInfinity, -kInfinity}), Vector({50, 0, 0.1}));
@@ -117,13 +119,13 @@ TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
   const VectorXd upper = VectorXd::Constant(4, 1);
   QpSolver warm(hessian, constraints, {});
   for (int i = 0; i < 40; ++i) {
-    // GIVEN a linear term that turns, so that every limit comes and goes
+    // GIVEN a linear term that turns, so that every limit becomes active and inactive again
     const VectorXd linear = 10 * Vector({std::cos(0.3 * i), std::sin(0.5 * i), std::cos(0.7 * i)});
     QpSolver cold(hessian, constraints, {});
-    // WHEN one solver has seen the problems before and the other has not
+    // WHEN one solver has solved the problems before this one and the other has not
     ASSERT_EQ(warm.Solve(linear, lower, upper).status, Status::kOptimal);
     ASSERT_EQ(cold.Solve(linear, lower, upper).status, Status::kOptimal);
-    // THEN they agree.
+    // THEN they agree
     EXPECT_LE((warm.solution() - cold.solution()).norm(), 1e-13) << i;
   }
 }

@@ -23,7 +23,7 @@ struct Messages {
   driver_command_t driver{};
 };
 
-// Sensors that differ by radar - LiDAR.
+// Messages with this difference radar - LiDAR.
 Messages Differing(double difference_m) {
   Messages m;
   m.radar.valid = 1;
@@ -59,7 +59,7 @@ Scenario Missing(MissingLidar missing) {
   return scenario;
 }
 
-// 32 + difference loses the difference's last bits.
+// 32 + difference rounds the last bits of the difference away.
 constexpr double kRoundingOfRange_m = 1e-14;
 
 TEST(ArbitratorTest, CopiesTheHeader) {
@@ -100,8 +100,8 @@ TEST(ArbitratorTest, StatesConflictDegreeAndThreshold) {
   EXPECT_EQ(out.threshold, 0.8);
 }
 
-// 0 <= DoC < threshold: at the threshold itself the human drives. A difference of 1 m is exact in
-// the ranges, and its DoC exactly 1/2.
+// The automation drives while 0 <= DoC < threshold, so at the threshold the human drives. The
+// ranges represent a difference of 1 m exactly, and its DoC is exactly 1/2.
 TEST(ArbitratorTest, HandsOverExactlyAtTheThreshold) {
   Scenario scenario;
   scenario.arbitrator.threshold = 0.5;
@@ -165,7 +165,7 @@ TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
   Step(arbitrator, Differing(1));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
   EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 1.5);
-  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left, 1 is held
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left the window; 1 is held
   for (int i = 0; i < 100; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
 }
 
@@ -194,8 +194,7 @@ TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
   EXPECT_EQ(out.mode, arbitration_t::HUMAN);
 }
 
-// ---- what policies and transfers make of it
-// ------------------------------------------------------
+// ---- the effect of policies and transfers -------------------------------------------------------
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
@@ -242,7 +241,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   m.driver.readiness = 1;
   Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
-  // WHEN it is heard of THEN the threshold is lower, by 5 m/50 m and 0.5 s/5 s
+  // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
   arbitrator.Hear(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
@@ -273,7 +272,7 @@ TEST(ArbitratorTest, GoesOnFromACommandThatWasNotItsOwn) {
   EXPECT_NEAR(Step(arbitrator, Differing(2)).acceleration_mps2, -2.8, 1e-12);
 }
 
-// ---- a policy that shares, and a driver who must be asked --------------------------------------
+// ---- a policy that shares, and a driver whom the car must ask -----------------------------------
 
 class SharedWithTheAskedTest : public testing::Test {
  protected:
@@ -285,7 +284,7 @@ class SharedWithTheAskedTest : public testing::Test {
         .mode = TakeOverMode::kRequested, .time = {.mean_s = 1, .std_s = 1e-3}, .recovery_s = 1};
     return scenario;
   }
-  /// One step in which the policy wishes for this share, above 0.
+  /// One step in which the policy wishes for this share, which is above 0.
   const arbitration_t& Wishing(double share) {
     const double doc = 0.2 + 0.6 * share;
     Messages m = Differing(1 + std::log(doc / (1 - doc)) / 10);
@@ -320,7 +319,7 @@ TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // As long as he recovers he is there, and is given what is wished for: nothing.
+  // While he recovers he is there, so he gets the wished share at once: here nothing.
   EXPECT_EQ(WishingForNothing().lambda_human, 0);
   EXPECT_NEAR(Wishing(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
 }

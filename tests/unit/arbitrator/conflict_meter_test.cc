@@ -49,7 +49,7 @@ TEST(ConflictMeterTest, GivesEachMeasureTheEvidenceOfTheMessages) {
     ConflictMeter meter(scenario);
     meter.Observe(m.radar, m.lidar, m.track);
     const auto measure = row.make(ConflictParametersOf(scenario.arbitrator));
-    // A variance that was added and taken off again.
+    // The meter has added a variance and subtracted it again.
     EXPECT_NEAR(meter.conflict(), measure->Step(evidence), 1e-9 * (1 + meter.conflict()))
         << row.name;
   }

@@ -18,7 +18,7 @@ Scenario SomeScenario() {
   return scenario;
 }
 
-// The arbitrator with messages of its own, which a test changes.
+// The arbitrator with its own set of input messages, which a test changes.
 class FailsafeArbitratorTest : public testing::Test {
  protected:
   FailsafeArbitratorTest() {
@@ -45,7 +45,7 @@ class FailsafeArbitratorTest : public testing::Test {
   }
   void Disagree() { radar_.range_m = lidar_.range_m + 5; }
 
-  // The next step; sensors that are OK bring a value of it.
+  // Takes the next step. Sensors that are OK have a value of this step.
   const arbitration_t& Step() {
     const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
     ++step_;
@@ -83,15 +83,15 @@ class FailsafeArbitratorTest : public testing::Test {
   std::int64_t step_ = 0;
 };
 
-// The state of an input that gives an offer.
+// The state of an input with such an offer.
 InputState StateOf(Offer offer) {
   return offer == kThere    ? InputState::kOk
          : offer == kNotYet ? InputState::kAwaited
                             : InputState::kLost;
 }
 
-// Every row of the table, with every combination that it names: what comes out is what the row
-// says.
+// For every row of the table, with every combination that the row covers, the decision is that of
+// the row.
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const FailsafeRow& row : kFailsafeTable) {
@@ -153,7 +153,7 @@ TEST_F(FailsafeArbitratorTest, CallsTheHumanForEachInputThatTheAutomationNeeds) 
 TEST_F(FailsafeArbitratorTest, CallsTheHumanWhereTheSensorsComeInTimeButNeverOfTheSameStep) {
   ExpectAutomation(Step());
   lidar_.header.step = -10;
-  inputs_.lidar.state = InputState::kStale;  // the test then leaves its step alone
+  inputs_.lidar.state = InputState::kStale;  // Step() then does not set the header of this message
   for (int k = 0; k < 5; ++k) Step();
   inputs_.radar.state = InputState::kOk;
   ExpectHuman(Step());
@@ -169,10 +169,10 @@ TEST_F(FailsafeArbitratorTest, HoldsTheLastOffersWhileTheyAreStale) {
 
 TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
   ExpectAutomation(Step());
-  // GIVEN a LiDAR value that has not come, and a radar value 5 m further on
+  // GIVEN no LiDAR value of this step, and a radar value that differs by 5 m
   inputs_.lidar.state = InputState::kStale;
   Disagree();
-  // THEN the last pair's conflict holds until the LiDAR's value of that step is there
+  // THEN the conflict of the last pair holds until the next pair of the same step is complete
   const arbitration_t& held = Step();
   EXPECT_EQ(held.conflict_m, 0);
   ExpectAutomation(held);
@@ -190,11 +190,11 @@ TEST_F(FailsafeArbitratorTest, CountsThePairOfAStepOnce) {
   radar_.range_m = lidar_.range_m + 2;
   const double conflict_m = Step().conflict_m;
   EXPECT_NEAR(conflict_m, 2.0 / 3, 1e-12);
-  // WHEN the LiDAR says nothing more
+  // WHEN no new LiDAR value comes
   inputs_.lidar.state = InputState::kStale;
-  // THEN the last difference gains no weight by that
+  // THEN the last difference does not get more weight
   for (int k = 0; k < 3; ++k) EXPECT_EQ(Step().conflict_m, conflict_m);
-  // AND the next pair takes its place in turn
+  // AND the next pair counts normally
   inputs_.lidar.state = InputState::kOk;
   radar_.range_m = lidar_.range_m;
   EXPECT_NEAR(Step().conflict_m, 2.0 / 4, 1e-12);

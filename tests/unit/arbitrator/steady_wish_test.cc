@@ -29,11 +29,13 @@ TEST(SteadyWishTest, BandLetsTheAutomationReturnOnlyBelowIt) {
   EXPECT_EQ(Step(steady, 0.49), 0);
 }
 
-// With DoC 0.9 against 0.5, L grows by ln 9 = 2.197 a step: past ln 99 = 4.595 with the third.
+// With DoC 0.9 against 0.5, L grows by ln 9 = 2.197 in a step. The third step exceeds ln 99 =
+// 4.595.
 TEST(SteadyWishTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
   SteadyWish steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
   for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(steady, 0.9), expected);
-  // One step of the next test has gone by; -ln 9 three times more leaves -4.39, a fourth is enough.
+  // The last step above already belongs to the next test. Three times -ln 9 leaves -4.39, so a
+  // fourth is needed.
   for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(steady, 0.1), expected);
 }
 
@@ -74,7 +76,7 @@ TEST(SteadyWishTest, LetsAFirmWishPass) {
   EXPECT_EQ(steady.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
 }
 
-// A band as wide as the threshold would leave nothing for a DoC to fall below.
+// Otherwise no DoC would be low enough for a band as wide as the threshold.
 TEST(SteadyWishTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
@@ -88,7 +90,7 @@ TEST(SteadyWishTest, ABandOfWhateverWidthGivesTheWheelBack) {
   }
 }
 
-// ln(0.99/0.01) = 4.595: a posterior of 0.99 is that much evidence against 0.5, whenever it came.
+// ln(0.99/0.01) = 4.595: a posterior of 0.99 is this much evidence against 0.5, at any time.
 TEST(SteadyWishTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
   SteadyWish steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1,
                     true);

@@ -27,7 +27,7 @@ arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_m
   return command;
 }
 
-/// The same with another authority of the human.
+/// The same command with another authority of the human.
 arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
                      double acceleration_mps2 = 0) {
   arbitration_t command = Command(step, mode, acceleration_mps2);
@@ -35,7 +35,7 @@ arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
   return command;
 }
 
-/// A command of one who drives alone: what he offers is what goes out.
+/// Adds the command of a side that drives alone, so its offer is the command.
 void Add(TakeOverLog& log, const arbitration_t& command) {
   log.Add(command, command.acceleration_mps2);
 }
@@ -139,7 +139,7 @@ TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithou
   log.Add(Shared(4, arbitration_t::HUMAN, 0.1, -3), std::nullopt);
   EXPECT_THAT(Transfers(log), IsEmpty());
   EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1}));
-  // A tenth of the wheel counts for a tenth.
+  // With a tenth of the authority, a change of the offer counts by a tenth.
   log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
   EXPECT_THAT(log.requests(),
               ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1, .effective = 5}));

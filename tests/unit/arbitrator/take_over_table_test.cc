@@ -14,7 +14,7 @@ using Change = std::pair<TakeOverState, TakeOverState>;
 
 constexpr unsigned kEventSets = 1U << 10;
 
-// Written down a second time, without events: what may follow what.
+// A second list of the allowed changes of state, without their events.
 const std::set<Change> kChanges{
     {kAutomated, kDemand},        {kDemand, kUrgentDemand},       {kDemand, kHandover},
     {kDemand, kMrmComfort},       {kDemand, kMrmEmergency},       {kUrgentDemand, kHandover},

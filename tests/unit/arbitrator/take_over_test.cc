@@ -13,7 +13,7 @@ using enum TakeOverState;
 
 constexpr double kStep_s = 0.1;
 
-/// A driver whose take-over time is `time_s`, within a few milliseconds.
+/// A scenario whose driver takes over after `time_s`, within a few milliseconds.
 Scenario Answering(double time_s) {
   Scenario scenario;
   scenario.step_s = kStep_s;
@@ -37,7 +37,7 @@ track_t Ahead(double distance_m, double closing_mps) {
   return track;
 }
 
-/// A run of the state machine with a car that does as it is told.
+/// The state machine, and a car that carries out its commands.
 class TakeOverTest : public testing::Test {
  protected:
   void Begin(const Scenario& scenario) { take_over_.emplace(scenario); }
@@ -52,7 +52,7 @@ class TakeOverTest : public testing::Test {
     return out;
   }
 
-  /// Steps until the state is left, at most so long. @return seconds since the start of the run
+  /// Steps until the state changes, or until this time. @return seconds since the start of the run
   double StepWhile(TakeOverState state, double limit_s = 100) {
     while (take_over_->outcome().state == state && Now() < limit_s) Step();
     return Now();
@@ -88,7 +88,7 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
 
-// The fourth, of the first effective input, is TakeOverLog's.
+// The log (TakeOverLog) determines the fourth time, that of the first effective input.
 TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   Begin(Answering(2.05));
   inputs_.human_wanted = false;
@@ -118,7 +118,7 @@ TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestThatNobodyAnswers) {
   StepWhile(kDemand);
   EXPECT_NEAR(StepWhile(kUrgentDemand), 10.0, 1e-9);
   EXPECT_EQ(state(), kMrmComfort);
-  // 20 m/s at 1.5 m/s2: 13.3 s and 0.6 s for either end.
+  // 20 m/s at 1.5 m/s2 take 13.3 s, and 0.6 s for each end.
   EXPECT_NEAR(StepWhile(kMrmComfort), 10.0 + 13.3 + 0.6, 0.5);
   EXPECT_EQ(state(), kMrmDone);
   EXPECT_EQ(take_over_->request()->manoeuvre, 100);
@@ -237,7 +237,7 @@ TEST_F(TakeOverTest, DoesNotAccelerateWhileARequestStands) {
   inputs_.automation_mps2 = 1;
   Step();
   inputs_.human_wanted = true;
-  // Eased off at 2.5 m/s3.
+  // The acceleration decreases at 2.5 m/s3.
   for (const double expected : {0.75, 0.5, 0.25, 0.0, 0.0}) {
     EXPECT_NEAR(Step().acceleration_mps2, expected, 1e-12);
   }
@@ -260,7 +260,8 @@ TEST_F(TakeOverTest, BrakesHarderAndAtLastReportsFailureOfABrakeThatDoesNotStopT
   Begin(Absent());
   brakes_ = false;
   while (state() != kMrmComfort) Step();
-  // Twice 13.3 + 1.8 + ... s, then twice 5 + 4.8 s.
+  // A stage is overdue after twice its longest stop. Without the jerk's part this is 2 * 13.3 s (20
+  // m/s at 1.5 m/s2) for the comfortable stage, and 2 * 5 s (at 4 m/s2) for the hard one.
   EXPECT_GT(StepWhile(kMrmComfort), 10 + 2 * 13.3);
   EXPECT_EQ(state(), kMrmEmergency);
   EXPECT_GT(StepWhile(kMrmEmergency), 10 + 2 * (13.3 + 5));

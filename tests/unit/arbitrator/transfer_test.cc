@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kStep_s = 0.1;
 constexpr Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_mps2 = 1.0};
-// Sums of a few tens of changes.
+// The rounding of sums of some tens of changes.
 constexpr double kRounding = 1e-12;
 
-// Authorities and commands of `count` steps in which `wanted` is wanted.
+// The states in `count` steps with this wanted authority of the human.
 std::vector<Transfer::State> Steps(Transfer& transfer, double wanted, int count,
                                    const Transfer::Offers& offers = kOffers) {
   std::vector<Transfer::State> states;
@@ -94,7 +94,7 @@ TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
     EXPECT_NEAR(states[i].acceleration_mps2, -0.5 + 0.2 * static_cast<double>(i + 1), kRounding);
   }
   EXPECT_EQ(states[7].acceleration_mps2, 1.0);
-  // WHEN it has caught up THEN the command is free again.
+  // WHEN the command has caught up THEN it is free again.
   EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -3.0})[0].acceleration_mps2, -3.0);
 }
 

@@ -10,7 +10,7 @@
 namespace fogline {
 namespace {
 
-// What a --free is told, or "".
+// The error text for a --free, or "".
 std::string ErrorOf(const std::string& text) {
   try {
     const FreeField field(text);
@@ -45,7 +45,7 @@ TEST(FreeFieldTest, ReturnsToTheShareOfAValue) {
   for (const char* text : {"/fog/bias_m=0.2:0.4", "/follower/weight_distance=0.001:10:log"}) {
     const FreeField field(text);
     for (const double share : {0.0, 0.123, 0.5, 0.999}) {
-      // A value is rounded to a 10^5th of the range or finer.
+      // A value is rounded to 1e-5 of the range or finer.
       EXPECT_NEAR(field.ShareOf(field.ValueAt(share)), share, 1e-5) << text;
     }
   }

@@ -13,7 +13,7 @@ namespace {
 
 bool Always() { return true; }
 
-// A short run in fog with noise, so that seeds differ.
+// A short run in fog with noise, so that the seeds give different results.
 CalibrationProblem ShortProblem() {
   CalibrationProblem problem;
   problem.scenario = ParseScenario(R"({"version": 1, "steps": 120,
@@ -73,7 +73,7 @@ TEST(ObjectiveTest, PassesOverNumbersThatTheTargetDoesNotHave) {
 }
 
 TEST(ObjectiveTest, CountsSeedsWithoutCompromisedSafetyAsFarFromTheTarget) {
-  // GIVEN a floor above every shortfall of the gap, so that no seed has an SI
+  // GIVEN a floor above the shortfall of every gap, so that no seed has an SI
   CalibrationProblem problem = ShortProblem();
   problem.scenario.measures.safety_floor_m = 10;
   const Evaluation evaluation = Evaluate(problem);
@@ -164,14 +164,15 @@ TEST(CalibrateTest, HasNothingWhenStoppedBeforeTheFirstTable) {
 }
 
 TEST(SensitivityTest, IsTheSlopeOfTheTable) {
-  // GIVEN the tables half a percent of the range, 0.002 m, to either side
+  // GIVEN the tables at half a percent of the range (0.002 m) on either side
   const CalibrationProblem problem = ShortProblem();
   const Evaluation below = Evaluate(problem, 0.398);
   const Evaluation above = Evaluate(problem, 0.402);
   const auto changes = Sensitivities(Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
-    // THEN what 1 % changes is their difference; values are rounded to 1e-6 m of the 4e-3 m
+    // THEN the change for 1 % is the difference of the tables; values are rounded to 1e-6 m of the
+    // 4e-3 m
     const double slope = *above.rows[row].si_pct.mean() - *below.rows[row].si_pct.mean();
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(*(*changes)[0][row].si_pct, slope, 1e-3 * std::abs(slope));

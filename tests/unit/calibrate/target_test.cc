@@ -18,7 +18,7 @@ class TargetTest : public testing::Test {
     std::ofstream(file_) << text;
     return ReadTarget(file_);
   }
-  // What a file is told, without its own name in front.
+  // The error text for a file, without the file's name at its beginning.
   std::string ErrorOf(const std::string& text) const {
     try {
       Read(text);

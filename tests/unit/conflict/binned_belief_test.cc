@@ -23,7 +23,7 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
                                        {0.5, .680, .390, .48, .39, .39},
                                        {1, .855, .572, .85, .86, .86},
                                        {2, .902, .612, .95, .99, .99}}};
-  constexpr double kThreeDigits = 5.1e-4;  // half of the last printed one
+  constexpr double kThreeDigits = 5.1e-4;  // half of the last printed digit
   constexpr double kTwoDigits = 5.1e-3;
   for (const Row& row : kTable) {
     const BinnedPair pair = Pair(row.d_m);
@@ -36,8 +36,8 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
 }
 
 TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
-  // GIVEN: four bins; the radar on an edge, m = (.4, .4, 0, 0); the LiDAR amid a bin, (0, 0, .8,
-  // 0); 0.2 on the frame each
+  // GIVEN: four bins. The radar is on an edge, m = (.4, .4, 0, 0). The LiDAR is inside of a bin,
+  // (0, 0, .8, 0). Each has 0.2 on the frame.
   ConflictParameters parameters;
   parameters.frame_bins = 4;
   parameters.radar_reliability = 0.8;
@@ -52,10 +52,10 @@ TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
 }
 
 TEST(BinnedBeliefTest, DempsterFindsConflictInEqualEvidence) {
-  // The known defect of k: both sensors say exactly the same.
+  // The known defect of k: it is not 0 although both sensors give the same value.
   const BinnedPair pair = PairOnBins(Differing(0, 0.2, 0.2), {});
   EXPECT_GT(DempsterConflict(pair), 0.3);
-  EXPECT_NEAR(JousselmeDistance(pair), 0, 1e-7);  // root of rounding errors
+  EXPECT_NEAR(JousselmeDistance(pair), 0, 1e-7);  // square root of rounding errors
   EXPECT_NEAR(PignisticDistance(pair), 0, 1e-12);
   EXPECT_NEAR(CorrelationConflict(pair), 0, 1e-12);
   EXPECT_NEAR(CosineConflict(pair), 0, 1e-12);
@@ -70,10 +70,10 @@ TEST(BinnedBeliefTest, ReadingsFarApartHaveOnlyTheFrameInCommon) {
 }
 
 TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
-  // Narrower than a bin, some bins, more than are kept (64 of 0.5 m).
+  // Standard deviations below a bin, of some bins, and wider than the kept bins (64 of 0.5 m).
   for (const double std_m : {0.01, 0.4, 3.0, 40.0}) {
     const BinnedPair far = PairOnBins(Differing(2000, std_m, std_m), {});
-    EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // all of both, and nothing in common
+    EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // the mass of both: they share nothing
   }
 }
 
@@ -88,8 +88,8 @@ TEST(BinnedBeliefTest, UnequalReliabilityIsADifferenceOfPignisticProbability) {
 }
 
 TEST(BinnedBeliefTest, IsNotMonotoneBetweenMultiplesOfTheWidth) {
-  // A limit of bins, not of the measures: a reading in the middle of a bin is surer than on an
-  // edge.
+  // This is a limit of bins, not of the measures: a reading in the middle of a bin is more certain
+  // than a reading on an edge.
   EXPECT_GT(JousselmeDistance(Pair(0.25)), JousselmeDistance(Pair(0.5)) + 0.05);
 }
 

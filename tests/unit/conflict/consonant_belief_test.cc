@@ -26,7 +26,7 @@ TEST(ConsonantConflictTest, HasTheTabulatedValues) {
 }
 
 TEST(ConsonantConflictTest, AgreesWithAPlainSumOverBothIntervals) {
-  // P(s1 Y1 + s2 Y2 < d) by the midpoint rule on the distribution of one and the other.
+  // P(s1 Y1 + s2 Y2 < d), by the midpoint rule over the distributions of Y1 and Y2.
   constexpr int kParts = 4000;
   constexpr double kReach = 8;
   for (const auto& [s1, s2] : {std::pair{0.4, 0.05}, std::pair{0.3, 0.3}, std::pair{0.02, 2.0}}) {
@@ -63,7 +63,7 @@ TEST(ConsonantPlausibilityTest, IsWhatTheIntervalsBeyondAPointHave) {
 }
 
 TEST(ConsonantPignisticTest, IsTheTotalVariationOfTheGaussians) {
-  // Half of the integral of |p1 - p2|, by the difference of the distributions in small cells.
+  // Half of the integral of |p1 - p2|, from the differences of the distributions in small cells.
   constexpr double kCell_m = 1e-3;
   for (const auto& [s1, s2] : {std::pair{0.4, 0.05}, std::pair{0.3, 0.3}, std::pair{0.1, 1.0}}) {
     for (const double d : {0.0, 0.2, 1.0, 3.0}) {
@@ -89,7 +89,7 @@ TEST(ConsonantPignisticTest, IsContinuousWhereThePrecisionsAreEqual) {
 }
 
 TEST(ConsonantBeliefsTest, LevelsStandForTheDensity) {
-  // By the integral of the plausibilities themselves.
+  // The test integrates the plausibilities directly.
   const ConsonantBeliefs beliefs(kLevels);
   for (const double d : {0.0, 0.5, 1.0}) {
     double integral = 0;
@@ -117,7 +117,7 @@ TEST(ConsonantBeliefsTest, FindNoConflictInEqualEvidenceUnlikeDempsterOnBins) {
   const Disagreement none = Differing(0, 0.3, 0.3);
   EXPECT_EQ(ConsonantConflict(none), 0);
   EXPECT_EQ(ConsonantPignisticDistance(none), 0);
-  EXPECT_NEAR(beliefs.JousselmeDistance(none), 0, 1e-7);  // root of rounding errors
+  EXPECT_NEAR(beliefs.JousselmeDistance(none), 0, 1e-7);  // square root of rounding errors
   EXPECT_NEAR(beliefs.CorrelationConflict(none), 0, 1e-12);
   EXPECT_NEAR(beliefs.CosineConflict(none), 0, 1e-12);
 }

@@ -73,11 +73,11 @@ TEST(ConflictWindowTest, AnEmptyPlaceAgesLikeAnyOther) {
   window.Push(std::nullopt);
   window.Push(2.0);
   EXPECT_EQ(window.Conflict(kAbsolute), 4.0);
-  window.Push(std::nullopt);  // 6 leaves
+  window.Push(std::nullopt);  // 6 leaves the window
   EXPECT_EQ(window.Conflict(kAbsolute), 2.0);
   window.Push(std::nullopt);
   EXPECT_EQ(window.Conflict(kAbsolute), 2.0);
-  window.Push(std::nullopt);  // 2 leaves
+  window.Push(std::nullopt);  // 2 leaves the window
   EXPECT_EQ(window.Conflict(kAbsolute), 0.0);
 }
 

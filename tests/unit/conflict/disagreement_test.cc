@@ -37,8 +37,8 @@ TEST(DisagreementTest, MissingValueAsConflictHasTheLastStatedPrecision) {
   source.Next(LidarShortBy(2, 3, 4));
   const auto disagreement = source.Next(WithoutLidar(LidarShortBy(2, 5, 6)));
   EXPECT_EQ(disagreement->difference_m, parameters.missing_conflict_m);
-  EXPECT_EQ(disagreement->radar_std_m, 5);  // stated now
-  EXPECT_EQ(disagreement->lidar_std_m, 4);  // stated last
+  EXPECT_EQ(disagreement->radar_std_m, 5);  // from this step
+  EXPECT_EQ(disagreement->lidar_std_m, 4);  // the last stated value
 }
 
 TEST(DisagreementTest, MissingValueAsConflictHasTheNominalPrecisionAtFirstAndAfterReset) {

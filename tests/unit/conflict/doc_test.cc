@@ -15,7 +15,7 @@ namespace {
 constexpr double kSlope_pm = 10;
 constexpr double kCentre_m = 1;
 
-// The z of which the DoC was made.
+// The z from which this DoC was computed.
 double ConflictOf(double doc) { return kCentre_m + std::log(doc / (1 - doc)) / kSlope_pm; }
 
 TEST(DocTest, HasTheTabulatedValues) {
@@ -49,7 +49,7 @@ TEST(DocTest, MeanAndVarianceOfItsConflictWithoutFaultAreTheQuotedOnes) {
   const double expected_variance = kStd_m * kStd_m * (1 - 2 / std::numbers::pi) / kWindow;
   EXPECT_NEAR(expected_mean, 0.32, 5e-3);
   EXPECT_NEAR(mean, expected_mean, 4 * std::sqrt(expected_variance / kWindows));
-  // A variance of n nearly normal numbers scatters by its sqrt(2/n).
+  // The variance of n nearly normal numbers scatters by sqrt(2/n) of itself.
   EXPECT_NEAR(variance, expected_variance, 4 * expected_variance * std::sqrt(2.0 / kWindows));
 }
 

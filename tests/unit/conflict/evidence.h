@@ -7,7 +7,7 @@
 
 namespace fogline {
 
-// The standard deviations of the worked examples: radar, LiDAR.
+// The standard deviations in the worked examples: radar, LiDAR.
 inline constexpr double kRadarStd_m = 0.4;
 inline constexpr double kLidarStd_m = 0.05;
 
@@ -16,7 +16,8 @@ inline Disagreement Differing(double difference_m, double radar_std_m = kRadarSt
   return {difference_m, radar_std_m, lidar_std_m};
 }
 
-// Radar and prediction at 0 m, where differences are exact; the LiDAR short of them by `short_m`.
+// The radar and the prediction are at 0 m, where differences are exact. The LiDAR reads short by
+// `short_m`.
 inline Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
                              double lidar_std_m = kLidarStd_m) {
   return {.radar = {true, 0, radar_std_m},
@@ -24,7 +25,7 @@ inline Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
           .prediction = {true, 0, 0.1}};
 }
 
-// The same with the radar long instead.
+// The same difference, but the radar reads long.
 inline Evidence RadarLongBy(double long_m) {
   return {.radar = {true, long_m, kRadarStd_m},
           .lidar = {true, 0, kLidarStd_m},
@@ -41,13 +42,13 @@ inline Evidence WithoutRadar(Evidence evidence) {
   return evidence;
 }
 
-// d standard normal, plus a shift: sensors whose S is 1 m2.
+// d is standard normal, plus a shift. The variance S of both sensors is 1 m2.
 inline Evidence UnitNoise(const Random& random, std::int64_t step, double shift_m = 0) {
   return LidarShortBy(random.Normal2(step, 0)[0] + shift_m, 0.6, 0.8);
 }
 
-// Anything that sensors may say: each value missing now and then, ranges up to 250 m, standard
-// deviations from 0 up, readings alike and not.
+// Arbitrary evidence of sensors: each value is sometimes missing, ranges are up to 250 m, standard
+// deviations start at 0, and readings may be equal or not.
 inline Evidence Anything(const Random& random, std::int64_t step) {
   const auto [where, near] = random.Uniform2(step, 0);
   const auto range = [&, place = where * 250, close = near < 0.7](std::uint32_t index) {

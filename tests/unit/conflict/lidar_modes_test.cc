@@ -35,7 +35,7 @@ TEST(LidarModesTest, OneStepIsBayesRuleWorkedByHand) {
 }
 
 TEST(LidarModesTest, FogIsLikeliestAtTheMeanOfItsScatter) {
-  // GIVEN: an echo at r* + 10 m E[Beta(2, 20)], of which the clean mode can't be
+  // GIVEN: an echo at r* + 10 m E[Beta(2, 20)], which the clean mode cannot produce
   const double fog_m = 3.5 + 10 * 2.0 / 22;
   LidarModes modes({});
   const auto& posterior = modes.Step(At(200, fog_m));
@@ -77,7 +77,7 @@ TEST(LidarModesTest, AnEchoWithoutAnyReferenceSaysNothing) {
   LidarModes modes({});
   Evidence alone = WithoutRadar(At(30, 4.3));
   alone.prediction.valid = false;
-  EXPECT_NEAR(Of(modes.Step(alone), LidarMode::kClean), 0.99, 1e-12);  // the chain's own step
+  EXPECT_NEAR(Of(modes.Step(alone), LidarMode::kClean), 0.99, 1e-12);  // the chain's step alone
 }
 
 TEST(LidarModesTest, ComesBackFromFogWithinASecond) {

@@ -1,4 +1,4 @@
-// What every row of the table promises.
+// Properties that every measure of the table must have.
 #include "services/conflict/measures.h"
 
 #include <cmath>
@@ -21,9 +21,9 @@ namespace {
 
 enum class Sides { kBoth, kLidarShort };
 
-// What a measure claims beside its range. Who claims less than this says so below.
+// Properties of a measure beside its range. The list below has the measures that lack one of them.
 struct Claims {
-  Sides sides = Sides::kBoth;  // both: d and -d score the same, and 0 the least
+  Sides sides = Sides::kBoth;  // both: d and -d score the same, and 0 scores the least
   bool zero_for_equal = true;  // equal evidence scores 0
 };
 
@@ -31,7 +31,7 @@ Claims ClaimsOf(std::string_view name) {
   static const std::map<std::string_view, Claims> kLess{
       {"doc", {.zero_for_equal = false}},  // 0.00005
       {"nis_signed", {.sides = Sides::kLidarShort}},
-      {"dempster_bins", {.zero_for_equal = false}},  // its known defect
+      {"dempster_bins", {.zero_for_equal = false}},  // a known defect
       {"cusum", {.sides = Sides::kLidarShort}},
       {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // below 0
       {"lidar_modes", {.zero_for_equal = false}},                        // a small probability
@@ -40,11 +40,11 @@ Claims ClaimsOf(std::string_view name) {
   return less == kLess.end() ? Claims{} : less->second;
 }
 
-constexpr int kSteps = 3;           // fewer than any ceiling needs
-constexpr double kRounding = 1e-7;  // roots of differences of squares
-constexpr double kBin_m = 0.5;      // bins promise nothing between multiples of it
+constexpr int kSteps = 3;           // too few to reach any ceiling
+constexpr double kRounding = 1e-7;  // square roots of differences of squares
+constexpr double kBin_m = 0.5;      // binned measures promise nothing between multiples of it
 
-// The score after this evidence has been there for `steps`.
+// The score after `steps` steps with this evidence.
 double After(const ConflictMeasureRow& row, int steps, const Evidence& evidence) {
   const auto measure = row.make({});
   double score = 0;
@@ -112,7 +112,7 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // Any other range is not clean, but r* is on one side only.
+        // No other range is clean. But r* is on one side only, so the two sides differ.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
@@ -137,13 +137,13 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
   for (const ConflictMeasureRow& row : ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
-      // It alone takes a missing value for evidence, whatever the rule.
+      // Only this measure treats a missing value as evidence, whatever the rule.
       const auto measure = row.make({});
       measure->Step(LidarShortBy(0));
       EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);
       continue;
     }
-    // As if the last evidence had been there again.
+    // The score is the same as if the last evidence had come again.
     const auto measure = row.make({});
     measure->Step(LidarShortBy(0.7));
     EXPECT_EQ(measure->Step(WithoutLidar(LidarShortBy(0.7))), After(row, 2, LidarShortBy(0.7)));
@@ -159,7 +159,7 @@ TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
     const double before = measure->Step(LidarShortBy(0));
     double after = before;
     for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
-    // Unequal precision alone is d_J = 0.7 of 0.8 on consonant beliefs.
+    // On consonant beliefs, unequal precision alone gives d_J = 0.7 of 0.8.
     EXPECT_GT(after, before + 0.1);
   }
 }
@@ -170,7 +170,8 @@ TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
     ConflictParameters parameters;
     parameters.missing = MissingLidar::kSkip;
     const auto measure = row.make(parameters);
-    // 0.1 m: evidence that leaves LiDAR modes clean, for which alone no echo is more suspicious.
+    // 0.1 m leaves lidar_modes clean. Only this measure finds a missing echo more suspicious than
+    // that.
     const double before = measure->Step(LidarShortBy(0.1));
     const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));
     EXPECT_EQ(after > before, row.name == "lidar_modes");

@@ -15,7 +15,7 @@ struct RunLength {
   double standard_error;  // of the mean
 };
 
-// Steps until a CUSUM of either sign exceeds the threshold, with noise of S = 1 m2.
+// The number of steps until a CUSUM of either sign exceeds the threshold, with noise of S = 1 m2.
 RunLength TwoSidedRunLength(double threshold, double shift_m, int runs) {
   const Random random(3, Stream::kRadar);
   Cusum up({});
@@ -40,13 +40,13 @@ RunLength TwoSidedRunLength(double threshold, double shift_m, int runs) {
   return {mean, std::sqrt((squares / runs - mean * mean) / runs)};
 }
 
-// Deterministic draws: a bound of 3.3 standard errors is the 99.9 % confidence interval.
+// The draws are deterministic. A bound of 3.3 standard errors is the 99.9 % confidence interval.
 constexpr double kConfidence = 3.3;
 
 TEST(CusumTest, MeanRunLengthToAFalseAlarmIsTheQuotedOne) {
   const RunLength at_4 = TwoSidedRunLength(4, 0, 2000);
   EXPECT_NEAR(at_4.mean, 168, kConfidence * at_4.standard_error);
-  EXPECT_LT(at_4.standard_error, 0.03 * at_4.mean);  // the claim has 3 %
+  EXPECT_LT(at_4.standard_error, 0.03 * at_4.mean);  // the claim has a precision of 3 %
   const RunLength at_5 = TwoSidedRunLength(5, 0, 1200);
   EXPECT_NEAR(at_5.mean, 465, kConfidence * at_5.standard_error);
   EXPECT_LT(at_5.standard_error, 0.035 * at_5.mean);
@@ -114,7 +114,7 @@ TEST(SprtTest, ErrsNoMoreOftenThanItsParametersSay) {
   parameters.sprt_delta_m = 1;
   const SprtBounds bounds = WaldBounds(parameters.sprt_alpha, parameters.sprt_beta);
   const Random random(4, Stream::kRadar);
-  // Share of tests that accept the conflict.
+  // The share of tests that decide for the conflict.
   const auto accepted = [&](double shift_m) {
     Sprt measure(parameters);
     std::int64_t step = 0;
@@ -129,7 +129,7 @@ TEST(SprtTest, ErrsNoMoreOftenThanItsParametersSay) {
     }
     return conflicts / double{kTests};
   };
-  // Wald's inequality, and 3.3 standard errors of a share of 1 % in 4000.
+  // Wald's inequality, plus 3.3 standard errors of a share of 1 % in 4000 tests.
   const double margin = kConfidence * std::sqrt(0.01 * 0.99 / kTests);
   EXPECT_LE(accepted(0), parameters.sprt_alpha / (1 - parameters.sprt_beta) + margin);
   EXPECT_GE(accepted(parameters.sprt_delta_m), 1 - parameters.sprt_beta / 0.99 - margin);

@@ -26,7 +26,7 @@ class EveryBlameTest : public testing::TestWithParam<std::string_view> {};
 TEST_P(EveryBlameTest, FallsOnTheLidarThatLeavesRadarAndPrediction) {
   const Blame blame = Make(GetParam())->Step(LidarShortBy(5));
   EXPECT_GT(blame.lidar, 0.8);
-  EXPECT_LT(blame.radar, 0.55);  // Murphy's average has the LiDAR in it
+  EXPECT_LT(blame.radar, 0.55);  // the LiDAR takes part in Murphy's average
 }
 
 TEST_P(EveryBlameTest, FallsOnTheRadarThatLeavesLidarAndPrediction) {
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryBlameTest, testing::Values("nis", "deng", "mur
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(NisBlameTest, IsTheChiSquareProbabilityOfTheResidual) {
-  // Residual 2 standard deviations: 0.9545 of the normal distribution is nearer.
+  // A residual of 2 standard deviations: 0.9545 of the normal distribution is nearer to the mean.
   const Evidence evidence{
       .radar = {true, 10, 0.3}, .lidar = {true, 11, 0.3}, .prediction = {true, 10, 0.4}};
   NisBlame blame({});
@@ -109,7 +109,7 @@ TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
 }
 
 TEST(SupportTest, OfTwoSourcesCannotTellWhoIsWrong) {
-  // GIVEN: a third body that has nothing in common with either, which is as good as none
+  // GIVEN: a third body that shares nothing with the others, so it counts as missing
   const BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.2, .radar_prediction = 0, .lidar_prediction = 0};
   for (const auto support : {DengSupport, MutualSupport}) {

@@ -65,7 +65,7 @@ TEST(DriverTest, HasNoMemory) {
 
 // ---- scenario section human --------------------------------------------------------------------
 
-/// TRUTH of a step in a traffic that never comes to rest.
+/// The TRUTH of a step, in traffic that never becomes steady.
 truth_t TruthOf(std::int64_t step) {
   truth_t truth = Truth();
   const auto k = static_cast<double>(step);
@@ -88,7 +88,7 @@ Situation SituationOf(const truth_t& truth) {
 
 constexpr std::int64_t kSteps = 60;
 
-/// He does in every step what this model says.
+/// Expects that he does in every step what this model computes.
 void ExpectDrives(const Scenario& scenario,
                   const std::function<double(const truth_t& truth)>& model) {
   Driver driver(scenario);
@@ -155,7 +155,7 @@ TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
 
 TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
   Scenario scenario;
-  scenario.step_s = 0.003;  // 0.8 s are 266 of them
+  scenario.step_s = 0.003;  // 0.8 s are 266 steps
   EXPECT_NO_THROW(Driver{scenario}) << "he has none";
   scenario.human.misjudges = true;
   const auto error = [&] {
@@ -171,7 +171,7 @@ TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
             "longer than 254 steps");
   scenario.step_s = 0.005;
   EXPECT_EQ(error(), "none");
-  // Whoever loses awareness can become slower: 0.8 s + 0.5 x 0.7 s are 288 steps of 4 ms.
+  // A driver who can lose awareness may react later: 0.8 s + 0.5 x 0.7 s are 288 steps of 4 ms.
   scenario.step_s = 0.004;
   EXPECT_EQ(error(), "none");
   scenario.human.loses_awareness = true;
@@ -199,7 +199,7 @@ class AwarenessOfTheDriverTest : public testing::Test {
     host.mode = arbitration_t::MINIMAL_RISK;
     return host;
   }
-  /// His readiness in the next step, after one of which he hears this.
+  /// His readiness in the next step, after he hears this HOST_COMMAND.
   double ReadinessAfter(const arbitration_t& host) {
     driver_.Hear(host);
     return driver_.Step(TruthOf(step_++)).readiness;
@@ -240,7 +240,7 @@ TEST_F(AwarenessOfTheDriverTest, FadesWhileTheCarStopsByItself) {
   EXPECT_LT(ReadinessAfter(Stopping()), 1);
 }
 
-// He has been asked, and the state machine still waits for him: take_over_table.h.
+// The car has asked him, and the state machine still waits for him: take_over_table.h.
 TEST_F(AwarenessOfTheDriverTest, ReturnsWhileTheCarStopsBecauseHeIsLate) {
   for (const std::int8_t mode :
        {arbitration_t::MRM_COMFORT, arbitration_t::MRM_EMERGENCY, arbitration_t::MRM_FAILED}) {
@@ -282,7 +282,7 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
     const truth_t truth = TruthOf(step);
     if (step > 0) awareness_.Step(DriverTask::kMonitors, scenario_.step_s);
     const double faded = 1 - awareness_.awareness();
-    // V_s and r_c grow by what SUMO's driver state has without awareness, T_r by 0.7 s.
+    // V_s and r_c grow by the values of SUMO's driver state without awareness, T_r by 0.7 s.
     const Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
                               .gap_error = 0.05 + 0.75 * 0.2 * faded,
                               .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};

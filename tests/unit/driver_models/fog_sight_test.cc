@@ -31,7 +31,7 @@ struct Lamp {
 };
 
 // A tail lamp and a rear fog lamp, by night, at dusk and by day, by Allard's law at a visibility of
-// 50 m. Ranges in whole metres, so half a metre.
+// 50 m. The ranges are rounded to metres, so the tolerance is half a metre.
 TEST(FogSightTest, SeesLampsAsFarAsAllardSays) {
   for (const Lamp& lamp : {Lamp{5, 1e-6, 103}, Lamp{5, 1e-4, 50}, Lamp{5, 1e-3, 29},
                            Lamp{200, 1e-6, 151}, Lamp{200, 1e-4, 91}, Lamp{200, 1e-3, 65}}) {
@@ -62,7 +62,7 @@ TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
 }
 
 TEST(FogSightTest, LosesOutlineThenLamps) {
-  const FogSight sight{FogSightParameters{}};  // at 50 m: 38.4 m and 50 m
+  const FogSight sight{FogSightParameters{}};  // its two ranges at 50 m: 38.4 m and 50 m
   EXPECT_EQ(sight.At(38, 50), Seen::kOutline);
   EXPECT_EQ(sight.At(39, 50), Seen::kLamps);
   EXPECT_EQ(sight.At(51, 50), Seen::kNothing);
@@ -92,7 +92,7 @@ TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
   EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);
   EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->acceleration_mps2, -1);
   EXPECT_EQ(sight.Perceive(Behind(20, 30, 21.51), 1000).ahead->speed_mps, 21.51);
-  // Between lamps only, at 45 m: 1.3 dv / 45^2 = 0.003 at dv = 4.67 m/s.
+  // Only the lamps are visible, at 45 m: 1.3 dv / 45^2 = 0.003 at dv = 4.67 m/s.
   EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.34), 50).ahead->speed_mps, 20);
   EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.32), 50).ahead->speed_mps, 15.32);
 }

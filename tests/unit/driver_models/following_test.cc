@@ -30,7 +30,7 @@ TEST(FollowingTest, IidmKeepsExactlyStandstillGapAndHeadway) {
     EXPECT_EQ(iidm.Acceleration(Behind(v, gap_m, v)), 0) << v;
     EXPECT_GT(iidm.Acceleration(Behind(v, 1.01 * gap_m, v)), 0) << v;
     EXPECT_LT(iidm.Acceleration(Behind(v, 0.99 * gap_m, v)), 0) << v;
-    // Where the IDM still wants more room.
+    // At the same gap the IDM still wants more room.
     const Following idm(FollowingModel::kIdm, driver);
     if (v > 0) {
       EXPECT_LT(idm.Acceleration(Behind(v, gap_m, v)), 0) << v;
@@ -47,11 +47,11 @@ TEST(FollowingTest, IidmIsAsWorkedByHand) {
   driver.standstill_m = 2;
   driver.exponent = 4;
   const Following iidm(FollowingModel::kIidm, driver);
-  // s* = 12 m: z = 2, 1 - 4.
+  // s* = 12 m, so z = 2: 1 - 4.
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 6, 10)), -3, kNear);
   // z = 1/2, a_free = 1 - 1/16 = 15/16: 15/16 (1 - 2^(-32/15)).
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 24, 10)), 0.9375 * (1 - std::exp2(-32.0 / 15)), kNear);
-  // Above v_0: -2 (1 - (1/2)^2) = -1.5, and with s* = 42 m at 21 m, z = 2, three more.
+  // Above v_0: -2 (1 - (1/2)^2) = -1.5. With s* = 42 m at a gap of 21 m, z = 2, this is three more.
   EXPECT_NEAR(iidm.Acceleration({.speed_mps = 40}), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 1000, 40)), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 21, 40)), -4.5, kNear);
@@ -70,14 +70,14 @@ TEST(FollowingTest, AccIdmWithoutCoolnessIsTheIidm) {
 }
 
 TEST(FollowingTest, AccIdmTakesACutInCoolly) {
-  // GIVEN a car that cuts in at 6 m with 2 m/s more
+  // GIVEN a car that cuts in at 6 m and is 2 m/s faster
   DriverSection driver;
   driver.max_acceleration_mps2 = 1;
   driver.comfortable_deceleration_mps2 = 2;
   const Situation cut_in = Behind(20, 6, 22);
   const double improved = Following(FollowingModel::kIidm, driver).Acceleration(cut_in);
   ASSERT_LT(improved, -5);
-  // THEN a_CAH is 0 for a steady car ahead that is faster, and the reaction bounded by b
+  // THEN a_CAH is 0, as for any steady faster car ahead, and b limits the reaction
   for (const double c : {0.5, 0.99, 1.0}) {
     EXPECT_NEAR(Following(FollowingModel::kAccIdm, driver, c).Acceleration(cut_in),
                 (1 - c) * improved + c * 2 * std::tanh(improved / 2), kNear);
@@ -86,11 +86,12 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
 
 TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
   // v = 20, v_l = 20, s = 20, a_lead = -4: v_l (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 =
-  // -2.857; the IIDM with s* = 32 m says 0.73 (1 - 2.56) = -1.139, which is more and is taken.
+  // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139, which is greater, so the model
+  // takes it.
   DriverSection driver;
   const Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);
-  // With s = 8: z = 4, the IIDM is at -9 (limit), a_CAH = -1600 / 464 = -3.448.
+  // With s = 8: z = 4, the IIDM is at its limit of -9, a_CAH = -1600 / 464 = -3.448.
   const double heuristic = -1600.0 / 464;
   const double b = driver.comfortable_deceleration_mps2;
   const double cool = heuristic + b * std::tanh((-9 - heuristic) / b);

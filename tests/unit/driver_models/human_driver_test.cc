@@ -45,17 +45,17 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
 }
 
 TEST(HumanDriverTest, AnticipatesWhatHasHappenedSince) {
-  // GIVEN 1 s of reaction time, the gap closing at 2 m/s, himself braking at 1 m/s2
+  // GIVEN 1 s of reaction time, a gap that closes at 2 m/s, and his own braking at 1 m/s2
   HumanParameters human = kPerfect;
   human.reaction_time_s = 1;
   HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
-  // THEN he goes by 19 m/s, 38 m and the closing speed of then
+  // THEN he reacts to 19 m/s, 38 m and the closing speed of that time
   EXPECT_NEAR(driver.Step(0, Behind(20, -1, 40, 18)),
               AnyModel().Acceleration(Behind(19, -1, 38, 17)), 1e-12);
 }
 
 TEST(HumanDriverTest, AnticipationOfConstantMotionUndoesTheReactionTime) {
-  // Equal constant accelerations: what is extrapolated linearly is exact.
+  // For equal constant accelerations the linear extrapolation is exact.
   HumanParameters human = kPerfect;
   human.reaction_time_s = 0.75;
   HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);

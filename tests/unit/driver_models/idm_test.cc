@@ -13,7 +13,7 @@ constexpr double kNear = 1e-12;  // some roundings of values around 1
 
 TEST(IdmTest, BrakesAsWorkedByHand) {
   // a = 0.73, b = 1.67, v_0 = 33.33, T = 1.5, s_0 = 2: s* = 32 + 40 / (2 sqrt(1.2191)) = 50.1137 m,
-  // a = 0.73 (1 - 0.12965 - 1.56961). Half a unit of the last digit.
+  // a = 0.73 (1 - 0.12965 - 1.56961). The tolerance is half a unit of the last digit.
   EXPECT_NEAR(Idm(DriverSection()).Acceleration(20, 18, 40), -0.5105, 5e-5);
 }
 
@@ -57,7 +57,7 @@ TEST(IdmTest, BrakesAsHardAsItCanWhereTheFormulaHasNoLimit) {
 
 TEST(IdmTest, TakesANegativeSpeedForStandingStill) {
   DriverSection driver;
-  driver.exponent = 3.5;  // of which a negative base has no power
+  driver.exponent = 3.5;  // a negative base has no such power
   const Idm idm(driver);
   EXPECT_EQ(idm.Acceleration(-0.1, 5, 20), idm.Acceleration(0, 5, 20));
 }

@@ -9,8 +9,8 @@ namespace fogline {
 namespace {
 
 TEST(TakeOverTimeTest, KnowsHowOftenALogNormalDriverIsLate) {
-  // mean 2.7, std 1.45 s: s^2 = ln 1.2884 = 0.2534, mu = 0.9933 - 0.1267 = 0.8666, and 95 % are
-  // within e^(0.8666 + 1.6449 * 0.5034) = 5.445 s.
+  // For a mean of 2.7 s and a deviation of 1.45 s: s^2 = ln 1.2884 = 0.2534, mu = 0.9933 - 0.1267 =
+  // 0.8666. 95 % are within e^(0.8666 + 1.6449 * 0.5034) = 5.445 s.
   EXPECT_NEAR(TakeOverTime({}, 5.445).LateProbability(), 0.05, 5e-4);
   EXPECT_NEAR(TakeOverTime({}, std::exp(0.8666)).LateProbability(), 0.5, 5e-4);
 }
@@ -28,8 +28,8 @@ TEST(TakeOverTimeTest, IsLateAsOftenAsAskedFor) {
 }
 
 TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
-  // Mean 6.325 s, standard deviation 2.234 s (SUMO's table: 2.233): a draw is late if its normal
-  // number is above 1.645, and 8.558 s at one.
+  // Mean 6.325 s, standard deviation 2.234 s (SUMO's table: 2.233). A draw is late if its normal
+  // number is above 1.645. A normal number of one gives 8.558 s.
   const TakeOverTime sumo({.model = TakeOverModel::kSumo}, 10);
   const Random random(5, Stream::kTakeOver);
   for (std::int64_t step = 0; step < 20; ++step) {
@@ -39,7 +39,7 @@ TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
 }
 
 TEST(TakeOverTimeTest, OverdrawsSumosPromiseForLongLeadTimes) {
-  // 60 s: m = 15.49, deviation 27.06: 28 % would be negative and is drawn again.
+  // For 60 s: mean 15.49 s, deviation 27.06 s. SUMO repeats the 28 % of draws that are negative.
   const TakeOverTime sumo({.model = TakeOverModel::kSumo}, 60);
   EXPECT_NEAR(sumo.LateProbability(), 0.05 / 0.7165, 1e-4);
 }
@@ -57,8 +57,8 @@ TEST(TakeOverTimeTest, RefusesWhatNoDistributionHas) {
   EXPECT_THROW(TakeOverTime(by_lead(0.05), 61), std::invalid_argument);
 }
 
-// 95 % of drivers are there after 5.44 s (log-normal of mean 2.7 s and deviation 1.45 s). And as
-// many as are not late are there after the lead time.
+// 95 % of drivers have taken over after 5.44 s (log-normal with mean 2.7 s and deviation 1.45 s).
+// The share that is not late has taken over after the lead time.
 TEST(TakeOverTimeTest, QuantilesAreThoseOfTheDistribution) {
   EXPECT_NEAR(TakeOverTime({}, 10).Quantile(0.95), 5.44, 0.005);
   for (const TakeOverModel model :

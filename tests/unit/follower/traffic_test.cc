@@ -14,7 +14,7 @@
 namespace fogline {
 namespace {
 
-// Cars behind a host of 20 m/s, all of the same speed as it, each 33 m behind the one before.
+// Cars behind a host of 20 m/s. All have its speed, and each is 33 m behind the one before.
 truth_t Platoon(std::size_t cars) {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -44,12 +44,12 @@ TEST(TrafficTest, GivesEachCarACommand) {
 
 TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
   for (const FollowerDriver driver : {FollowerDriver::kAcc, FollowerDriver::kHuman}) {
-    // GIVEN three cars whose second is slower than the others
+    // GIVEN three cars, of which the second is slower than the others
     Follower follower(WithFollowers(3, driver));
     Follower undisturbed(WithFollowers(3, driver));
     truth_t truth = Platoon(3);
     truth.follower_speed_mps[1] = 17;
-    // WHEN they have had time to see it
+    // WHEN the other cars have had time to see this
     std::vector<double> now;
     std::vector<double> otherwise;
     for (int k = 0; k < 20; ++k) {
@@ -57,7 +57,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
       ++truth.header.step;
     }
-    // THEN the third brakes for it, and the first does not know of it
+    // THEN the third car brakes for it, and the first does not notice it
     EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
@@ -101,7 +101,7 @@ TEST(PersonTest, ErrsInTheSameWayUnderTheSameSeed) {
 }
 
 TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
-  // GIVEN a car that closes in with 20 m/s to a host at rest 30 m ahead: 1.5 s to a collision
+  // GIVEN a car that closes in at 20 m/s on a standing host 30 m ahead: 1.5 s to a collision
   truth_t truth = Platoon(1);
   truth.host_speed_mps = 0;
   truth.follower_gap_m = {30};
@@ -116,7 +116,7 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
     }
     return least;
   };
-  // THEN the reference human brakes with 0.774 g, and nobody less than without a model
+  // THEN the reference human brakes with 0.774 g, and every model at least as hard as no model
   EXPECT_LE(hardest(SafetyModelChoice::kReferenceHuman), -7.59);
   EXPECT_LE(hardest(SafetyModelChoice::kRss), hardest(SafetyModelChoice::kNone));
   EXPECT_LE(hardest(SafetyModelChoice::kFuzzy), hardest(SafetyModelChoice::kNone));
@@ -125,7 +125,7 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
 TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
   Scenario scenario = WithFollowers(3, FollowerDriver::kAcc);
   scenario.followers.cars = {{}, {FollowerDriver::kHuman, FollowerStyle::kCautious}};
-  scenario.step_s = 0.004;  // 1.1 s are 275 of them
+  scenario.step_s = 0.004;  // 1.1 s are 275 steps
   scenario.follower.horizon_steps = 5;
   try {
     Follower follower(scenario);
@@ -168,7 +168,7 @@ TEST(CastTest, DrawsInProportionToTheShares) {
       aggressive += part.style == Style::kAggressive ? 1 : 0;
     }
   }
-  // Of 6,400 cars a quarter, and three fifths; four standard deviations are 139 and 157.
+  // Of 6,400 cars a quarter and three fifths. Four standard deviations are 139 and 157.
   EXPECT_NEAR(acc, 1600, 139);
   EXPECT_NEAR(aggressive, 3840, 157);
 }
@@ -187,7 +187,8 @@ TEST(CastTest, DrawsNobodyWithoutAShare) {
 
 class FogSightOfPeopleTest : public testing::Test {
  protected:
-  /// Accelerations of a column of two over 30 steps behind a host that is 5 m/s slower, in fog.
+  /// Accelerations of a column of two cars in fog, over 30 steps behind a host that is 5 m/s
+  /// slower.
   static std::vector<double> Drive(Scenario scenario, double visibility_m) {
     Follower follower(scenario);
     truth_t truth = Platoon(2);
@@ -214,15 +215,15 @@ TEST_F(FogSightOfPeopleTest, IsOffByDefaultAndThenFogChangesNothing) {
 }
 
 TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
-  // GIVEN the eyes of section human, and a person's own driver model behind them
+  // GIVEN the sight of section human, and a person with a driver model of his own
   Scenario scenario = Seeing(Sight::kFog);
   scenario.human.fog_sight.contrast = 0.4;
   const FogSight sight(scenario.human.fog_sight);
   Person seeing(Style::kNormal, std::nullopt, SafetyModelChoice::kNone,
                 Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
-  // WHEN the first of the two looks at the host through fog of 40 m
+  // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN he drives by what the sight leaves of it
+  // THEN its driver reacts to what the sight shows him
   for (std::int64_t k = 0; k < 30; ++k) {
     const Situation truth{.speed_mps = 20,
                           .acceleration_mps2 = 0,

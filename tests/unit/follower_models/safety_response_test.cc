@@ -15,7 +15,7 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
   SafetyResponse human(SafetyModel::kReferenceHuman, kStep_s);
   EXPECT_EQ(human.Step(kSafe), 0);
   EXPECT_FALSE(human.alarmed());
-  // TTC 1.5 s. 0.4 s of perception, then 0.75 s without throttle: from 0.4 to 1.1 s.
+  // TTC 1.5 s. After 0.4 s of perception the throttle is released for 0.75 s: from 0.4 to 1.1 s.
   for (int k = 0; k < 4; ++k) EXPECT_EQ(human.Step(kCutIn), 0) << k;
   EXPECT_TRUE(human.alarmed());
   for (int k = 4; k < 12; ++k) EXPECT_EQ(human.Step(kCutIn), 0.4) << k;
@@ -26,7 +26,7 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
     last = now;
   }
   EXPECT_EQ(human.Step(kCutIn), 7.59);
-  // No longer critical but still closing: he goes on. Then no more.
+  // Not critical but still closing: he goes on braking. Then he stops braking.
   Situation clearing = kCutIn;
   clearing.ahead->gap_m = 50;
   EXPECT_EQ(human.Step(clearing), 7.59);

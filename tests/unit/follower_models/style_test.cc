@@ -44,7 +44,7 @@ TEST(StyleTest, DrawsInProportionToTheShares) {
     aggressive += style == Style::kAggressive ? 1 : 0;
     normal += style == Style::kNormal ? 1 : 0;
   }
-  // Four standard deviations, sqrt(n p (1 - p)): 40 and 50 cars.
+  // Four standard deviations sqrt(n p (1 - p)), which are 40 and 50 cars.
   EXPECT_NEAR(aggressive, 2000, 160);
   EXPECT_NEAR(normal, 5000, 200);
 }

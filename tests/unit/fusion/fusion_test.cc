@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNear = 1e-12;  // some roundings of values up to 100
 
-// What a host of constant speed is told in one step, without noise.
+// The messages for a host of constant speed in one step, without noise.
 struct Messages {
   ego_t ego{};
   radar_t radar{};
@@ -40,7 +40,7 @@ Scenario Gated() {
   return scenario;
 }
 
-// Everything that consumers of a track work with.
+// Compares all fields of a track that its readers use.
 void ExpectSameEstimate(const track_t& a, const track_t& b) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(a.state[i], b.state[i]) << i;
@@ -116,7 +116,7 @@ TEST(FusionTest, FirstLidarValueCorrectsTheRadarsStart) {
   Messages m = At(0, 40);
   m.lidar.range_m = 39;
   const track_t& track = Step(fusion, m);
-  // Weighted by the inverse variances, 1 : 9.
+  // The weights are the inverse variances, 1 : 9.
   EXPECT_NEAR(track.state[0], (40 + 9 * 39) / 10.0, kNear);
   EXPECT_NEAR(track.covariance[0][0], 0.009, kNear);
   EXPECT_EQ(track.innovation[2], -1);
@@ -135,7 +135,7 @@ TEST(FusionTest, StartsBesideTheLaneWithWhatTheTwoValuesSayOfTheDistance) {
   EXPECT_NEAR(track.state[0], 6.0, kNear);
   EXPECT_NEAR(track.state[1], -1.3, kNear);
   EXPECT_NEAR(track.covariance[0][0], 0.13 * 0.13, kNear);
-  EXPECT_NE(track.covariance[0][1], 0);  // the range tells how to read the range rate
+  EXPECT_NE(track.covariance[0][1], 0);  // so the range helps to interpret the range rate
 }
 
 TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
@@ -211,10 +211,10 @@ TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
   deceived.lidar.range_m = 4;
   Messages missing = At(30);
   missing.lidar.valid = 0;
-  // WHEN it meets the gate
+  // WHEN the value reaches the gate
   const track_t& a = Step(gated, deceived);
   const track_t& b = Step(blind, missing);
-  // THEN it is named, measured, and has no effect
+  // THEN the track marks and measures it, but does not use it
   EXPECT_EQ(a.usage[2], track_t::GATED);
   EXPECT_NEAR(a.innovation[2], -26, 1e-9);
   EXPECT_GT(a.innovation_variance[2], 0);
@@ -226,8 +226,8 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
   Fusion fusion(scenario);
   int k = 0;
   for (; k < 30; ++k) Step(fusion, At(k, 40));
-  // GIVEN a car that cuts in, 15 m nearer and of the same speed
-  // WHEN the gate has refused it for as long as the scenario says
+  // GIVEN a car that cuts in, 15 m nearer and with the same speed
+  // WHEN the gate has refused it for as many steps as the scenario says
   for (int i = 0; i < scenario.fusion.gate_reopen_after; ++i, ++k) {
     const track_t& track = Step(fusion, At(k, 25));
     EXPECT_EQ(track.usage[0], track_t::GATED);
@@ -236,10 +236,10 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
     EXPECT_NEAR(track.state[0], 40, 1e-9);
   }
   EXPECT_EQ(Step(fusion, At(k, 25)).usage[0], track_t::USED);
-  // THEN the estimate settles on it
+  // THEN the estimate converges to it
   for (int i = 0; i < 60; ++i) Step(fusion, At(++k, 25));
   const track_t& settled = Step(fusion, At(++k, 25));
-  EXPECT_NEAR(settled.state[0], 25, 0.05);  // a standard deviation of one range
+  EXPECT_NEAR(settled.state[0], 25, 0.05);  // one standard deviation of a range
   for (int i = 0; i < 3; ++i) EXPECT_EQ(settled.usage[i], track_t::USED);
 }
 
@@ -248,7 +248,7 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   scenario.radar.lateral_offset_m = 1.0;
   scenario.lidar.lateral_offset_m = -1.0;
   Fusion fusion(scenario);
-  // GIVEN an approach at 10 m/s, and sensors silent until the estimate has passed the target
+  // GIVEN an approach at 10 m/s, and silent sensors until the estimate has passed the target
   Step(fusion, At(0, 20, -10));
   int k = 1;
   for (; k < 30; ++k) {
@@ -256,15 +256,14 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
     m.radar.valid = m.lidar.valid = 0;
     Step(fusion, m);
   }
-  // WHEN the target turns out to have kept its distance
+  // WHEN a measurement shows that the target kept its distance
   const double range = std::hypot(15.0, 1.0);
   for (int i = 0; i < 50; ++i) Step(fusion, At(k++, range, 0));
-  // THEN the estimate is in front again
+  // THEN the estimate is in front of the host again
   EXPECT_NEAR(Step(fusion, At(k, range, 0)).state[0], 15, 0.05);
 }
 
-// ---- policies with a say in the fusion
-// ------------------------------------------------------------
+// ---- policies that influence the fusion ---------------------------------------------------------
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
@@ -280,7 +279,7 @@ TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
     Step(believing, At(k));
     Step(isolating, At(k));
   }
-  // WHEN the LiDAR sees the fog THEN the radar's range is what the track keeps to
+  // WHEN the LiDAR sees the fog THEN the track follows the radar's range
   Messages fog = At(k);
   fog.lidar.range_m = 4;
   EXPECT_LT(Step(believing, fog).state[0], 29);
@@ -291,7 +290,7 @@ TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
   EXPECT_EQ(track.usage[2], track_t::DISTRUSTED);
   EXPECT_NEAR(track.innovation[2], -26, 1e-9);
   EXPECT_GT(track.innovation_variance[2], 0);
-  // WHEN it sees the car again THEN it is used again
+  // WHEN the LiDAR sees the car again THEN the track uses it again
   EXPECT_EQ(Step(isolating, At(++k)).usage[2], track_t::USED);
 }
 

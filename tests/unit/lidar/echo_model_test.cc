@@ -22,7 +22,7 @@ TEST(EchoModelTest, TheClearTargetIsAtTheThresholdAtItsClearRange) {
   LidarBeamSection beam;
   beam.target_reflectivity = beam.clear_reflectivity;
   const EchoModel model = Model(beam, 50.0);
-  // Clear air of 20 km takes 2 alpha R = 0.036.
+  // In clear air of 20 km the attenuation is 2 alpha R = 0.036.
   EXPECT_NEAR(model.At(beam.clear_range_m, kClear_m).target,
               -2.0 * ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
 }
@@ -46,12 +46,12 @@ TEST(EchoModelTest, EchoesAreEquallyStrongAtTheCrossover) {
                                             beam.target_reflectivity,
                                             beam.backscatter_factor / visibility_m, extinction_pm);
     const EchoPowers echoes = model.At(range_m, visibility_m);
-    EXPECT_NEAR(echoes.target, echoes.fog, 1e-3);  // what the table interpolates
+    EXPECT_NEAR(echoes.target, echoes.fog, 1e-3);  // error of the table's interpolation
   }
 }
 
 TEST(EchoModelTest, TheTableIsCloseToThePeakItself) {
-  // Worst case: all of the fog that a scenario may have.
+  // The worst case is the densest fog that a scenario may have.
   const LidarBeamSection beam;
   const BeamOptics optics = OpticsOf(beam);
   const EchoModel model = Model(beam, 5.0);

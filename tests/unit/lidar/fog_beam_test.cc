@@ -1,5 +1,5 @@
-// The beam in fog against independent numbers: crossover ranges of two published parameter sets,
-// brute-force integration, and the short-pulse limit.
+// The beam in fog, compared with independent numbers: crossover ranges of two published parameter
+// sets, brute-force integration, and the limit of short pulses.
 #include "services/lidar/fog_beam.h"
 
 #include <algorithm>
@@ -17,12 +17,13 @@ namespace {
 constexpr double kSpeedOfLight_mps = 299'792'458.0;
 constexpr double kBackscatterFactor = 0.046;  // beta times visibility, Hahner et al. 2021
 
-// Defaults of Hahner et al. 2021. Their Gamma of 1e-6 has a factor 2/c in it: 150 without.
+// Defaults of Hahner et al. 2021. Their Gamma of 1e-6 contains a factor 2/c. Without it Gamma is
+// 150.
 constexpr BeamOptics kHahner{
     .pulse_length_m = kSpeedOfLight_mps * 20e-9, .overlap_start_m = 0.9, .overlap_end_m = 1.0};
 constexpr double kHahnerReflectivity = 1e-6 * kSpeedOfLight_mps / 2.0;
 
-// A sensor of today: 5 ns pulse, overlap from 2 to 5 m.
+// A current sensor: 5 ns pulse, overlap from 2 to 5 m.
 constexpr BeamOptics kPhysical{
     .pulse_length_m = kSpeedOfLight_mps * 5e-9, .overlap_start_m = 2.0, .overlap_end_m = 5.0};
 
@@ -41,7 +42,7 @@ struct Row {
   const char* what;
   BeamOptics optics;
   double reflectivity;
-  std::vector<double> crossovers_m;  // by kVisibilities_m
+  std::vector<double> crossovers_m;  // in the order of kVisibilities_m
 };
 
 TEST(FogBeamTest, FogOutshinesTheTargetBeyondTheTabulatedRanges) {
@@ -89,7 +90,7 @@ TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
   }
 }
 
-// Largest folded pulse among centres on a grid, by the trapezoidal rule.
+// The largest folded pulse over a grid of centres, by the trapezoidal rule.
 FogPeak BruteForce(const BeamOptics& optics, double extinction_pm, double centre_step_m) {
   constexpr int kPoints = 4000;
   FogPeak best{0.0, 0.0};
@@ -122,7 +123,7 @@ TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
           (optics.overlap_end_m - optics.overlap_start_m + 0.5 * optics.pulse_length_m) / 200.0;
       const FogPeak expected = BruteForce(optics, extinction_pm, step_m);
       const FogPeak peak = FindFogPeak(optics, extinction_pm);
-      // What the grids miss at the kinks of the overlap: 0.3 % in J, two steps in r*.
+      // Errors of the grids at the kinks of the overlap: 0.3 % in J, two steps in r*.
       EXPECT_NEAR(peak.strength_pm / expected.strength_pm, 1.0, 3e-3)
           << optics.pulse_length_m << " " << extinction_pm;
       EXPECT_NEAR(peak.range_m, expected.range_m, 2.0 * step_m)

@@ -93,12 +93,12 @@ TEST(LidarTest, HasNoEchoFromBeyondItsMaximumRange) {
 }
 
 TEST(LidarTest, TakesThickFogForACar) {
-  // GIVEN: fog of 30 m visibility, in which a car is outshone beyond 16 m
+  // GIVEN: fog of 30 m visibility, which is brighter than a car beyond 16 m
   Lidar lidar(Exact(FogModel::kBeam));
   for (std::int64_t step = 0; step < 100; ++step) {
     // WHEN: the car is 33 m away
     const lidar_t& out = lidar.Step(Target(33.0, 30.0, step));
-    // THEN: the LiDAR reports something in the near field, weak but valid
+    // THEN: the LiDAR reports an echo in the near field, weak but valid
     ASSERT_TRUE(out.valid);
     EXPECT_LT(out.range_m, 8.0);
     EXPECT_GT(out.range_m, 3.0);
@@ -114,8 +114,8 @@ TEST(LidarTest, SeesANearCarThroughThickFog) {
 }
 
 TEST(LidarTest, HasNoEchoAtAllOfAFarDarkCarInThinFog) {
-  // Car and fog are 2.4 and 2 standard deviations below the detection threshold: 8 beams of 15
-  // above it have a chance of 1e-9 in a step.
+  // Car and fog are 2.4 and 2 standard deviations below the detection threshold. The probability
+  // that 8 of 15 beams are above it is 1e-9 in a step.
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.beam.target_reflectivity = 0.02;
   Lidar lidar(scenario);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStep_s = 0.5;
 
-// A run in clear air with a LiDAR that is right and an automation that drives.
+// A run in clear air. The LiDAR is right, and the automation drives.
 std::vector<Sample> QuietRun(std::size_t steps) {
   std::vector<Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {
@@ -45,7 +45,7 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileItIs
   for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
   const DetectionMeasures m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 2 * kStep_s);  // steps 2 and 3
-  EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; step 7 lasts no time
+  EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; the last step, 7, has no duration
 }
 
 TEST(DetectionTest, AuthorityWeighsTheTime) {
@@ -91,9 +91,9 @@ TEST(DetectionTest, DelayIsFromTheFirstDeceptionToTheAlarm) {
   auto run = QuietRun(8);
   for (const std::size_t k : {2, 3, 4, 5}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).deception_to_alarm_s, std::nullopt);
-  run[5].doc = 0.5;  // at the threshold is an alarm
+  run[5].doc = 0.5;  // a DoC at the threshold is an alarm
   EXPECT_EQ(Collect(run).deception_to_alarm_s, 3 * kStep_s);
-  run[1].doc = run[2].doc = 0.7;  // on already
+  run[1].doc = run[2].doc = 0.7;  // the alarm is already on
   EXPECT_EQ(Collect(run).deception_to_alarm_s, 0);
 }
 
@@ -101,7 +101,8 @@ TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
   auto run = QuietRun(9);
   for (const std::size_t k : {6, 7}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).false_alarms_ph, 0);
-  // One from the first step on, one of a step; that in fog is right, and it lasts beyond the fog.
+  // One alarm from the first step on, one of a single step. The alarm in fog is right, and lasts
+  // beyond the fog.
   for (const std::size_t k : {0, 1, 3, 7, 8}) run[k].doc = 0.9;
   EXPECT_EQ(Collect(run).false_alarms_ph, 2 * 3600 / (6 * kStep_s));
 }

@@ -10,7 +10,7 @@ namespace fogline {
 namespace {
 
 TEST(ClopperPearsonTest, MeetsTheClosedFormsAtTheEnds) {
-  // Without an event P(0 of n) = (1 - p)^n is the tail; with n of n, p^n.
+  // Without an event the tail is P(0 of n) = (1 - p)^n. With n of n events it is p^n.
   const EventShare none = ClopperPearson(0, 10);
   EXPECT_EQ(none.lower, 0);
   EXPECT_NEAR(none.upper, 1 - std::pow(0.025, 0.1), 1e-12);

@@ -8,7 +8,7 @@
 namespace fogline {
 namespace {
 
-// Two cars 30 and 20 m apart, no faster than the one before each, as safe as they want to be.
+// Two cars 30 and 20 m behind the car before, no faster than it, at exactly their safe distances.
 truth_t TwoFollowers() {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -52,13 +52,13 @@ TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "nobody closes in";
-  // WHEN the first closes in with 5 m/s to the host, and the second with 2 m/s to the first
+  // WHEN the first closes in on the host with 5 m/s, and the second on the first with 2 m/s
   truth.follower_speed_mps = {25, 27};
   accumulator.Add(truth, SafeDistances(0, 0));
   // THEN 30 m take 6 s, and 20 m take 10 s
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, 6);
   EXPECT_EQ(accumulator.Result()[1].min_ttc_s, 10);
-  // AND once they touch there is no time left
+  // AND once they touch, the time is 0
   truth.follower_gap_m[0] = -1;
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, 0);

@@ -23,7 +23,7 @@ namespace {
 constexpr double kStep_s = 0.5;  // a power of two: all times and jerks below are exact
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A run of so many uneventful steps, the following car exactly at its safe distance.
+// A run without events of so many steps. The following car is exactly at its safe distance.
 std::vector<Sample> QuietRun(std::size_t steps) {
   std::vector<Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {
@@ -35,7 +35,7 @@ std::vector<Sample> QuietRun(std::size_t steps) {
   return run;
 }
 
-// The same with fog in every step, and the following car too near by shortfalls_m[k].
+// The same run with fog in every step. The following car is too near by shortfalls_m[k].
 std::vector<Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
   std::vector<Sample> run = QuietRun(shortfalls_m.size());
   for (std::size_t k = 0; k < run.size(); ++k) {
@@ -84,7 +84,7 @@ TEST(SafetyImprovementTest, LooksOnlyAtFogAndAboveTheFloor) {
   auto baseline = FoggyRun({1, 0.25, 1, 0});
   const auto traded = FoggyRun({0.25, 9, 9, 9});
   baseline[2].fog_present = false;
-  // Step 1 lies at the floor, step 2 in clear air, step 3 has nothing to improve.
+  // Step 1 is at the floor, step 2 is in clear air, step 3 has nothing to improve.
   EXPECT_EQ(SafetyImprovementPct(baseline, traded, 0.25), 75);
 }
 
@@ -100,7 +100,7 @@ TEST(SafetyImprovementTest, ComparesTheStepsThatBothRunsReached) {
   const auto baseline = FoggyRun({1, 1});
   const auto traded = FoggyRun({0, 0.5, 1, 1});
   EXPECT_EQ(SafetyImprovementPct(baseline, traded, 0), 75);
-  EXPECT_EQ(SafetyImprovementPct(traded, baseline, 0), -100);  // relevant: step 1 alone
+  EXPECT_EQ(SafetyImprovementPct(traded, baseline, 0), -100);  // only step 1 is relevant
 }
 
 TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
@@ -188,7 +188,7 @@ TEST(MeasureTest, CountsHandOversInBothDirectionsAndTheHumansTime) {
   for (std::size_t k : {2, 3, 4, 8, 9}) run[k].lambda_human = 1;
   const RunMeasures m = Measure(run);
   EXPECT_EQ(m.transfers, 3);
-  EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // the last step's command is never carried out
+  EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // no car carries out the command of the last step
 }
 
 TEST(MeasureTest, JumpOfTheCommandCountsOnlyAtHandOvers) {
@@ -220,11 +220,11 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   const std::array<double, 10> acceleration{0, 0, 3, 3, 2, 2, 4, 4, 4, 4};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
-  // The command of step 3 shows at step 4; two steps belong to it. The jump to step 2 was before
-  // it, that to step 6 comes after.
+  // The command of step 3 takes effect at step 4. The two steps from there on belong to the
+  // hand-over. The jump at step 2 comes before it, the jump at step 6 after it.
   for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_human = 1;
   EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 2);
-  // A ramp lasts: authority that still changes at step 4 takes step 6 in.
+  // A ramp takes time: authority still changes at step 4, so step 6 belongs to the hand-over, too.
   run[3].lambda_human = 0.5;
   EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 4);
 }
@@ -236,7 +236,7 @@ TEST(MeasureTest, MeasuresBothPairsOfCars) {
     sample.host_speed_mps = 20;
     sample.follower_speed_mps = 20;
   }
-  run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind
+  run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind it
   run[2].preceding_speed_mps = 10;
   const RunMeasures m = Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
@@ -251,7 +251,8 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   const RunMeasures m = Measure(run);
-  // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 follow no applied acceleration.
+  // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 do not follow an applied
+  // acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
   EXPECT_EQ(m.rms_jerk_mps3, std::sqrt((1.0 + 16.0 + 0.0) / 3));
   EXPECT_EQ(m.max_abs_acceleration_mps2, 2.5);

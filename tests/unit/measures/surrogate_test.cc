@@ -10,9 +10,9 @@ namespace fogline {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kStep_s = 0.5;  // a power of two: integrals are exact
+constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 
-// 30 m behind a car of 20 m/s, 5 m/s faster.
+// A gap of 30 m to a car of 20 m/s, 5 m/s faster.
 constexpr CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
 constexpr CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
 
@@ -26,7 +26,7 @@ PairMeasures Collect(std::initializer_list<CarPair> pairs, const MeasuresSection
   return accumulator.Result();
 }
 
-// A pair that collides within so many seconds: 10 m/s faster.
+// A pair that collides after so many seconds: 10 m/s faster.
 CarPair CollidingWithin(double ttc_s) { return {10 * ttc_s, 30, 20}; }
 
 TEST(SurrogateTest, TimeToCollisionIsGapOverClosingSpeed) {
@@ -57,7 +57,7 @@ TEST(SurrogateTest, CrashProbabilityIsThatOfATruncatedNormalDistribution) {
   section.madr_most_mps2 = 9;
   EXPECT_EQ(CrashProbability(section, 7), 0);
   EXPECT_NEAR(CrashProbability(section, 8), 0.5, 1e-12);
-  // (0.691462 - 0.158655)/0.682689, tables of the normal distribution.
+  // (0.691462 - 0.158655)/0.682689, from tables of the normal distribution.
   EXPECT_NEAR(CrashProbability(section, 8.5), 0.780453, 2e-6);
   EXPECT_EQ(CrashProbability(section, 9), 1);
   EXPECT_EQ(CrashProbability(section, std::numeric_limits<double>::infinity()), 1);
@@ -86,7 +86,7 @@ TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
 }
 
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
-  // TTC* is 2 s. The last step lasts no time.
+  // TTC* is 2 s. The last step has no duration.
   const PairMeasures m = Collect({CollidingWithin(3), CollidingWithin(2), CollidingWithin(1),
                                   CollidingWithin(1.5), kFollowing, CollidingWithin(1)});
   EXPECT_EQ(m.tet_s, 3 * kStep_s);
@@ -99,7 +99,8 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
   section.madr_std_mps2 = 1;
   section.madr_least_mps2 = 7;
   section.madr_most_mps2 = 9;
-  // 100/(2 * 6.25) = 8 m/s2: probability 1/2 in one of four steps that last.
+  // 100/(2 * 6.25) = 8 m/s2 has probability 1/2. It occurs in one of the four steps with a
+  // duration.
   const CarPair hard{.gap_m = 6.25, .speed_mps = 30, .lead_speed_mps = 20};
   EXPECT_NEAR(*Collect({kFollowing, hard, kFollowing, kFollowing, hard}, section).cpi, 0.125,
               1e-12);

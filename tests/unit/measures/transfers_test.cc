@@ -1,4 +1,4 @@
-// What counts as a transfer: the same for measures and for the log of events.
+// Measures and the log of events must count the same transfers.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,7 +21,7 @@ struct Counted {
   std::int64_t by_measures = 0;
   std::optional<double> min_dwell_s;
   std::vector<std::int64_t> by_events;  // steps
-  bool shared = false;                  // a mode of the driver's with less than half
+  bool shared = false;                  // a driver's mode with less than half of the authority
 };
 
 Counted CountTransfers(const Scenario& scenario) {
@@ -41,7 +41,7 @@ Counted CountTransfers(const Scenario& scenario) {
   return counted;
 }
 
-/// Least time between two transfers of the log.
+/// The shortest time between two transfers of the log.
 std::optional<double> MinDwell_s(const Counted& counted, double step_s) {
   std::optional<double> least;
   for (std::size_t i = 1; i < counted.by_events.size(); ++i) {
@@ -68,7 +68,7 @@ TEST(TransfersTest, AreCountedAlikeByMeasuresAndEventsUnderEveryPolicyProfileAnd
                "/arbitrator/transfer/duration_s=1.3", "/arbitrator/take_over/mode=" + mode});
           const Counted counted = CountTransfers(scenario);
           EXPECT_EQ(counted.by_measures, std::ssize(counted.by_events));
-          // In the same steps, as far as the measures tell.
+          // They are in the same steps, as far as the measures show this.
           const std::optional<double> dwell_s = MinDwell_s(counted, scenario.step_s);
           ASSERT_EQ(counted.min_dwell_s.has_value(), dwell_s.has_value());
           EXPECT_NEAR(counted.min_dwell_s.value_or(0), dwell_s.value_or(0), 1e-6)

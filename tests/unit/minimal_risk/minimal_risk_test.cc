@@ -20,7 +20,7 @@ TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
   }
 }
 
-// r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, exactly released in 5 steps of 0.2.
+// r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, so the brake is released in exactly 5 steps of 0.2.
 TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
   MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(-1.0);

@@ -1,4 +1,4 @@
-// The table of policies, and what each of them decides.
+// The table of policies, and the decisions of each policy.
 #include "services/policies/policies.h"
 
 #include <cmath>
@@ -26,7 +26,7 @@ std::string WithPolicy(std::string_view name) {
   return R"({"version": 1, "arbitrator": {"policy": ")" + std::string(name) + R"("}})";
 }
 
-/// A view whose parts a test changes.
+/// The parts of a view. A test changes them.
 struct Situation {
   double doc = 0.6;
   double threshold = 0.5;
@@ -89,7 +89,7 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
 }
 
 TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
-  // Of those that are tested here; another policy has tests of its own.
+  // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
        {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
     const PolicyRow& row = RowOf(FindPolicy(name).value());
@@ -103,7 +103,7 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
   }
 }
 
-// What the arbitrator takes a policy for without asking it.
+// For a policy with a simple rule, the arbitrator applies the rule and does not ask the policy.
 TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
   int simple = 0;
   for (const PolicyRow& row : Policies()) {
@@ -199,7 +199,7 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
   Situation fog = calm;
   fog.surroundings.visibility_m = 80;  // C_h = 1.5
   EXPECT_EQ(Decide("bayes", fog).threshold, 1.5 / 2.5);
-  fog.surroundings.visibility_m = 10;  // C_h = 2, and no more than that
+  fog.surroundings.visibility_m = 10;  // the factor is limited to 2: C_h = 2
   EXPECT_EQ(Decide("bayes", fog).threshold, 2.0 / 3);
   Situation followed = calm;
   followed.surroundings = {.followed = true, .follower_gap_m = 32, .follower_speed_mps = 24};
@@ -210,7 +210,7 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
 
 TEST(TimeUntilHardBrakingTest, IsThatOfHandWorkedCases) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  // At 10 m/s and 3 m/s2 a gap of 100/6 m is the last one: 50 m are 33.3 m more.
+  // At 10 m/s and 3 m/s2 the last safe gap is 100/6 m. 50 m are 33.3 m more.
   EXPECT_NEAR(TimeUntilHardBraking(50, 10, 0, 3), (50 - 100.0 / 6) / 10, 1e-12);
   EXPECT_EQ(TimeUntilHardBraking(10, 10, 0, 3), 0) << "too near already";
   EXPECT_EQ(TimeUntilHardBraking(0, -1, 0, 3), 0) << "touching";
@@ -274,8 +274,8 @@ TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
   }
 }
 
-// Fusion and arbitrator have an instance each: what one has decided of the driver, the other does
-// not know.
+// The fusion and the arbitrator each have an instance of the policy. Neither knows the decisions of
+// the other about the driver.
 TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
   const auto policy = RowOf(FindPolicy("availability").value()).make({});
   Situation available;

@@ -1,4 +1,4 @@
-// Against the figures of the ITU-R recommendations.
+// Compares the attenuation with figures of the ITU-R recommendations.
 #include "services/radar/attenuation.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ TEST(AttenuationTest, FogCoefficientAt77GHzMatchesP840) {
 }
 
 TEST(AttenuationTest, FogCoefficientGrowsWithTheSquareOfLowFrequencies) {
-  // Far below water's relaxation at 20 GHz, Rayleigh absorption goes with f^2.
+  // Far below water's relaxation at 20 GHz, Rayleigh absorption is proportional to f^2.
   EXPECT_NEAR(FogCoefficient(2.0, 10.0) / FogCoefficient(1.0, 10.0), 4.0, 0.04);
 }
 
@@ -39,7 +39,7 @@ TEST(AttenuationTest, RainCoefficientsAt77GHzMatchP838) {
 }
 
 TEST(AttenuationTest, RainCoefficientsMeetTheTableOfP838) {
-  // ITU-R P.838-3, table 5, at frequencies of its own.
+  // ITU-R P.838-3, table 5, at frequencies of the table.
   const RainCoefficients h10 = RainCoefficientsOf(10.0, Polarization::kHorizontal);
   EXPECT_NEAR(h10.k, 0.01217, 0.00001);
   EXPECT_NEAR(h10.alpha, 1.2571, 0.0001);

@@ -7,7 +7,7 @@
 namespace fogline {
 namespace {
 
-// A radar without errors: what is left is geometry.
+// A radar without errors, so only the geometry matters.
 Scenario Exact() {
   Scenario scenario;
   scenario.radar.bias_m = 0.0;
@@ -82,7 +82,7 @@ TEST(RadarTest, DropsTheTargetBeyondMaximumRange) {
 }
 
 TEST(RadarTest, LosesRangeInHeavyRain) {
-  // 50 mm/h take 18.76 dB/km: 6.45 dB at 172 m and back, 6.49 dB at 173 m. Being nearer than
+  // 50 mm/h attenuate by 18.76 dB/km: 6.45 dB to 172 m and back, 6.49 dB to 173 m. A distance below
   // 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m.
   Scenario scenario = Exact();
   scenario.fog.rain_mmph = 50.0;
@@ -92,7 +92,7 @@ TEST(RadarTest, LosesRangeInHeavyRain) {
 }
 
 TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
-  // GIVEN: fog of 50 m visibility, 1.57 dB/km: 250 m shrink to 239.4 m
+  // GIVEN: fog of 50 m visibility, 1.57 dB/km, which reduces the range from 250 m to 239.4 m
   Scenario scenario = Exact();
   scenario.fog.model = FogModel::kBeam;
   truth_t near = Target(238.0);
@@ -100,7 +100,7 @@ TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
   truth_t far = Target(241.0);
   far.fog_visibility_m = 50.0;
   Radar radar(scenario);
-  // THEN: that is all
+  // THEN: the fog has no other effect
   EXPECT_TRUE(radar.Step(near).valid);
   EXPECT_FALSE(radar.Step(far).valid);
   far.fog_visibility_m = 20000.0;
@@ -108,7 +108,7 @@ TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
 }
 
 TEST(RadarTest, AddsTheLossesOfRainAndFog) {
-  // 50 mm/h alone leave 172.3 m, with 1.57 dB/km of fog it is 168.5 m.
+  // 50 mm/h alone reduce the range to 172.3 m. With 1.57 dB/km of fog it is 168.5 m.
   Scenario scenario = Exact();
   scenario.fog.model = FogModel::kBeam;
   scenario.fog.rain_mmph = 50.0;

@@ -10,7 +10,7 @@
 namespace fogline {
 namespace {
 
-/// A log of three events; returns its bytes.
+/// Writes a log of three events. @return its bytes
 std::string WriteThreeEvents(const std::string& file) {
   {
     EventLogWriter writer(file);

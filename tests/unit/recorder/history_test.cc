@@ -1,4 +1,4 @@
-// What a log has of a run, and where its steps lie in it, however long it is.
+// The steps of a run in a log of any length, and their places in it.
 #include "services/recorder/history.h"
 
 #include <gmock/gmock-matchers.h>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kRunId = 7;
 constexpr std::string_view kScenario = R"({"version":1})";
 
-/// A message of a step; that of the follower takes more bytes in some steps than in others.
+/// A message of a step. The follower's message is longer in some steps than in others.
 template <class M>
 std::vector<std::uint8_t> Encoded(std::int64_t step, bool last = false) {
   M message{};
@@ -56,7 +56,7 @@ class HistoryTest : public testing::Test {
     WriteFront(log);
     for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
   }
-  /// What the log has, found from its end or, for comparison, read from front to back.
+  /// The contents of the log, found from its end or, for comparison, read from front to back.
   Remains ReadFromEnd(std::int64_t tail = kTailBytes) const {
     return ReadRemains(file_, ReadFront(file_), {}, tail);
   }
@@ -92,7 +92,7 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
   Write(kSteps);
   EXPECT_TRUE(ReadFromEnd(kTail).final);
   EXPECT_EQ(ReadFromEnd(kTail).steps, kSteps);
-  // Around each of the last two dozen events, and in between.
+  // The cuts are around and within each of the last two dozen events.
   for (auto size = static_cast<std::int64_t>(std::filesystem::file_size(file_)); size > 60'000;
        size -= 37) {
     std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(size));
@@ -103,9 +103,9 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
 }
 
 TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
-  // GIVEN a log of a hundred gigabytes, in which nothing is but its front and its last steps: what
-  // reads the rest finds no event there, and takes minutes
-  constexpr std::int64_t kPeriod = 7;  // of what a step takes
+  // GIVEN a log of a hundred gigabytes that has only its front and its last steps. A reader of the
+  // rest would find no event there, and would take minutes.
+  constexpr std::int64_t kPeriod = 7;  // the period of the steps' sizes
   constexpr std::int64_t kSteps = 14'000'000 * kPeriod;
   Write(kPeriod);
   const LogFront front = ReadFront(file_);
@@ -120,7 +120,7 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
     EventLogWriter log(file_, head);
     for (std::int64_t step = kSteps; step < kSteps + 500; ++step) WriteStep(log, step);
   }
-  // WHEN it is gone on with; THEN the last step is found, and each of the last ones
+  // WHEN a recorder continues this log, THEN it finds the last step and all steps near it
   const Remains remains = ReadFromEnd();
   EXPECT_EQ(remains.steps, kSteps + 500);
   EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(kStepChannels));
@@ -129,7 +129,8 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
 }
 
 TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
-  // GIVEN a log of 20 MB behind whose steps is something else, so that all of it is read
+  // GIVEN a log of 20 MB with foreign bytes behind its steps, so that the reader must read all of
+  // it
   constexpr std::int64_t kSteps = 20'000;
   Write(kSteps);
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * kTailBytes);
@@ -137,7 +138,7 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
   std::vector<std::int64_t> heard;
   const Remains remains = ReadRemains(file_, ReadFront(file_),
                                       [&heard](std::int64_t steps) { heard.push_back(steps); });
-  // THEN nothing is lost, and there were signs of life that tell of progress
+  // THEN it finds all steps, and has given signs of life that show its progress
   EXPECT_EQ(remains.steps, kSteps);
   ASSERT_GE(heard.size(), 2U);
   EXPECT_TRUE(std::ranges::is_sorted(heard));
@@ -149,7 +150,7 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
 
 TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
   constexpr std::int64_t kSteps = 2000;
-  Write(kSteps + 1);  // the last one says that it is the last
+  Write(kSteps + 1);  // the last one is marked as the last step
   History history(file_, ReadFront(file_), ReadFromEnd());
   std::mt19937 random(7);
   for (int i = 0; i < 500; ++i) {
@@ -178,7 +179,7 @@ TEST_F(HistoryTest, TakesNoMoreMemoryTheLongerTheRunIs) {
   const std::int64_t before = MeasureThisProcess().rss_bytes;
   for (std::int64_t step = 1; step < kSteps; ++step) history.Add(step * 3000);
   EXPECT_EQ(history.steps(), kSteps);
-  // An index of every step would take eight bytes each: 160 MB.
+  // An index of every step would take eight bytes for each: 160 MB.
   EXPECT_LT(MeasureThisProcess().rss_bytes - before, 1 << 20);
 }
 

@@ -1,4 +1,4 @@
-// The seal of a log: what it shows, and what it cannot.
+// The seal of a log: the changes that it shows, and those that it cannot show.
 #include "services/recorder/log_seal.h"
 
 #include <gmock/gmock-matchers.h>
@@ -24,14 +24,14 @@ using testing::HasSubstr;
 constexpr std::int64_t kRunId = 7;
 constexpr std::int64_t kSteps = 3;
 constexpr std::int64_t kStep_us = 100'000;
-// The shortest scenario: in a larger one there is more to flip, and nothing else.
+// The shortest scenario. A longer one would only have more bits to flip.
 constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
 
 void Write(const std::string& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
 }
 
-/// What a reader makes of a log.
+/// The result of reading a log.
 struct Reading {
   bool readable = true;
   RunLog run;
@@ -112,7 +112,7 @@ TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
 TEST_F(LogSealTest, ShowsEveryBitThatIsFlippedAnywhereInTheFile) {
   SealIt();
   const std::string sealed = Content(log_);
-  // Every byte, each with another one of its bits than the bytes beside it.
+  // Every byte, each with another bit than its neighbours.
   for (std::size_t at = 0; at < sealed.size(); ++at) {
     std::string altered = sealed;
     altered[at] = static_cast<char>(altered[at] ^ (1 << (at % 8)));
@@ -163,7 +163,7 @@ TEST_F(LogSealTest, ShowsWhatWasAddedBehindIt) {
 
 TEST_F(LogSealTest, HoldsInACopyWhoseEventsHaveOtherTimes) {
   SealIt();
-  // GIVEN the log as lcm-logger records it when lcm-logplayer plays it
+  // GIVEN the log as lcm-logger records it while lcm-logplayer plays it
   const std::string copy = folder_.File("copy");
   {
     EventLogReader reader(log_);
@@ -187,7 +187,7 @@ TEST_F(LogSealTest, OfAnotherRunSaysNothingOfThisOne) {
   others.digest = HashOf("another run");
   Write(folder_.File("others"), "");
   SealLog(folder_.File("others"), {}, others, nullptr);
-  // GIVEN a log of lcm-logger, which has heard both
+  // GIVEN a log of lcm-logger that contains both seals
   const std::string copy = folder_.File("copy");
   {
     EventLogReader others_reader(folder_.File("others"));
@@ -244,15 +244,16 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({first, last}), "");
   EXPECT_EQ(why({last, first}), "") << "in whatever order";
-  // A change before what the first writer has told, which the second has taken for granted.
+  // A change before the end that the first writer has reported. The second writer has relied on
+  // that part.
   content[50] ^= 1;
   EXPECT_THAT(why({first}), HasSubstr("the log on disk is not what the recorder wrote: 133 bytes"));
-  // A change behind it.
+  // A change behind that end.
   content[50] ^= 1;
   content[200] ^= 1;
   EXPECT_EQ(why({first}), "");
   EXPECT_THAT(why({first, last}), HasSubstr("267 bytes with checksum "));
-  // A file that is shorter.
+  // A shorter file.
   content.resize(200);
   EXPECT_THAT(why({first, last}), HasSubstr(", on disk 200 with "));
 }

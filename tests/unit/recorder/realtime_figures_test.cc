@@ -19,7 +19,7 @@ status_t Said(const std::string& role, std::int64_t instance, std::int64_t seque
 
 TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
   RealtimeAccumulator figures(1, kStep_us, 1000);
-  for (const std::int64_t sequence : {1, 3, 2}) {  // the last one was overtaken
+  for (const std::int64_t sequence : {1, 3, 2}) {  // the second message has overtaken the last one
     status_t world = Said("world", 1, sequence);
     world.ticks = 10 * sequence;
     figures.Add(world);
@@ -30,7 +30,7 @@ TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
   EXPECT_EQ(figures.Result().ticks, 37);
 }
 
-/// A log of ten steps of which some lack what radar or world have published.
+/// A log of ten steps. Some of them lack messages that the radar or the world has published.
 class UnloggedMessagesTest : public testing::Test {
  protected:
   void AddSteps(int steps, const ChannelSet& there) {

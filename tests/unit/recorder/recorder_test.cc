@@ -1,4 +1,4 @@
-// The recorder on a bus in memory: what it answers for, and how it goes on with a log.
+// The recorder on a bus in memory: the requests that it answers, and how it continues a log.
 #include "services/recorder/recorder.h"
 
 #include <gmock/gmock-matchers.h>
@@ -25,7 +25,7 @@ std::string Content(const std::string& file) {
 
 class RecorderTest : public testing::Test {
  protected:
-  /// What the others say in a step.
+  /// Publishes the messages of all other roles in a step.
   static void SayStep(Script& script, std::int64_t step) {
     ForEachStepChannel([&]<class M>(std::size_t) {
       M message = Script::Of<M>(step);
@@ -33,7 +33,7 @@ class RecorderTest : public testing::Test {
       script.Say(message);
     });
   }
-  /// A recorder of the run that has got so far.
+  /// Makes a recorder for a run with this progress.
   std::unique_ptr<Recorder> Record(Script& script, const std::string& name,
                                    Recorder::Existing existing, std::int64_t progress = -1) {
     auto recorder =
@@ -41,7 +41,7 @@ class RecorderTest : public testing::Test {
     script.SayRun(run_t::GO, progress);
     return recorder;
   }
-  /// Records the whole run, or what is left of it.
+  /// Records the whole run, or the rest of it.
   void RecordAll(const std::string& name, Recorder::Existing existing) {
     Script script;
     const auto recorder = Record(script, name, existing);
@@ -49,7 +49,7 @@ class RecorderTest : public testing::Test {
     for (std::int64_t step = 0; step < kSteps; ++step) SayStep(script, step);
     recorder->Leave();
   }
-  /// Has it hand out all that it was asked for, some of it in each turn.
+  /// Lets it answer all requests, a part of them in each turn.
   void AnswerAll(Recorder& recorder) {
     constexpr int kTurns = 100;
     for (int i = 0; i < kTurns; ++i) {
@@ -57,7 +57,7 @@ class RecorderTest : public testing::Test {
       script_.bus().Drain();
     }
   }
-  /// The log of the whole run.
+  /// Records the whole run. @return the bytes of its log
   std::string WholeLog() {
     RecordAll("whole", Recorder::Existing::kReplace);
     return Content(folder_.File("whole"));
@@ -90,7 +90,8 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   truths_.clear();
   script_.AskFor("TRUTH", 10, 63);
   AnswerAll(*recorder);
-  // 10 to 72 are asked for, 0 to 67 are older than kMaxAhead steps.
+  // The request is for 10 to 72. The recorder answers for 0 to 67, which are older than kMaxAhead
+  // steps.
   ASSERT_EQ(truths_.size(), 58U);
   for (std::size_t i = 0; i < truths_.size(); ++i) {
     EXPECT_EQ(truths_[i].header.step, static_cast<std::int64_t>(10 + i));
@@ -113,7 +114,7 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
   AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Of 32,000 that were asked for each step once, and again after 2 ms.
+  // Of the 32,000 requested messages it sends each step once, and again after 2 ms.
   EXPECT_GE(truths_.size(), static_cast<std::size_t>(kRingSteps));
   EXPECT_LE(static_cast<double>(truths_.size()), kRingSteps * (1 + 500 * took.count()));
 }
@@ -167,13 +168,13 @@ TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
 
 TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
-  // The world has begun step 400, so step 368 was on disk.
+  // The world has begun step 400, so step 368 must be on disk.
   const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, 400);
   EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 369 were in it"));
 }
 
 TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
-  // GIVEN a log of 30 MB that does not end as a recorder leaves it
+  // GIVEN a log of 30 MB that does not end like a log of a recorder
   constexpr std::int64_t kMany = 20'000;
   const std::string file = folder_.File("long");
   {
@@ -192,10 +193,10 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
     }
   }
   std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * kTailBytes);
-  // WHEN a recorder goes on with it
+  // WHEN a recorder continues it
   const auto recorder = Record(script_, "long", Recorder::Existing::kResume);
   EXPECT_EQ(recorder->error(), "");
-  // THEN it has said meanwhile how far it was, and then that it is ready
+  // THEN the recorder has reported its progress during that time, and then that it is ready
   std::vector<std::int64_t> steps;
   for (const status_t& status : status_) {
     if (status.state == status_t::WAITING) steps.push_back(status.header.step);
@@ -227,7 +228,7 @@ TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
   EXPECT_EQ(status_.back().state, status_t::FAILED);
 }
 
-/// CRC-32 of the first bytes of a text.
+/// CRC-32 of the first `bytes` bytes of a text.
 std::int64_t ChecksumOf(const std::string& text, std::int64_t bytes) {
   return static_cast<std::int64_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()),
                                            static_cast<std::size_t>(bytes)));
@@ -241,7 +242,7 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   const std::string content = Content(folder_.File("log"));
   EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
   EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
-  // WHEN it leaves with a step that is not complete, THEN it tells that, too
+  // WHEN it leaves in an incomplete step, THEN its last STATUS covers that part, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);
   recorder->Leave();

@@ -1,4 +1,4 @@
-// The parser of tcpq's byte stream: whatever way it is cut, and whatever is in it.
+// The parser of tcpq's byte stream, for any cuts and any contents.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -31,7 +31,7 @@ Buffer Hello(std::uint32_t magic = kClientMagic) {
   return stream;
 }
 
-/// What a client sends, from its greeting on.
+/// The bytes that a client sends, from its greeting on.
 Buffer ClientStream() {
   Buffer stream = Hello();
   AppendFrame(FrameType::kSubscribe, "TRUTH|HOST_.*", {}, stream);
@@ -50,7 +50,7 @@ void TakeAll(FrameParser& parser, std::vector<Kept>& frames) {
   }
 }
 
-/// The error of a parser that gets this stream whole.
+/// The error of a parser that gets this stream at once.
 std::string ErrorOf(const Buffer& stream, const Limits& limits = {}) {
   FrameParser parser(kClientMagic, limits);
   parser.Append(stream);
@@ -59,7 +59,7 @@ std::string ErrorOf(const Buffer& stream, const Limits& limits = {}) {
   return parser.error();
 }
 
-/// A stream that claims a frame with these words.
+/// A stream with a frame header of these words.
 Buffer Claim(std::initializer_list<std::uint32_t> words, std::string_view name = "") {
   Buffer stream = Hello();
   for (const std::uint32_t word : words) {
@@ -170,7 +170,7 @@ TEST(FrameParserTest, GivesNothingMoreAfterAnError) {
 }
 
 TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
-  // Every frame that comes out is within the limits, and lies in what was put in.
+  // Every frame of the parser is within the limits, and lies within the input.
   const Limits limits{.channel = 63, .pattern = 64, .payload = 6000};
   std::mt19937_64 engine(20'260'101);
   const auto below = [&engine](std::size_t n) { return static_cast<std::size_t>(engine() % n); };
@@ -196,7 +196,7 @@ TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
     }
     if (!parser.error().empty()) ++refused;
   }
-  // Streams that are all refused, or all accepted, would test nothing.
+  // The test proves nothing if the parser refuses all streams, or none.
   EXPECT_GT(refused, 0);
   EXPECT_LT(refused, kStreams);
 }

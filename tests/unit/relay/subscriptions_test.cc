@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLimit = 10;
 
-/// At a time when no budget fills.
+/// Matches at a time at which no budget is filled again.
 bool Match(Subscriptions& subscriptions, std::string_view channel) {
   return subscriptions.Match(channel, TimePoint{});
 }
@@ -46,7 +46,7 @@ TEST(SubscriptionsTest, EndOneByOne) {
   EXPECT_TRUE(Match(wanted, "A"));
   wanted.Remove("A");
   EXPECT_FALSE(Match(wanted, "A"));
-  wanted.Remove("A");  // never added: ignored, as in LCM
+  wanted.Remove("A");  // this pattern was never added; LCM ignores this, too
 }
 
 TEST(SubscriptionsTest, ForgetAnswersWhenTheyChange) {
@@ -65,7 +65,7 @@ TEST(SubscriptionsTest, AreLimitedInNumber) {
 }
 
 TEST(SubscriptionsTest, AreLimitedInLengthTogether) {
-  // Compiled, an expression takes up to a few hundred times its length in memory.
+  // A compiled expression takes up to a few hundred times its length in memory.
   Subscriptions wanted(1000);
   const std::string longest(250, 'A');
   int added = 0;
@@ -86,7 +86,7 @@ TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
 }
 
 TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
-  // Mostly what the parser of expressions has to look at twice; sanitizers watch.
+  // Mostly characters that the parser of expressions treats specially. Sanitizers watch the test.
   constexpr std::string_view kPieces = "AB.*+?|()[]{}^$-,:=!<\\1dQEx";
   std::mt19937_64 engine(20'260'101);
   int refused = 0;
@@ -95,7 +95,8 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
     std::string pattern;
     for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
     Subscriptions wanted(1);
-    // A part of a larger buffer, as it comes from a socket: nothing behind it may be looked at.
+    // The pattern in a block of its own, as if it were part of a socket's buffer: a read beyond it
+    // is an error.
     const std::vector<char> exact(pattern.begin(), pattern.end());
     if (!wanted.Add({exact.data(), exact.size()}).empty()) {
       ++refused;
@@ -106,40 +107,41 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
     } catch (const std::runtime_error&) {
     }
   }
-  // Patterns that are all refused, or all accepted, would test nothing.
+  // The test proves nothing if all patterns are refused, or none.
   EXPECT_GT(refused, 0);
   EXPECT_LT(refused, kPatterns);
 }
 
 TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
-  // GIVEN an expression that backtracks over every way to cut the longest name into pieces
+  // GIVEN an expression that backtracks over every way to divide the longest name
   Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add("(a|aa|a?)*(a|aa|a?)*(a|aa|a?)*b"), "");
   const std::string longest(63, 'a');
-  // WHEN it is asked about that name
+  // WHEN this name is matched
   const auto began = std::chrono::steady_clock::now();
   try {
     EXPECT_FALSE(Match(wanted, longest));
   } catch (const std::runtime_error&) {
   }
-  // THEN that ends, here within what a busy machine needs for a million tries
+  // THEN the search ends, within the time that a busy machine needs for a million tries
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN expressions that are slow, each not slow enough to be given up (long ones may visit more)
+  // GIVEN slow expressions, none of them slow enough that Boost gives it up (long ones may visit
+  // more)
   Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
-  // WHEN a name is looked for in all of them, THEN that ends before the last
+  // WHEN a name is matched with all of them, THEN the search ends before the last expression
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
 }
 
-/// Slow enough that some tens of names like SlowName() cost a tenth of a second. Of a long
-/// expression Boost lets a search visit more before it gives it up.
+/// So slow that some tens of names like SlowName() take a tenth of a second. For a long expression
+/// Boost allows more visits before it gives up the search.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
-/// How many new names such expressions stand, up to a thousand.
+/// The number of new names, up to a thousand, until such an expression exceeds its budget.
 int NamesUntilTheEnd(Subscriptions& wanted, int first, TimePoint now) {
   for (int i = 0; i < 1000; ++i) {
     try {
@@ -154,11 +156,11 @@ int NamesUntilTheEnd(Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN ever new names, each of them far from slow enough to be given up
+  // GIVEN more and more new names, none of them slow enough that Boost gives up
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";
-  // WHEN there is time, it is again a few names, not as many as at first
+  // WHEN time has passed, a few more names are possible, but fewer than at first
   const int more = NamesUntilTheEnd(wanted, 1000, TimePoint{} + std::chrono::seconds(2));
   EXPECT_GT(more, 0);
   EXPECT_LT(more, stood);

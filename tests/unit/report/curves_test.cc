@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// Curves of these thresholds, SI and RHE.
+/// Curves with these values in each row: threshold, SI, RHE.
 ReportCurves CurvesOf(const std::vector<std::array<double, 3>>& rows) {
   ReportCurves curves;
   for (const auto& [threshold, si, rhe] : rows) {
@@ -42,7 +42,7 @@ TEST(FrontPointsTest, ShareAPlaceWhereThresholdsAgree) {
 TEST(FrontPointsTest, SayWhichAreOnTheFront) {
   const std::vector<FrontPoint> points =
       FrontPoints(CurvesOf({{0.2, 100, 100}, {0.5, 80, 0}, {0.8, 10, 0}}));
-  ASSERT_EQ(points.size(), 3U);  // by RHE, then SI
+  ASSERT_EQ(points.size(), 3U);  // by RHE, then by SI
   EXPECT_FALSE(points[0].on_front);
   EXPECT_TRUE(points[1].on_front);
   EXPECT_TRUE(points[2].on_front);

@@ -1,5 +1,5 @@
-// Curves that look like those of the experiment, for the tests of the report: SI falls from 100 %
-// to 0, RHE falls earlier and faster. A plain sketch, not the simulation.
+// Curves that look like those of the experiment, for tests of the report: SI falls from 100 % to 0,
+// RHE falls earlier and faster. They are a plain sketch without simulation.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline Summary ExampleSummary(double mean, double deviation) {
           .p95 = mean + 1.6 * deviation};
 }
 
-/// Thresholds 0.01 to 0.99. At 0.2 and below all runs are alike, as are those from 0.85 on.
+/// Thresholds 0.01 to 0.99. All runs up to 0.2 are equal, and so are all runs from 0.85 on.
 inline ReportCurves ExampleCurves() {
   ReportCurves curves{.scenario_title = "Traded control in fog",
                       .first_seed = 1,

@@ -1,7 +1,6 @@
-// Runs that look like the experiment, for the tests of the report: three cars at 20 m/s, 33 m
-// apart, fog from 19 s to 30 s, with thresholds of 0.2, 0.5 and 0.8 and without traded control. A
-// plain sketch of the experiment, not the simulation: the report does not care where samples come
-// from.
+// Runs that look like the experiment, for tests of the report: three cars at 20 m/s, 33 m apart,
+// fog from 19 s to 30 s, thresholds of 0.2, 0.5 and 0.8, and a run without traded control. They are
+// a plain sketch without simulation: the source of the samples does not matter to the report.
 #pragma once
 
 #include <algorithm>
@@ -23,16 +22,16 @@
 
 namespace fogline {
 
-/// How the LiDAR is mounted.
+/// The offset of the LiDAR's mounting.
 inline constexpr double kExampleLidarBias_m = -0.93;
 
-/// What differs between the example runs. No threshold: no traded control.
+/// The difference between the example runs. Without a threshold there is no traded control.
 struct ExampleSettings {
   std::optional<double> threshold = {};
   std::int64_t steps = 500;
 };
 
-/// One car that follows another. `speed_mps` and `gap_m` are at the current step.
+/// A car that follows another car. `speed_mps` and `gap_m` are those of the current step.
 struct ExampleCar {
   double speed_mps = 20.0;
   double gap_m = 33.0;
@@ -47,7 +46,7 @@ struct ExampleCar {
   }
 };
 
-/// The experiment's step, in a sketch.
+/// A simplified step of the experiment.
 class ExampleRoad {
  public:
   explicit ExampleRoad(std::optional<double> threshold) : threshold_(threshold) {}

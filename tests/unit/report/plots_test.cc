@@ -41,7 +41,7 @@ std::string Read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// A number of four bytes, most significant first, as PNG has them.
+/// A number of four bytes in PNG's order, most significant first.
 std::uint32_t NumberAt(const std::string& bytes, std::size_t at) {
   std::uint32_t number = 0;
   for (std::size_t i = at; i < at + 4; ++i) {
@@ -81,7 +81,7 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
   }
 }
 
-/// Lets gnuplot use a font for everything, in letters of 1.25 times the size.
+/// Makes gnuplot use another font everywhere, with letters 1.25 times as large.
 class OtherFont {
  public:
   explicit OtherFont(const fs::path& folder) {
@@ -100,7 +100,8 @@ class OtherFont {
   OtherFont& operator=(const OtherFont&) = delete;
 };
 
-/// Pixels that are not white, in a part of a PNG file that gnuplot's "every" chooses.
+/// The number of pixels that are not white, in the part of a PNG file that gnuplot's "every"
+/// selects.
 std::size_t CountInk(const fs::path& picture, std::string_view part) {
   const fs::path table = picture.parent_path() / "pixels.txt";
   RunGnuplot(fmt::format("set table\nplot '{}' binary filetype=png every {} with rgbimage\n",

@@ -26,7 +26,7 @@ std::size_t Count(std::string_view text, std::string_view part) {
   return count;
 }
 
-/// From `begin` to before `end`.
+/// The text from `begin` up to `end`, without `end`.
 std::string Between(const std::string& text, std::string_view begin, std::string_view end) {
   const std::size_t from = text.find(begin);
   if (from == std::string::npos) return "";
@@ -74,7 +74,7 @@ TEST(MakeReportTest, LeavesNoPlaceOfTheTemplateOpen) {
 
 TEST(MakeReportTest, RefersToNothingOutsideThePage) {
   std::string page = MakeReport(ExampleRuns(), ExampleTable());
-  // uPlot's comment with its licence, and the name of SVG's namespace, load nothing.
+  // uPlot's licence comment and the name of SVG's namespace contain URLs, but load nothing.
   for (const std::string_view known :
        {"https://github.com/leeoniya/uPlot", "http://www.w3.org/2000/svg"}) {
     for (std::size_t at = page.find(known); at != page.npos; at = page.find(known)) {
@@ -127,7 +127,7 @@ TEST(MakeReportTest, ShowsEveryMeasureOfEveryRunSideBySide) {
   for (const double value : {1.25, 2.5, 3.5, 4.5, 55.5}) {
     EXPECT_THAT(table, HasSubstr(fmt::format("<data value=\"{}\">", value)));
   }
-  EXPECT_EQ(Count(table, "<tr>"), 1U + 4U);  // head; SI and three measures
+  EXPECT_EQ(Count(table, "<tr>"), 1U + 4U);  // the head, SI and three measures
   EXPECT_EQ(Count(table, "<td>–</td>"), 3U);
   EXPECT_THAT(table, HasSubstr("<data value=\"2.5\">2.50</data></td><td><data value=\"3.5\">3.50"));
 }
@@ -153,7 +153,7 @@ TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
                                "<td class=\"deviation\">± <data value=\"4.5\">4.50</data></td>"
                                "<td><data value=\"80.79\">80.79</data></td>"));
   EXPECT_THAT(table, HasSubstr("\u221210.25"));
-  EXPECT_EQ(Count(table, "<td>–</td>"), 2U);  // the row that was never published
+  EXPECT_EQ(Count(table, "<td>–</td>"), 2U);  // the row that the paper does not publish
   EXPECT_THAT(table, HasSubstr("Mean and standard deviation over seeds 1 to 200."));
 }
 
@@ -181,7 +181,7 @@ TEST(MakeReportTest, MarksTheRunsWhoseLogsAreNotCompleteAndSaysWhereTheyEnd) {
   std::string page = MakeReport(runs, {});
   EXPECT_EQ(Count(page, ">incomplete log<"), 1U);
   EXPECT_THAT(page, HasSubstr("title=\"ends after step 8 of &quot;10&quot;\""));
-  // Without the run's last step:
+  // This run lacks its last step.
   runs[1].scenario.steps = 10;
   runs[1].samples.pop_back();
   page = MakeReport(runs, {});

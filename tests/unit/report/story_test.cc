@@ -19,7 +19,7 @@ using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// A run of 101 steps of 0.1 s: three cars 30 m apart that keep their safe distance of 25 m.
+/// A run of 101 steps of 0.1 s. Three cars are 30 m apart; their safe distance is 25 m.
 ReportRun CalmRun(Policy policy, double threshold = 0.5) {
   ReportRun run;
   run.name =
@@ -40,7 +40,7 @@ ReportRun CalmRun(Policy policy, double threshold = 0.5) {
   return run;
 }
 
-/// Fog from 2 s to 5 s in which the LiDAR reads so much short.
+/// Adds fog from 2 s to 5 s, in which the LiDAR reads short by this much.
 void AddFog(ReportRun& run, double short_m) {
   for (std::size_t i = 20; i < 50; ++i) {
     run.samples[i].fog_present = true;

@@ -145,7 +145,7 @@ TEST_F(AnnouncementsTest, LetNoOtherProcessMoveOrEndARun) {
 }
 
 TEST_F(AnnouncementsTest, AreBoundedAndHideNoRunThatGoesOnSpeaking) {
-  // GIVEN a run that has announced itself twice, among a flood of invented ones
+  // GIVEN a run that has announced itself twice, and a flood of invented runs
   Hear(Beacon(7));
   now_ += kBeaconEvery;
   Hear(Beacon(7));

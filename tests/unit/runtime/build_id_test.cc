@@ -15,7 +15,7 @@ std::vector<std::uint8_t> Content(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What binutils say of a program.
+/// The build id of a program according to binutils.
 std::string ReadelfOf(const std::string& program) {
   const std::string notes = test::RunCommand({"readelf", "--notes", program}).out;
   std::smatch id;
@@ -48,7 +48,7 @@ TEST(BuildIdTest, ReadsNothingBehindTheEndOfAFileThatIsCutAnywhere) {
   const BuildId whole = BuildIdIn(program);
   constexpr std::size_t kNotesEnd = 4096;
   for (std::size_t size = 0; size < kNotesEnd; ++size) {
-    // A buffer of its own, so that a sanitizer sees what is read behind it.
+    // A separate block, so that a sanitizer sees a read beyond its end.
     const std::vector<std::uint8_t> cut(program.begin(),
                                         program.begin() + static_cast<std::ptrdiff_t>(size));
     const BuildId id = BuildIdIn(cut);

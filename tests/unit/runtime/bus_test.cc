@@ -62,7 +62,7 @@ TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
   EXPECT_EQ(subscribed, 2);
 }
 
-/// Sends bytes as they are to the group and port of a multicast URL.
+/// Sends bytes, unchanged, to the group and port of a multicast URL.
 void SendRaw(const std::string& url, std::string_view bytes) {
   const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in group{};
@@ -83,7 +83,7 @@ TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
   Bus bus(url);
   std::vector<std::string> watched;
   bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
-  // GIVEN a message of 4 bytes as one fragment, which LCM would put together
+  // GIVEN a message of 4 bytes as one fragment, which LCM itself would accept
   SendRaw(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
   SendRaw(url, "LC02\0\0\0\2LAST\0abcd"s);
   while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
@@ -126,7 +126,8 @@ TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
     EXPECT_EQ(bytes.size(), 1U);
     received.push_back(bytes[0]);
   });
-  // GIVEN senders with no key, another key, and a key but no business here
+  // GIVEN a sender without a key, one with another key, and one that has the key but may not
+  // publish RADAR
   Bus keyless(url);
   Bus stranger(url);
   stranger.Secure(Seal(KeyOf(2), Role::kRadar));
@@ -192,7 +193,7 @@ TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
   bus.Subscribe("C", [&received](Bytes) { ++received; });
   for (int i = 0; i < 200; ++i) bus.Publish("C", Payload(0));
   bus.Drain();
-  // Five standard deviations.
+  // The tolerance is five standard deviations.
   EXPECT_NEAR(received, 100, 36);
 }
 

@@ -22,7 +22,7 @@ std::string Datagram(const std::string& channel, const std::string& data = "1234
   return "LC02\0\0\0\7"s + channel + '\0' + data;
 }
 
-/// A receiving socket behind a filter, and one that sends to it.
+/// A receiving socket behind a filter, and a socket that sends to it.
 class FilteredSocket {
  public:
   explicit FilteredSocket(const std::vector<Wanted>& wanted)
@@ -50,7 +50,7 @@ class FilteredSocket {
     ASSERT_EQ(send(sender_, datagram.data(), datagram.size(), 0),
               static_cast<ssize_t>(datagram.size()));
   }
-  /// The next datagram that gets through.
+  /// The next datagram that passes the filter.
   std::string Receive() const {
     std::array<char, 70'000> buffer{};
     const ssize_t size = recv(receiver_, buffer.data(), buffer.size(), 0);
@@ -72,7 +72,7 @@ TEST(ChannelFilterTest, TakesWhatIsSubscribedWholeAndInOrder) {
 }
 
 TEST(ChannelFilterTest, TakesAMessageWithoutData) {
-  // GIVEN a longer channel too, whose name a datagram as short as this one cannot hold
+  // GIVEN also a channel with a name that is longer than this whole datagram
   const FilteredSocket socket({{"RUN_OF_LONGER_NAME"}, {"RUN"}});
   socket.Send(Datagram("RUN", ""));
   EXPECT_EQ(socket.Receive(), Datagram("RUN", ""));
@@ -124,7 +124,7 @@ TEST(ChannelFilterTest, TakesAShareOfAChannelAtRandom) {
       EXPECT_EQ(socket.Receive(), Datagram("RUN"));
     }
   }
-  // Five standard deviations of a binomial distribution.
+  // The tolerance is five standard deviations of a binomial distribution.
   EXPECT_NEAR(taken, 0.25 * kSent, 5 * std::sqrt(kSent * 0.25 * 0.75));
 }
 

@@ -11,7 +11,7 @@ constexpr Duration kPeriod = milliseconds(100);
 
 class DeafRolesTest : public testing::Test {
  protected:
-  /// What the radar says of its input.
+  /// What the radar's STATUS says of its input.
   struct Ear {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;
@@ -33,8 +33,8 @@ class DeafRolesTest : public testing::Test {
     status.input_late = {ear.late};
     deaf_.Heard(Role::kRadar, status, now_);
   }
-  /// So many signs of life of the world, which computes two steps between two of them, and of the
-  /// radar, which is 200 ms older each time.
+  /// So many STATUS messages of the world, which computes two steps between them, and of the radar.
+  /// The radar's input gets 200 ms older each time.
   void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
     for (int i = 0; i < signs; ++i) {
       now_ += milliseconds(200);
@@ -70,7 +70,7 @@ TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
   EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
   Pass(1);
   EXPECT_TRUE(deaf_.AtTheEnd(Role::kRadar));
-  // Whatever time passes without a step: nothing is published then.
+  // Time without a step does not count, because the world publishes nothing then.
   for (int i = 0; i < 20; ++i) {
     now_ += milliseconds(200);
     age_ms_ += 200;
@@ -82,7 +82,7 @@ TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
 
 TEST_F(DeafRolesTest, ARoleThatWasStartedAgainAndHeardNothingYetIsDeafToo) {
   for (int i = 0; i < 11; ++i) {
-    age_ms_ = -200;  // what it says of what never came
+    age_ms_ = -200;  // the age that it reports for an input that never came
     Pass(1, status_t::INPUT_AWAITED);
   }
   EXPECT_TRUE(IsDeaf());

@@ -20,7 +20,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two ends of a pipe or a pair of sockets: what is written into `in` comes out of `out`.
+/// The ends of a pipe or a socket pair: bytes that are written to `in` come out of `out`.
 struct Ends {
   int out;
   int in;
@@ -38,7 +38,7 @@ Ends Sockets() {
   return {ends[0], ends[1]};
 }
 
-/// What is there, without waiting for more.
+/// Reads the bytes that are available, without waiting for more.
 std::string Read(int fd) {
   fcntl(fd, F_SETFL, O_NONBLOCK);
   std::string text;
@@ -49,13 +49,13 @@ std::string Read(int fd) {
   return text;
 }
 
-/// Runs something in a process of its own, whose stderr this is: it is opened once in a process.
+/// Calls `run` in a new process with this stderr, because a process opens its stderr only once.
 /// @return its exit code
 int InChild(int standard_error, const std::function<int()>& run) {
   const pid_t child = fork();
   if (child == 0) {
     dup2(standard_error, STDERR_FILENO);
-    alarm(30);  // what waits for a reader ends here
+    alarm(30);  // ends a process that waits for a reader
     _exit(run());
   }
   int status = 0;
@@ -69,7 +69,7 @@ TEST_P(DiagnosticsTest, NoticesAreDroppedWhereThereIsNoRoomAndTheNextOneSaysSo) 
   const Ends ends = GetParam()();
   const int code = InChild(ends.in, [&] {
     const std::string long_line(1000, 'x');
-    for (int i = 0; i < 1000; ++i) Notice(long_line);  // more than it holds
+    for (int i = 0; i < 1000; ++i) Notice(long_line);  // more than the pipe holds
     Read(ends.out);                                    // now there is room
     Notice("the end");
     return 0;
@@ -82,7 +82,7 @@ TEST_P(DiagnosticsTest, NoticesAreDroppedWhereThereIsNoRoomAndTheNextOneSaysSo) 
 
 TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderThatIsSlow) {
   const Ends ends = GetParam()();
-  // GIVEN a reader that begins when all lines were said which there is room for
+  // GIVEN a reader that begins only when the pipe is full
   const std::string line(1000, 'x');
   constexpr std::size_t kLines = 1000;
   const pid_t writer = fork();
@@ -98,7 +98,7 @@ TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderThatIsSlow) {
     text.append(buffer.data(), static_cast<std::size_t>(size));
   }
   waitpid(writer, nullptr, 0);
-  // THEN it gets every one of them, whole
+  // THEN it gets every line completely
   EXPECT_EQ(text.size(), kLines * (line.size() + 1));
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }
@@ -133,7 +133,7 @@ TEST(DiagnosticsTextTest, WhatATerminalWouldObeyIsEscaped) {
   const Ends ends = Pipe();
   InChild(ends.in, [] {
     Notice("\x1b[31mred\xe2\x80\xae\nsecond line");
-    Draw("\r\x1b[K");  // our own
+    Draw("\r\x1b[K");  // this escape sequence is Fogline's own
     return 0;
   });
   EXPECT_EQ(Read(ends.out), "\\u001b[31mred\\u202e\nsecond line\n\r\x1b[K");

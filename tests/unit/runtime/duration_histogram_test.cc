@@ -48,8 +48,8 @@ TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
   EXPECT_EQ(histogram.MaxUs(), 1);
 }
 
-// Alone in its histogram a duration comes out as it is, thanks to the maximum; below a larger one
-// it is rounded up within its cell.
+// If a duration is alone in its histogram, the maximum gives its exact value. Below a larger
+// duration it is rounded up within its cell.
 TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
   for (std::int64_t us = 1; us < DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
     DurationHistogram histogram;
@@ -67,7 +67,7 @@ TEST(DurationHistogramTest, AgreesWithSorting) {
   DurationHistogram histogram;
   std::vector<std::int64_t> all;
   for (std::int64_t i = 0; i < 20'000; ++i) {
-    // A latency with a long tail: 300 us by a factor of e to either side, often.
+    // A latency with a long tail: often a factor of e above or below 300 us.
     all.push_back(static_cast<std::int64_t>(300 * std::exp(random.Normal2(i, 0)[0])));
     histogram.Add(microseconds(all.back()));
   }

@@ -15,7 +15,7 @@ constexpr std::int8_t kLost = status_t::INPUT_LOST;
 
 class FallbackLogTest : public testing::Test {
  protected:
-  /// The STATUS of a role at a step. What is not OK first is what it waits for.
+  /// The STATUS of a role at a step. The role waits for the first input that is not OK.
   status_t Said(const std::string& role, std::int64_t step, const Inputs& inputs,
                 const std::string& fallback = "") {
     status_t status{};
@@ -34,7 +34,7 @@ class FallbackLogTest : public testing::Test {
     }
     return status;
   }
-  /// What is new by it, "" if nothing.
+  /// The text of the change that this STATUS causes, "" if there is none.
   std::string Add(const status_t& status) {
     const Fallback* change = log_.Add(status);
     return change != nullptr ? change->Text() : "";
@@ -69,11 +69,11 @@ TEST_F(FallbackLogTest, BlamesWhoSilencesTheOthers) {
 }
 
 TEST_F(FallbackLogTest, ForgetsWhatARoleHasLostOnceItIsSilentItself) {
-  // GIVEN a fusion that has missed the radar and says nothing more
+  // GIVEN a fusion that lost the radar and then falls silent
   Add(Said("fusion", 12, {{"RADAR", kLost}}));
-  // WHEN its track is missed later
+  // WHEN another role loses its track later
   Add(Said("acc", 40, {{"TRACK", kLost}}));
-  // THEN it is not the radar that is to blame
+  // THEN the radar is not to blame
   EXPECT_EQ(log_.all().back().culprit, "fusion");
 }
 
@@ -96,7 +96,7 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
   EXPECT_EQ(Add(next), "");
   Add(Said("acc", 13, {{"TRACK", kLost}}));
   EXPECT_EQ(log_.all().back().culprit, "fusion");
-  // It is news all the same when the input is there again.
+  // The return of the input is still news.
   next.input_state = {kOk};
   EXPECT_EQ(Add(next), "step 13: fusion: RADAR ok again");
 }

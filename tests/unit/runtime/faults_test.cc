@@ -17,7 +17,7 @@ using Message = std::vector<std::uint8_t>;
 
 const TimePoint kNow = TimePoint{} + milliseconds(1'000'000);
 
-/// A message of 100 bytes with a number in it.
+/// A message of 100 bytes that contains a number.
 Message Numbered(int number) {
   Message bytes(100, 0);
   bytes[0] = static_cast<std::uint8_t>(number >> 8);
@@ -26,7 +26,8 @@ Message Numbered(int number) {
 }
 int NumberOf(const Message& bytes) { return bytes[0] << 8 | bytes[1]; }
 
-/// What arrives within a second of `count` messages, a millisecond apart.
+/// The messages that arrive, until a second after the last of `count` messages sent a millisecond
+/// apart.
 std::vector<Message> Arrivals(Faults faults, int count) {
   std::vector<Message> arrived;
   const auto collect = [&](TimePoint now) {
@@ -47,9 +48,9 @@ std::vector<int> Numbers(const std::vector<Message>& messages) {
   return numbers;
 }
 
-// So many messages that a share of them is known to one or two per cent.
+// With so many messages, a share of them is exact to one or two per cent.
 constexpr int kMany = 10'000;
-/// Five standard deviations of the number of messages that something befalls.
+/// Five standard deviations of the number of messages with a fault of this probability.
 double Tolerance(double chance) { return 5 * std::sqrt(kMany * chance * (1 - chance)); }
 
 TEST(FaultsTest, ChangeNothingUnlessTheyAreAskedTo) {
@@ -70,7 +71,7 @@ TEST(FaultsTest, LetLaterMessagesOvertake) {
   ASSERT_EQ(arrived.size(), static_cast<std::size_t>(kMany));
   int overtaken = 0;
   for (std::size_t i = 1; i < arrived.size(); ++i) overtaken += arrived[i] < arrived[i - 1] ? 1 : 0;
-  // One that is late behind one that is late has not been overtaken by it.
+  // A late message behind another late message is not overtaken by it.
   EXPECT_GT(overtaken, 0.07 * kMany);
   EXPECT_LT(overtaken, 0.1 * kMany + Tolerance(0.1));
 }

@@ -19,7 +19,7 @@ using Kind = FileLock::Kind;
 
 class FileLockTest : public testing::Test {
  protected:
-  /// What is said of a lock that is asked for now, and given back at once; "" if nothing.
+  /// The error text of an attempt to take a lock, which is given back at once. "" if there is none.
   static std::string ErrorOf(const std::string& path, Kind kind) {
     try {
       const FileLock lock(path, kind, "--log", "run");

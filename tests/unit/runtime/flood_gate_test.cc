@@ -5,12 +5,12 @@
 namespace fogline {
 namespace {
 
-/// Messages that come at a rate, of which a process lets in what its gate says.
+/// Sends messages at a rate to a process that admits the share that its rate limiter allows.
 class Sender {
  public:
   explicit Sender(FloodGate& gate) : gate_(gate) {}
 
-  /// @return messages that came through, per second
+  /// @return messages per second that pass
   double Send(double rate_hz, double seconds) {
     const auto sent = static_cast<int>(rate_hz * seconds);
     double through = 0;

@@ -1,4 +1,4 @@
-// The table of channels stands in an order in which a step can be evaluated.
+// The order of the table of channels is one in which a step can be computed.
 #include "services/graph.h"
 
 #include <algorithm>

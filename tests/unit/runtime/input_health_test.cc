@@ -13,7 +13,7 @@ TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 InputHealth Fresh() { return InputHealth(kSection, kPeriod, kBegan); }
 
-// An input whose steps 0, 1, ... came at 0, 100, ... ms.
+// An input of which the steps 0, 1, ... came at 0, 100, ... ms.
 InputHealth Running(std::int64_t steps) {
   InputHealth health = Fresh();
   for (std::int64_t k = 0; k < steps; ++k) health.Arrived(k, At(100 * k));
@@ -45,7 +45,7 @@ TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
 TEST(InputHealthTest, FindsASilentInputWithinThreePeriods) {
   InputHealth health = Running(10);
   EXPECT_EQ(health.Update(At(900 + 300)), InputState::kLost);
-  // With the scenario's defaults, too.
+  // The same holds with the scenario's defaults.
   InputHealth by_default(HealthSection(), kPeriod, kBegan);
   by_default.Arrived(0, At(0));
   EXPECT_EQ(by_default.Update(At(300)), InputState::kLost);
@@ -82,12 +82,12 @@ TEST(InputHealthTest, NoticesAGapThatNobodyLookedAt) {
 TEST(InputHealthTest, IsOkAgainOnlyAfterStepsInTimeOneAfterTheOther) {
   InputHealth health = Running(3);
   health.Update(At(1000));
-  // GIVEN two steps in time, then one too late
+  // GIVEN two steps in time and then a late one
   health.Arrived(10, At(1000));
   health.Arrived(11, At(1100));
   health.Arrived(12, At(1251));
   EXPECT_EQ(health.state(), InputState::kLost);
-  // THEN counting begins with that one
+  // THEN the count of steps in time starts again with the late one
   health.Arrived(13, At(1351));
   EXPECT_EQ(health.state(), InputState::kLost);
   health.Arrived(14, At(1451));

@@ -70,8 +70,8 @@ TEST(LcmSocketsTest, AreFilteredBeforeTheyAreBound) {
   lcm_destroy(network);
 }
 
-/// The interface over which a socket sends to multicast groups: its address, 0.0.0.0 for that of
-/// the route.
+/// The address of the interface over which a socket sends to multicast groups. 0.0.0.0 means that
+/// the route decides.
 std::string SendsOver(int socket) {
   in_addr address{};
   socklen_t size = sizeof(address);

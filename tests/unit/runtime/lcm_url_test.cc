@@ -14,7 +14,7 @@
 namespace fogline {
 namespace {
 
-/// LCM_DEFAULT_URL as a test wants it, and as it was afterwards.
+/// Sets LCM_DEFAULT_URL for a test. The destructor restores its old value.
 class EnvironmentUrl {
  public:
   EnvironmentUrl() {
@@ -114,7 +114,7 @@ TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
   EXPECT_GT(tried, 0);
 }
 
-// A part that was built without beacon_t takes part in a run as before.
+// A part that was built without beacon_t can take part in a run.
 TEST(TypeFingerprintTest, IsOfTheTypesOfARunWithoutItsBeacon) {
   std::uint64_t fingerprint = 0;
   for (const std::int64_t hash :

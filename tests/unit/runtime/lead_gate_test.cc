@@ -54,7 +54,7 @@ TEST_F(LeadGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
   Recorded(6);
   EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
   EXPECT_EQ(own_.out_of_window, 1);
-  // Unless by the world that was there before.
+  // It believes so if an earlier world has begun the step.
   Go(0, 6);
   Recorded(6);
   EXPECT_TRUE(gate_.Open(kMaxAhead + 6, now_));

@@ -1,4 +1,4 @@
-// A node's part in a run, by the example of the driver: TRUTH in, DRIVER_COMMAND out.
+// A node in a run. The example is the driver: TRUTH in, DRIVER_COMMAND out.
 #include "services/runtime/node.h"
 
 #include <gmock/gmock-matchers.h>
@@ -25,7 +25,7 @@ class NodeTest : public testing::Test {
     truth.host_speed_mps = 20 + 0.01 * static_cast<double>(step);
     return truth;
   }
-  /// The encoded TRUTH of a step, to be changed.
+  /// The encoded TRUTH of a step, for tests that change its bytes.
   std::vector<std::uint8_t> Encoded(const truth_t& truth) {
     std::vector<std::uint8_t> bytes;
     Encode(truth, bytes);
@@ -35,13 +35,13 @@ class NodeTest : public testing::Test {
     script_.bus().Publish(channel, bytes);
     script_.bus().Drain();
   }
-  /// The node's STATUS as it would be now.
+  /// The node's next STATUS, half a second later.
   const status_t& Status() {
     later_ += milliseconds(500);
     script_.Poll(node_, Clock::now() + later_);
     return status_.back();
   }
-  /// Publishes three unsound messages of a step.
+  /// Publishes three invalid messages of a step.
   void SayUnsound(std::int64_t step) {
     std::vector<std::uint8_t> other_type = Encoded(Truth(step));
     other_type[0] ^= 1;
@@ -54,7 +54,7 @@ class NodeTest : public testing::Test {
     SayBytes("TRUTH", Encoded(nan));
   }
 
-  /// What an honest network gives to who has asked: every step of every request.
+  /// Answers every step of every request, as a network without loss would.
   void AnswerRequests() {
     while (served_ < requests_.size()) {
       const resend_t request = requests_[served_++];
@@ -84,9 +84,9 @@ TEST_F(NodeTest, AsksForTheScenarioOfItsRunUnasked) {
 TEST_F(NodeTest, AsksForOneStepAtATimeWhenItIsInStep) {
   script_.SayRun(run_t::GO, -1);
   script_.Say(Truth(0));
-  // WHEN somebody wants to know what it cannot know yet
+  // WHEN another role asks for an answer and the node lacks its input
   script_.AskFor("DRIVER_COMMAND", 1, 1);
-  // THEN it asks for what it needs for that
+  // THEN the node asks for this input
   ASSERT_EQ(requests_.size(), 2U);
   EXPECT_EQ(requests_[1].channel, "TRUTH");
   EXPECT_EQ(requests_[1].header.step, 1);
@@ -109,13 +109,13 @@ TEST_F(NodeTest, CatchesUpManyStepsAtATimeAndInSilence) {
   constexpr std::int64_t kProgress = 200;
   script_.SayRun(run_t::GO, kProgress);
   script_.Poll(node_);
-  // GIVEN that it asks at once for as much as its ring holds
+  // GIVEN that it asks at once for as many steps as its ring holds
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, kRingSteps - 1);
-  // WHEN it gets that, and so on
+  // WHEN it gets these steps, and all that it asks for next
   AnswerRequests();
-  // THEN it comes to where the others are, without asking for anything twice
+  // THEN it reaches the step of the other roles and has asked for each step once
   script_.Say(Truth(kProgress + 1));
   ASSERT_EQ(requests_.size(), 4U);
   std::int64_t next = 0;
@@ -124,7 +124,7 @@ TEST_F(NodeTest, CatchesUpManyStepsAtATimeAndInSilence) {
     next += request.count;
   }
   EXPECT_EQ(next, kProgress + 1);
-  // AND says only what the recorder does not answer for
+  // AND it publishes only the steps for which the recorder does not answer
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.front().header.step, kProgress - kRingSteps + 1);
   EXPECT_EQ(commands_.back().header.step, kProgress + 1);
@@ -145,7 +145,7 @@ TEST_F(NodeTest, CountsNoStepAsImpossibleThatIsUnderWayWhileItCatchesUp) {
 TEST_F(NodeTest, AsksAgainForWhatIsLostOnTheWay) {
   script_.SayRun(run_t::GO, 30);
   script_.Poll(node_);
-  const TimePoint before = Clock::now();  // no later than what comes now, however busy the machine
+  const TimePoint before = Clock::now();  // not later than the next lines, on any machine
   for (std::int64_t k = 0; k <= 30; ++k) {
     if (k != 5 && k != 9) script_.Say(Truth(k));
   }
@@ -169,20 +169,20 @@ TEST_F(NodeTest, AnswersARangeFromItsRing) {
     EXPECT_EQ(commands_[i].acceleration_mps2, said[i + 2].acceleration_mps2);
   }
   commands_.clear();
-  script_.AskFor("DRIVER_COMMAND", 7, 0);  // from somebody who knows no ranges
+  script_.AskFor("DRIVER_COMMAND", 7, 0);  // from a requester that knows no ranges
   EXPECT_EQ(commands_.size(), 1U);
 }
 
 TEST_F(NodeTest, CountsUnsoundMessagesByKindAndGivesThemNoPlace) {
   script_.SayRun(run_t::GO, -1);
-  // WHEN they come before the sound message of their step
+  // WHEN they come before the valid message of their step
   SayUnsound(0);
   SayBytes("TRUTH", std::vector<std::uint8_t>(kHeaderEnd - 1));
   truth_t infinite = Truth(0);
   infinite.preceding_speed_mps = -std::numeric_limits<double>::infinity();
   script_.Say(infinite);
   EXPECT_TRUE(commands_.empty());
-  // THEN that has its effect all the same
+  // THEN the valid message still has its effect
   script_.Say(Truth(0));
   EXPECT_EQ(commands_.size(), 1U);
   EXPECT_EQ(Status().wrong_type, 1);
@@ -198,7 +198,7 @@ TEST_F(NodeTest, TakesNoUnsoundMessageForASecondProducer) {
   EXPECT_EQ(Status().wrong_type, 1);
   EXPECT_EQ(Status().malformed, 1);
   EXPECT_EQ(Status().not_finite, 1);
-  // A sound one is another matter.
+  // A second valid message with other contents ends the node.
   truth_t other = Truth(0);
   other.host_gap_m += 1;
   script_.Say(other);
@@ -256,7 +256,7 @@ TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioI
   EXPECT_FALSE(node.Waits());
 }
 
-/// A driver that was started by hand, in the run that waited for it.
+/// A driver that was started by hand, in a run that waited for it.
 class ExternalNodeTest : public testing::Test {
  protected:
   ExternalNodeTest() {
@@ -265,7 +265,7 @@ class ExternalNodeTest : public testing::Test {
     EXPECT_FALSE(node_.Waits());
   }
 
-  /// The runner says who is the driver.
+  /// The runner announces which process is the driver.
   void SayHolder(std::int64_t run_id, std::int64_t holder) {
     const std::vector<std::string> parts = SplitScenario(script_.text());
     script_.Say(Script::WithDriver(
@@ -301,7 +301,7 @@ TEST_F(ExternalNodeTest, GoesWhenAnotherProcessHasItsPlace) {
   EXPECT_TRUE(node_.released());
   EXPECT_EQ(status_.back().state, status_t::LEFT);
   EXPECT_EQ(node_.error(), "another process is the driver of run 7");
-  // AND it says nothing more
+  // AND it publishes nothing more
   const std::size_t said = status_.size();
   script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
   EXPECT_EQ(status_.size(), said);
@@ -367,7 +367,7 @@ TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Each step once a millisecond at most, of 12,800 that were asked for.
+  // Each step at most once per millisecond, of 12,800 requested messages.
   EXPECT_GE(commands_.size(), static_cast<std::size_t>(kRingSteps));
   EXPECT_LE(static_cast<double>(commands_.size()), kRingSteps * (1 + 1000 * took.count()));
 }
@@ -375,11 +375,11 @@ TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {
 TEST_F(NodeTest, AnswersForTheNewestStepsInAFloodOfRequestsForOldOnes) {
   script_.SayRun(run_t::GO, -1);
   for (std::int64_t k = 0; k < kRingSteps; ++k) script_.Say(Truth(k));
-  // GIVEN that what it answers in a burst is used up
+  // GIVEN that the node has used up its burst of answers
   const TimePoint until = Clock::now() + milliseconds(20);
   while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, kRingSteps - 3);
   commands_.clear();
-  // WHEN somebody asks for what the run waits for
+  // WHEN a role asks for the step for which the run waits
   script_.AskFor("DRIVER_COMMAND", kRingSteps - 1, 1);
   EXPECT_EQ(commands_.size(), 1U);
 }

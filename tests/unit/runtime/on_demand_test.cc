@@ -1,5 +1,5 @@
-// Inputs that only some scenarios demand, by the example of a driver who reads HOST_COMMAND, whose
-// producer comes after him.
+// Inputs that only some scenarios demand. The example is a driver who reads HOST_COMMAND, which its
+// producer publishes later in a step than the driver publishes his command.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-/// Offers in each step the acceleration that he has heard of, and is as ready as he has heard
-/// often.
+/// In each step he offers the last acceleration that he heard. His readiness is the number of
+/// commands that he heard.
 class Echo {
  public:
   explicit Echo(const Scenario& /*scenario*/) { out_.acceleration_mps2 = kNothing; }
@@ -58,7 +58,7 @@ class OnDemandTest : public testing::Test {
     host.acceleration_mps2 = AccelerationOf(step);
     script_.Say(host);
   }
-  /// What it has published, in order.
+  /// The steps that the node has published, in order.
   std::vector<std::int64_t> Steps() const {
     std::vector<std::int64_t> steps;
     for (const driver_command_t& command : commands_) steps.push_back(command.header.step);
@@ -109,7 +109,7 @@ TEST_F(OnDemandTest, IsWaitedForAndAskedForLikeAnyOther) {
   EXPECT_EQ(requests_[0].channel, "HOST_COMMAND");
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, 1);
-  // AND STATUS says so
+  // AND its STATUS tells this
   script_.Poll(node_, Clock::now() + milliseconds(500));
   EXPECT_EQ(status_.back().waiting_for, "HOST_COMMAND");
   EXPECT_EQ(status_.back().last_heard_step, -1);
@@ -137,7 +137,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByWhoJoinsLate) {
     }
     script_.Poll(node_);
   }
-  // THEN each step is asked for once
+  // THEN it asks for each step once
   std::int64_t truths = 0;
   std::int64_t hosts = 0;
   for (const resend_t& request : requests_) {
@@ -147,7 +147,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByWhoJoinsLate) {
   }
   EXPECT_EQ(truths, kProgress + 1);
   EXPECT_EQ(hosts, kProgress);
-  // AND computed as if it had been there
+  // AND it computes as if it had been there from the start
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.back().header.step, kProgress);
   EXPECT_EQ(commands_.back().readiness, kProgress + 1);

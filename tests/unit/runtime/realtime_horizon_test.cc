@@ -1,5 +1,5 @@
-// Which steps a role of a run in real time takes for possible, by the clock: a fusion whose period
-// is 10 ms, and a test that says the inputs of the step that is under way, again and again.
+// The steps that a role of a run in real time accepts, by the clock. The role is a fusion with a
+// period of 10 ms. The test publishes the inputs of the current step again and again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::Script;
 
 constexpr double kSpeed = 10;
 constexpr Duration kPeriod = milliseconds(10);
-// Far longer than anything here takes on a busy machine; 30 s of the run.
+// Far longer than any wait here, even on a busy machine; 30 s of the run.
 constexpr Duration kPatience = milliseconds(3000);
 
 class RealtimeHorizonTest : public testing::Test {
@@ -33,7 +33,7 @@ class RealtimeHorizonTest : public testing::Test {
     began_ = Clock::now();
     first_ = progress + 1;
   }
-  /// The step that is under way.
+  /// The current step of the run.
   std::int64_t Now() const { return first_ + (Clock::now() - began_) / kPeriod; }
   void Say(std::int64_t step) {
     script_.Say(Script::Of<ego_t>(step));
@@ -41,7 +41,8 @@ class RealtimeHorizonTest : public testing::Test {
     script_.Say(Script::Of<lidar_t>(step));
     script_.Poll(node_);
   }
-  /// Says what is under way until it is computed, or until it is clear that it will not be.
+  /// Publishes the inputs of the current step until the fusion computes one, or until kPatience.
+  /// @return whether it has
   bool IsComputed() {
     const TimePoint end = Clock::now() + kPatience;
     std::int64_t step = Now();
@@ -105,7 +106,7 @@ TEST_F(RealtimeHorizonTest, NorIsItTakenByARoleThatHasHeardNothingForLong) {
   Join(200);
   ASSERT_TRUE(IsComputed());
   Pass(20);
-  // Further than the run can be by what the runner has said, and the second that it may be old.
+  // This is beyond the runner's last reported progress plus the second that this report may be old.
   Say(Now() + 1000);
   EXPECT_EQ(Refused(), 3);
   EXPECT_TRUE(IsComputed());
@@ -129,9 +130,9 @@ TEST_F(RealtimeHorizonTest, TheRecorderAsksForStepsOfWhichItHasHeardNothingButTh
   Join(-1);
   ForEachStepChannel([&]<class M>(std::size_t) { script_.Say(Script::Of<M>(0)); });
   Pass(20);
-  // WHEN the runner says that the run is further
+  // WHEN the runner reports that the run is further
   script_.SayRun(run_t::GO, 10, kSpeed);
-  // THEN it asks for everything, all steps together
+  // THEN it asks for all missing steps at once
   const auto asked = [&] {
     return std::ranges::any_of(requests, [](const resend_t& request) {
       return request.channel == ChannelOf<truth_t>().name && request.header.step == 1 &&

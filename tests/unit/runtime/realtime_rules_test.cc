@@ -1,6 +1,6 @@
-// When the roles of a run in real time compute, and with what. Messages come at once; time is what
-// Poll() is told, and a period is so long that the time that the test itself takes is nothing to
-// it.
+// When the roles of a run in real time compute, and with which inputs. Messages arrive at once, and
+// time is the argument of Poll(). A period is so long that the duration of the test itself does not
+// matter.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class RealtimeRulesTest : public testing::Test {
     script_.SayRun(run_t::GO, -1, kSpeed);
     go_ = Clock::now();
   }
-  /// So many periods after GO.
+  /// The time so many periods after GO.
   TimePoint At(double periods) const { return go_ + duration_cast<Duration>(periods * kPeriod); }
   template <class... M>
   void Say(std::int64_t step) {
@@ -45,7 +45,7 @@ class RealtimeRulesTest : public testing::Test {
     for (const M& message : messages) steps.push_back(message.header.step);
     return steps;
   }
-  /// The last STATUS of the node, of a heartbeat later.
+  /// The node's STATUS one heartbeat later.
   const status_t& Status(Node& node) {
     later_ += milliseconds(201);
     script_.PollUpTo(node, Clock::now() + later_);
@@ -128,7 +128,8 @@ TEST_F(RealtimeRuleTest, BlamesNobodyForItsOwnPause) {
 
 // ---- DeadlineRule: the arbitrator decides in every step ----------------------------------------
 
-// What has never come is lost while the run's clock still goes: 1.25 periods after the last tick.
+// An input that never came is lost while the run's clock still runs: 1.25 periods after the last
+// tick.
 Scenario Impatient() {
   Scenario scenario;
   scenario.health.stale_periods = 1.1;
@@ -177,16 +178,16 @@ TEST_F(DeadlineRuleTest, DecidesAtOnceEveryStepWhoseSuccessorHasBegun) {
 }
 
 TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
-  // GIVEN a human who is lost
+  // GIVEN a lost driver
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
   script_.PollUpTo(node_, At(1.22));
-  // THEN the next step is decided at once
+  // THEN the arbitrator decides the next step at once
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
-  // WHEN he speaks again, which is too late for that step
+  // WHEN the driver speaks again, too late for that step
   Say<driver_command_t>(1);
-  // THEN the one after it waits for him
+  // THEN the arbitrator waits for him in the step after it
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(2);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
@@ -221,13 +222,13 @@ TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
   Go();
   script_.PollUpTo(node_, At(0));
   Say<arbitration_t, follower_command_t>(0);
-  // GIVEN that it wakes a little after tick 3
+  // GIVEN a world that wakes a little after tick 3
   script_.Poll(node_, At(3.05));
   script_.PollUpTo(node_, At(3.06));
-  // THEN ticks 1 and 2 are missed, and the next step begins at once
+  // THEN ticks 1 and 2 are missed, and the world begins the next step at once
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
   EXPECT_EQ(Status(node_).ticks_missed, 2);
-  // AND the grid is what it was
+  // AND the times of the ticks have not changed
   script_.PollUpTo(node_, At(3.95));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
   script_.PollUpTo(node_, At(4.01));
@@ -237,10 +238,11 @@ TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
 TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   Go();
   script_.PollUpTo(node_, At(0));
-  // GIVEN that nobody has answered yet when it wakes, just before a tick
+  // GIVEN a world that wakes just before a tick, and no answers yet
   script_.Poll(node_, At(2.999));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the others are done THEN the step begins at once, and its tick is not close to the next
+  // WHEN the other roles answer THEN the step begins at once; its tick is not too close to the next
+  // one
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.9995));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
@@ -284,7 +286,7 @@ class RecordRuleTest : public RealtimeRulesTest {
 
 TEST_F(RecordRuleTest, AsksForWhatIsMissingWhileThereIsHopeAndThenGoesOnWithoutIt) {
   Go();
-  // GIVEN a step that lacks everything but TRUTH, and one that is complete
+  // GIVEN a step that has only TRUTH, and a complete step
   Say<truth_t>(0);
   ForEachStepChannel([&]<class M>(std::size_t) { Say<M>(1); });
   script_.PollUpTo(recorder_, At(1.4));

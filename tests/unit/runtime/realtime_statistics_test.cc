@@ -66,7 +66,7 @@ TEST(RealtimeStatisticsTest, WritesTheInputsAnew) {
   EXPECT_EQ(status.input_late, std::vector<std::int64_t>{1});
 }
 
-// The role with the most inputs is the recorder; its longest texts as they can be.
+// The recorder is the role with the most inputs. Its texts have their greatest lengths here.
 TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   const InputHealth health(HealthSection(), milliseconds(100), kDue);
   status_t status{};
@@ -83,7 +83,7 @@ TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   std::vector<std::uint8_t> bytes;
   Encode(status, bytes);
   RecordProperty("bytes", static_cast<int>(bytes.size()));
-  // 200 bytes are left for an error in words.
+  // 200 bytes remain for an error text.
   EXPECT_LE(bytes.size(), kMaxMessageBytes - 200);
 }
 

@@ -14,7 +14,7 @@ TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 class RunClockTest : public testing::Test {
  protected:
-  // The world's steps 0, 1, ... from 1000 ms on, in its rhythm.
+  // The world's steps 0, 1, ... from 1000 ms on, each in time.
   void Tick(std::int64_t steps) {
     for (std::int64_t k = 0; k < steps; ++k) clock_.Heard(k, At(1000 + 100 * k));
   }
@@ -60,10 +60,10 @@ TEST_F(RunClockTest, TakesStepsThatWereNotHeardForNoPause) {
 
 TEST_F(RunClockTest, TakesAMessageThatComesLateForNoPause) {
   Tick(5);
-  // GIVEN a second in which nothing is heard, and then first what was sent again
+  // GIVEN a second in which nothing is heard, and then at first repeated messages
   clock_.Heard(9, At(2391));
   clock_.Heard(11, At(2392));
-  // THEN with the step that is under way it is as late as if those had not come
+  // THEN with the current step the clock is as late as if the repeated ones had not come
   clock_.Heard(14, At(2400));
   EXPECT_EQ(clock_.At(At(2400)), At(1400));
   EXPECT_EQ(clock_.At(At(2450)), At(1450));
@@ -86,7 +86,7 @@ TEST_F(RunClockTest, NeverGoesBackwards) {
   TimePoint last = clock_.At(At(1400));
   std::int64_t step = 5;
   for (std::int64_t ms = 1400; ms < 4000; ms += 7) {
-    // A tick now and then, from too early to far too late, and some that are known.
+    // Ticks at irregular times, from too early to far too late, some of them repeated.
     if (ms % 3 == 0 && ms % 5 != 0) clock_.Heard(ms % 2 == 0 ? step++ : step - 1, At(ms));
     EXPECT_GE(clock_.At(At(ms)), last) << ms;
     last = clock_.At(At(ms));

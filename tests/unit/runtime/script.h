@@ -1,5 +1,5 @@
-// A node or a conductor alone on a bus in memory: a test says what the others say, and sees what it
-// answers.
+// A node or a conductor alone on a bus in memory. The test publishes the messages of all other
+// processes and sees the answers.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace fogline::test {
 
-/// Everybody else of a run.
+/// All other processes of a run.
 class Script {
  public:
   static constexpr std::int64_t kRunId = 7;
@@ -23,7 +23,7 @@ class Script {
   Bus& bus() { return bus_; }
   const std::string& text() const { return text_; }
 
-  /// Keeps what is said on the channel of M from now on, whoever says it.
+  /// Keeps all messages on the channel of M from now on.
   template <class M>
   std::vector<M>& Listen() {
     auto& heard = std::get<std::vector<M>>(heard_);
@@ -45,7 +45,7 @@ class Script {
     if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() looks at the clock
   }
 
-  /// A message of a step, all zero but for the header.
+  /// A message of a step. Everything is zero except the header.
   template <class M>
   static M Of(std::int64_t step) {
     M message{};
@@ -53,8 +53,8 @@ class Script {
     return message;
   }
 
-  /// The runner announces the run, all parts of the scenario.
-  /// @param speed of a run in real time, 0 for one in lockstep
+  /// The runner announces the run with all parts of the scenario.
+  /// @param speed of a run in real time, 0 for a run in lockstep
   void SayRun(std::int8_t phase, std::int64_t progress, double speed = 0) {
     const std::vector<std::string> parts = SplitScenario(text_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -66,8 +66,9 @@ class Script {
     }
   }
 
-  /// What the runner says if the driver is started elsewhere.
-  /// @param holder instance of the process that is the driver of the run, 0 if it waits for one
+  /// Makes the runner's message say that the driver is started elsewhere.
+  /// @param holder instance of the process that is the driver of the run, 0 if the run waits for
+  /// one
   static run_t WithDriver(run_t run, std::int64_t holder) {
     run.num_external = 1;
     run.external = {"driver"};
@@ -83,13 +84,13 @@ class Script {
     Say(resend);
   }
 
-  /// Lets the node do what is due at a time, once, whatever has come to pass since it was last
-  /// called.
+  /// Lets the node do once what is due at this time, however much time has passed since the last
+  /// call.
   void Poll(Node& node, TimePoint now = Clock::now()) {
     wakes_[&node] = std::max(node.Poll(now), now + milliseconds(1));
     bus_.Drain();
   }
-  /// The same up to a time, as its process would: whenever it asks for it.
+  /// Calls the node up to this time, each time that it has asked for, as its process would.
   void PollUpTo(Node& node, TimePoint now = Clock::now()) {
     TimePoint& wake = wakes_.try_emplace(&node, TimePoint::max()).first->second;
     while (wake < now) Poll(node, wake);
@@ -97,9 +98,9 @@ class Script {
   }
 
  private:
-  std::map<Node*, TimePoint> wakes_;  // when each has asked to be called
+  std::map<Node*, TimePoint> wakes_;  // when each node wants the next call
   std::string text_;
-  std::int64_t sequence_ = 0;  // of what the runner says
+  std::int64_t sequence_ = 0;  // of the runner's messages
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
              std::vector<driver_command_t>, std::vector<track_t>, std::vector<arbitration_t>>
       heard_;

@@ -47,7 +47,7 @@ Message StatusOf(std::string_view role) {
 
 const Message kRadar = PayloadOf(radar_t{});
 
-/// What a receiver with the same key says of a message that this role has signed.
+/// The verdict of a receiver with the same key on a message that this role has signed.
 Verdict VerdictOn(Role sender, std::string_view channel, Bytes payload) {
   Seal signer(KeyOf(1), sender);
   return Seal(KeyOf(1), Role::kWorld).Open(channel, signer.Sign(channel, payload)).verdict;
@@ -132,7 +132,7 @@ TEST(SealTest, LeavesASignedMessageToLcmsOwnDecodersAndNoneToOurs) {
   Seal seal(KeyOf(1), Role::kRadar);
   const Message message = Copy(seal.Sign("RADAR", kRadar));
   radar_t decoded{};
-  // The generated decoder, as LCM's own programs call it.
+  // Calls the generated decoder as LCM's own programs do.
   EXPECT_GE(decoded.decode(message.data(), 0, static_cast<int>(message.size())), 0);
   EXPECT_FALSE(Decode(message, decoded));
 }
@@ -189,7 +189,7 @@ TEST(SealKeyTest, IsNotReadFromAPipeWhichMayHaveNoWriter) {
   EXPECT_THROW(SealKey::Load(pipe), InputError);
 }
 
-/// What is said of a key file, "" if it is taken.
+/// The error text for a key file, "" if it is accepted.
 std::string Complaint(const std::string& file) {
   try {
     SealKey::Load(file);

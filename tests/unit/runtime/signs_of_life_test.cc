@@ -6,14 +6,14 @@ namespace fogline {
 namespace {
 
 constexpr Duration kEvery = milliseconds(200);
-// Of one in a million processes that live it is believed that they hang.
+// One in a million processes that live is wrongly taken to hang.
 constexpr double kUnlikely = 1e-6;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }
 
 class SignsOfLifeTest : public testing::Test {
  protected:
-  /// Everybody but one role speaks in its rhythm, and of so many signs of each one is heard.
+  /// All roles except one speak regularly. Of each role, one of `one_of` signs is heard.
   void Speak(Role silent, std::int64_t from_ms, std::int64_t to_ms, std::int64_t one_of = 1) {
     for (std::int64_t ms = from_ms; ms < to_ms; ms += 200) {
       for (const RoleInfo& info : kRoles) {
@@ -42,7 +42,7 @@ TEST_F(SignsOfLifeTest, WhereNobodyIsHeardNobodyHangs) {
 
 TEST_F(SignsOfLifeTest, WhoFellSilentWithAllOthersIsNotBlamed) {
   signs_.Heard(Role::kFusion, 0, At(0));
-  // GIVEN others that spoke once more before a network lost everything
+  // GIVEN that the other roles spoke once more before a network lost everything
   Speak(Role::kFusion, 10, 200);
   EXPECT_GT(Chance(Role::kFusion, 1000), 0.1);
   EXPECT_GT(Chance(Role::kFusion, 3000), 0.1);

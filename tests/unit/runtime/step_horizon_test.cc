@@ -12,7 +12,7 @@ TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + millis
 
 class StepHorizonTest : public testing::Test {
  protected:
-  // Steps from `first` on, each of which began at 100 ms times its number, in time or so late.
+  // Steps from `first` on. Step k began at 100 ms * k; its message comes `late_ms` later.
   void Hear(std::int64_t first, std::int64_t count, std::int64_t late_ms = 0) {
     for (std::int64_t step = first; step < first + count; ++step) {
       horizon_.Heard(step, At(100 * step + late_ms));
@@ -32,7 +32,7 @@ TEST_F(StepHorizonTest, GoesOnWithTheWallClock) {
 
 TEST_F(StepHorizonTest, IsNotHeldBackByWhatComesLate) {
   Hear(0, 10);
-  // GIVEN a second in which nothing is heard but what was sent again, late
+  // GIVEN a second in which only late repeated messages are heard
   horizon_.Heard(12, At(1950));
   horizon_.Heard(14, At(1955));
   EXPECT_EQ(horizon_.Newest(At(2000)), 20 + kSlack);
@@ -46,7 +46,7 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // Each as late as can be without a whole period between it and the first.
+  // Each is as late as possible without being a whole period later than the first.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }
@@ -55,7 +55,7 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // Not at once: that could be the one message in time among many that are late.
+  // Not at once, because this could be the only punctual message among many late ones.
   Hear(10, StepHorizon::kRemembered - 1, 5);
   EXPECT_GT(horizon_.Newest(At(27'000)), 290);
   Hear(10 + StepHorizon::kRemembered, StepHorizon::kRemembered + 20, 5);

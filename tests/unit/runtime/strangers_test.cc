@@ -50,7 +50,7 @@ TEST(StrangersTest, AreManyOnlyUpToALimit) {
 }
 
 TEST(StrangersTest, AreNotHiddenByAFloodOfInventedOnes) {
-  // GIVEN a flood of names, each of them new, and then a stale process among it
+  // GIVEN a flood of invented processes, and a genuine stale process among them
   Strangers strangers;
   int invented = 0;
   const auto flood = [&] {
@@ -62,7 +62,7 @@ TEST(StrangersTest, AreNotHiddenByAFloodOfInventedOnes) {
     strangers.Hear(Status(7, "fusion", 4711, "lab2"));
     flood();
   }
-  // THEN it is told of, and nothing grows
+  // THEN the text names the genuine one, and the list does not grow
   EXPECT_THAT(strangers.Text(), testing::HasSubstr("ignored: fusion (pid 4711 on lab2) of run 7"));
   EXPECT_EQ(strangers.known().size(), Strangers::kMax);
 }

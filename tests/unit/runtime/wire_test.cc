@@ -58,7 +58,7 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   }
 }
 
-// One object takes all messages of a channel.
+// A process decodes all messages of a channel into one object.
 TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
   follower_command_t command{};
   command.num_followers = 1;

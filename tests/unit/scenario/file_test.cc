@@ -72,7 +72,7 @@ TEST_F(FileTest, SuggestsOnlyFilesWithTheEndingThatIsWanted) {
 TEST_F(FileTest, ReadsAPipeToItsEndThoughItIsOpenedBeforeItsWriterComes) {
   const std::string pipe = Path("pipe").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  // GIVEN a process that has to be started yet, and writes in two pieces
+  // GIVEN a process that still has to start, and that writes in two pieces
   const test::Background writer({"sh", "-c", "exec >'" + pipe + "'; printf one; printf two"});
   const FileText read = ReadFile(pipe, 100);
   EXPECT_EQ(read.error, "");

@@ -11,7 +11,7 @@
 namespace fogline {
 namespace {
 
-// The mistakes of a text, as a user sees them.
+// The mistakes in a text, as a user sees them.
 std::vector<Mistake> MistakesOf(std::string_view text) {
   MistakeList list;
   ParseJson(text, 0, list);

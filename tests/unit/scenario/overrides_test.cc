@@ -18,7 +18,7 @@ Scenario With(const std::vector<std::string>& overrides) {
   return ParseScenario(kText, "f", overrides);
 }
 
-// The first line of what an override is told.
+// The first line of the error text for an override.
 std::string ErrorOf(const std::string& override_text, std::string_view text = kText) {
   try {
     ParseScenario(text, "f", {override_text});
@@ -89,7 +89,7 @@ TEST(OverrideTest, RefusesAnItemThatIsNotThere) {
   EXPECT_THAT(ErrorOf("/published/99999999999999999999/threshold=1"),
               testing::HasSubstr("/published has 0 items"));
   EXPECT_THAT(ErrorOf("/lead/breakpoints/*/speed_mps=1"), testing::HasSubstr("no such item"));
-  // Not another name of item 0.
+  // This is not another name of item 0.
   EXPECT_NE(ErrorOf("/lead/breakpoints/00/speed_mps=1"), "");
 }
 

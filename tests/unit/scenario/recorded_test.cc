@@ -37,7 +37,7 @@ class RecordedLeadTest : public testing::Test {
     Write("data/lead.csv", csv);
     return LoadScenario(folder_ / "lead.json", overrides).lead.recorded.speeds_mps;
   }
-  // What a user sees, without the folder.
+  // The error text that a user sees, without the folder.
   std::string ErrorOf(std::string_view csv, const std::vector<std::string>& overrides = {}) const {
     try {
       SpeedsOf(csv, overrides);

@@ -22,7 +22,7 @@ struct NumberField {
   std::string source;
 };
 
-/// Notes every numeric field of what it visits.
+/// Collects every numeric field that it visits.
 class NumberCollector {
  public:
   NumberCollector(std::vector<NumberField>& numbers, std::string pointer)

@@ -30,14 +30,14 @@ TEST(WordingTest, EscapesWhatIsNotSeenButChangesWhatIs) {
   // Right-to-left override, zero width space, byte order mark, line separator, tag.
   EXPECT_EQ(EscapeControls("\xe2\x80\xae|\xe2\x80\x8b|\xef\xbb\xbf|\xe2\x80\xa8|\xf3\xa0\x81\x81"),
             R"(\u202e|\u200b|\ufeff|\u2028|\udb40\udc41)");
-  // Letters of any script, and signs, stay as they are.
+  // Letters of any script and symbols stay unchanged.
   const std::string seen =
       "\xc3\xa4 \xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d \xe4\xbd\xa0 \xf0\x9f\x8c\xab \xe2\x82\xac";
   EXPECT_EQ(EscapeControls(seen), seen);
 }
 
 TEST(WordingTest, EscapesWhatIsNoUtf8ByteByByte) {
-  // A lone byte, one too many, a surrogate, a longer form than needed, a torn character.
+  // A lone byte, a surplus byte, a surrogate, an overlong form, an incomplete character.
   EXPECT_EQ(EscapeControls("\x9b|\xff|\xed\xa0\x80|\xc0\xaf|\xe2\x82"),
             R"(\x9b|\xff|\xed\xa0\x80|\xc0\xaf|\xe2\x82)");
 }

@@ -15,7 +15,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr Stream kTest{1'000'000};
 
 TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
-  constexpr std::size_t kRuns = 7;  // odd: the last draw of a pair is left over
+  constexpr std::size_t kRuns = 7;  // odd, so the last draw of a pair is left over
   const Resampling resampling(kRuns, kTest);
   std::vector<double> sums(kRuns, 0.0);
   std::vector<double> weights;
@@ -25,7 +25,7 @@ TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
     EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0.0), kRuns);
     for (std::size_t run = 0; run < kRuns; ++run) sums[run] += weights[run];
   }
-  // A weight has variance 1 - 1/7: five deviations of its mean.
+  // A weight has variance 1 - 1/7. The tolerance is five deviations of its mean.
   const double tolerance = 5 * std::sqrt((1 - 1.0 / kRuns) / kDraws);
   for (const double sum : sums) EXPECT_NEAR(sum / kDraws, 1, tolerance);
 }
@@ -62,7 +62,7 @@ TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_EQ(VerdictOf(FromReplicates(1, 2, {1, 2, 3})), Verdict::kTooFew);
 }
 
-// What the interval is for: it covers the mean of normal values as often as it says.
+// The purpose of the interval: it covers the mean of normal values as often as it says.
 TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
   constexpr std::size_t kRuns = 40;
   constexpr int kExperiments = 200;

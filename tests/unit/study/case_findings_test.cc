@@ -19,7 +19,7 @@ using ::testing::Not;
 constexpr std::int64_t kSeeds = 20;
 constexpr double kWholeRun = 500;  // steps
 
-/// A comparison of runs that are all alike, but for what is set.
+/// A comparison of runs that are equal except for the values that a test sets.
 class Runs {
  public:
   Runs(std::vector<StudyCase> cases, std::vector<StudyVariant> variants)
@@ -40,7 +40,7 @@ class Runs {
       values_[row * kSeeds + static_cast<std::size_t>(i)] = value_of(i);
     }
   }
-  /// Mean compromised safety in fog, a little different from seed to seed.
+  /// Sets the mean compromised safety in fog, a little different for each seed.
   void Compromise(Cell cell, double mean_m) {
     Set(cell, "mean_compromised_safety_fog_m",
         [&](std::int64_t seed) { return mean_m + 0.001 * static_cast<double>(seed % 3); });
@@ -66,7 +66,7 @@ Runs OneCase() {
 TEST(CaseFindingsTest, DoNotCallARunSafeThatCrashesBeforeItsSafetyIsCompromised) {
   Runs runs = OneCase();
   runs.Compromise({0, 0}, 0.10);
-  runs.Compromise({0, 1}, 0.07);  // less, for it ends early
+  runs.Compromise({0, 1}, 0.07);  // less, because the run ends early
   runs.Crash({0, 1}, kSeeds);
   const Comparison comparison = runs.Result();
   EXPECT_EQ(VerdictOfCase(comparison, 0, 1, 0), CaseVerdict::kCollidesMore);
@@ -82,7 +82,7 @@ TEST(CaseFindingsTest, GiveNoVerdictOnSafetyWhereAFewRunsEndEarly) {
   Runs runs = OneCase();
   runs.Compromise({0, 0}, 0.10);
   runs.Compromise({0, 1}, 0.07);
-  runs.Crash({0, 1}, 5);  // of five pairs that differ all five are no proof: p = 2 / 2^5
+  runs.Crash({0, 1}, 5);  // five pairs differ, all in one direction: no proof yet, p = 2 / 2^5
   EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kCutShort);
   runs.Crash({0, 1}, 6);
   EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kCollidesMore);

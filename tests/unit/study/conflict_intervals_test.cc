@@ -15,7 +15,7 @@ constexpr double kArlZero_s = 400;
 constexpr double kMissed_s = 11;
 constexpr std::size_t kSeeds = 60;
 
-/// Runs of 100 s whose greatest score, in the middle, is even in (0, 1).
+/// Runs of 100 s with their greatest scores in the middle. These scores are uniform in (0, 1).
 std::vector<ClearRun> ClearAir() {
   std::vector<ClearRun> runs;
   const Random random(1, Stream{1'000'004});
@@ -25,7 +25,7 @@ std::vector<ClearRun> ClearAir() {
   return runs;
 }
 
-/// Fog in which the score grows with time, by `slope` in each second, the same for every seed.
+/// Fog in which the score grows by `slope` in each second, the same for every seed.
 std::vector<ScoreRecords> Fog(double slope) {
   ScoreRecords records;
   for (int i = 0; i <= 1000; ++i) records.push_back({slope * 0.01 * i, 0.01 * i});
@@ -40,12 +40,13 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
   const double threshold = ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
-  // Of runs that are all the same nothing but the threshold can vary: it is the quantile of the
-  // greatest scores that a share q of 60 runs is above, with a deviation of sqrt(q (1 - q)/60). Of
-  // runs of 100 s with an alarm at 50 s, (100 - 50 q)/q = 400: q = 2/9.
+  // All runs are equal, so only the threshold can vary. It is the quantile of the greatest scores
+  // that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). For runs of 100 s
+  // with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
   // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
-  // apart: so many spacings, each of which varies as much as it is long, have a deviation of 28 %.
+  // apart. The deviation of so many spacings is 28 %, because each spacing varies by its own
+  // length.
   const double width_s = 2 * 1.96 * deviation_s;
   EXPECT_NEAR(delay.high - delay.low, width_s, 2 * 0.28 * width_s);
   EXPECT_FALSE(compared[0].delay_minus_other_s[0].has_interval()) << "there is no other";
@@ -59,7 +60,7 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
                         DetectorRuns{.clear = clear, .fog = fast},
                         DetectorRuns{.clear = clear, .fog = slow}};
   const auto compared = CompareDetection(runs, 0, kArlZero_s, kMissed_s);
-  // Its own twin, whatever the threshold.
+  // The same measure again, with any threshold.
   EXPECT_EQ(compared[2].mean_delay_minus_other_s.low, 0);
   EXPECT_EQ(compared[2].mean_delay_minus_other_s.high, 0);
   EXPECT_EQ(VerdictOf(compared[1].mean_delay_minus_other_s), Verdict::kLess);

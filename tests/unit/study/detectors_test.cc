@@ -12,7 +12,7 @@
 namespace fogline {
 namespace {
 
-// A run of 100 s whose score first passes each of these at that time.
+// A run of 100 s. The score first exceeds each of these values at its time.
 ClearRun RunOf(ScoreRecords records) {
   return {.records = std::move(records), .scores = {}, .duration_s = 100};
 }
@@ -75,7 +75,7 @@ TEST(ThresholdFinderTest, AgreesWithCountingAlarmsAtEveryThreshold) {
   for (std::uint32_t i = 0; i < 30; ++i) {
     ClearRun& run = runs.emplace_back(ClearRun{.duration_s = 100});
     for (int step = 0; step < 100; ++step) {
-      // Scores in tenths: many of them equal.
+      // Scores in tenths, so that many are equal.
       AddScore(std::floor(10 * random.Uniform2(step, i)[0] * step) / 10, step, run.records);
     }
   }
@@ -92,7 +92,7 @@ TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
   scenario.radar.range_std_m = 0.3;
   scenario.lidar.range_std_m = 0.4;
   const ConflictParameters parameters = DetectorParameters(scenario);
-  // kappa 1/2: both tests look for a shift of one deviation of the difference, 0.5 m.
+  // kappa 1/2: both tests look for a shift of one standard deviation of the difference, 0.5 m.
   EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
   EXPECT_EQ(parameters.bin_width_m, 0.4);
   EXPECT_EQ(parameters.frame_bins, 625) << "250 m as ever";
@@ -116,7 +116,8 @@ TEST(TruePositivesTest, TakesTheThresholdFromTheQuantileOfClearAir) {
 }
 
 TEST(TruePositivesTest, EqualScoresInClearAirDoNotHideFalsePositives) {
-  // Half of clear air is at 1: no threshold at 1 gives 10 % of false positives, the next is above.
+  // Half of the clear air scores 1. No threshold up to 1 gives 10 % of false positives, so it is
+  // above 1.
   const std::array clear{0.0, 0.0, 1.0, 1.0};
   EXPECT_EQ(TruePositives(std::array{1.0, 2.0}, clear, 0.1), 0.5);
 }

@@ -12,7 +12,7 @@
 namespace fogline {
 namespace {
 
-// In order of threshold: RHE falls, then stays at 0 while the gain goes on rising.
+// In order of threshold: RHE falls, then stays at 0 while the gain still rises.
 constexpr std::array<CurvePoint, 5> kCurve{
     {{.rhe_pct = 100, .gain = -50}, {40, 10}, {20, 20}, {0, 22}, {0, 30}}};
 
@@ -29,7 +29,7 @@ TEST(BestAtTest, TakesTheBestWhereSeveralHaveThisEngagement) {
   ASSERT_TRUE(place);
   EXPECT_EQ(place->below, 4U);
   EXPECT_EQ(place->gain, 30);
-  // Just above 0 there is one place only, beside the worse of the two.
+  // Just above 0 there is only one candidate, next to the worse of the two points with RHE 0.
   EXPECT_NEAR(BestAt(kCurve, 1e-9)->gain, 22, 1e-6);
 }
 
@@ -40,8 +40,9 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 }
 
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
-  // 40 % between 100 % and 20 %: three quarters of the way from -50 to 20 are 2.5, not 10: 7.5 off.
-  // 20 % between 40 % and 0 %: half of the way from 10 to 22 are 16, not 20: 4 off.
+  // 40 % lies between 100 % and 20 %. Three quarters of the way from -50 to 20 is 2.5 instead of
+  // 10: 7.5 off.
+  // 20 % lies between 40 % and 0 %. Half of the way from 10 to 22 is 16 instead of 20: 4 off.
   EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 30)), 7.5, 1e-12);
   EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(InterpolationErrorAt(kCurve, *BestAt(kCurve, 5)), 3, 1e-12);
@@ -57,14 +58,14 @@ TEST(InterpolationErrorTest, LeavesADifferenceUndecidedThatIsNoLarger) {
 }
 
 TEST(BestOfAtMostTest, FindsTheThresholdThatGivesMoreForLess) {
-  // Just above 0 the curve gives 22, but a threshold that engages never gives 30.
+  // Just above 0 the curve gives 22, but a threshold with RHE 0 gives 30.
   EXPECT_EQ(BestOfAtMost(kCurve, 0.003), 4U);
   EXPECT_EQ(BestOfAtMost(kCurve, 99), 4U);
   EXPECT_FALSE(BestOfAtMost(kCurve, -0.5));
 }
 
-/// Situations with a difficulty of their own, which all rules share: the gain of a rule is that,
-/// what its engagement costs, and `more`.
+/// Situations with a difficulty of their own, which all rules share. The gain of a rule is this
+/// difficulty, the cost of its engagement, and `more`.
 struct Rule {
   std::vector<double> rhe_pct;
   std::vector<double> gain;
@@ -90,7 +91,7 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
   const Rule beyond = MakeRule(5, 9);
   const std::vector rules{ValuesOf(better), ValuesOf(worse), ValuesOf(beyond)};
   const std::vector<AtEqualEngagement> all = AgainstFixed(values, rules);
-  // The deviation of the situations is 30 points; unpaired, 0.5 could not be seen in 200 of them.
+  // The deviation over the situations is 30 points. Without pairs, 200 of them could not show 0.5.
   EXPECT_NEAR(all[0].difference.mean, 0.5, 1e-9);
   EXPECT_EQ(VerdictOf(all[0].difference), Verdict::kMore);
   EXPECT_EQ(all[0].place->below, 1U);
@@ -103,8 +104,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
 }
 
 TEST(AgainstFixedTest, KnowsThatTheEngagementIsAnEstimateToo) {
-  // The rule's own RHE has a deviation of 20 points over 200 situations: 1.4 of its mean, and a
-  // point of RHE is worth a point of gain.
+  // The rule's own RHE has a deviation of 20 points over 200 situations: 1.4 for its mean. A point
+  // of RHE is worth a point of gain.
   Rule low = MakeRule(80, 0);
   Rule high = MakeRule(10, 0);
   Rule rule = MakeRule(40, 0);

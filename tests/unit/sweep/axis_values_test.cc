@@ -34,7 +34,7 @@ TEST(AxisValuesTest, AreEvenlySpacedFromFirstToLast) {
 }
 
 TEST(AxisValuesTest, MeetTheDecimalNumbersThatAPersonMeans) {
-  // A published row is found by its threshold, so 0.2 has to be the 0.2 of a scenario file.
+  // The threshold identifies a published row, so 0.2 must equal the 0.2 of a scenario file exactly.
   const std::vector<double> thresholds = ParseThresholds("0.01:0.99:99");
   for (int percent = 1; percent <= 99; ++percent) {
     EXPECT_EQ(thresholds[static_cast<std::size_t>(percent - 1)], percent / 100.0) << percent;

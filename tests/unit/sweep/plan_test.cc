@@ -36,12 +36,12 @@ TEST(SweepPlanTest, HasEveryCombinationOnce) {
 
 TEST(SweepPlanTest, ConfiguresARowWhateverTheScenarioWasBefore) {
   const SweepPlan plan = MakePlan();
-  // GIVEN a scenario that has been the last row
+  // GIVEN a scenario that holds the last row
   Scenario scenario = plan.base();
   plan.Configure(plan.units() - 1, plan.rows_per_unit() - 1, scenario);
   // WHEN it becomes row 1 of unit 11
   plan.Configure(11, 1, scenario);
-  // THEN it is what its name says, and the base otherwise
+  // THEN its values are those of its name, and otherwise those of the base
   EXPECT_EQ(plan.NameOf(11, 1),
             "/arbitrator/threshold=0.2, /fog/bias_m=0.2, /arbitrator/window_steps=8, "
             "/fog/model=bias, seed 4");
@@ -89,7 +89,7 @@ TEST(SweepPlanTest, ItsShardsAreAPartitionIntoPartsThatDifferByOneAtMost) {
 }
 
 TEST(SweepPlanTest, SplitsTheLargestSweepIntoTheMostShards) {
-  // 10^11 units times a million shards is near the end of 64 bits.
+  // 10^11 units times a million shards is close to the limit of 64 bits.
   const SweepPlan plan(Scenario(), {}, {.first = 1, .last = 100'000'000'000});
   const Shard last = ParseShard("1000000/1000000");
   EXPECT_EQ(plan.ShardBegin(last), 99'999'900'000);

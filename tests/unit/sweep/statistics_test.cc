@@ -41,7 +41,7 @@ TEST(StatisticsTest, HasNoSpreadWhereAllValuesAreEqual) {
 }
 
 TEST(StatisticsTest, GivesTheDeviationOfASample) {
-  // Squares of the distances from 5 sum up to 32, over n - 1 = 7.
+  // The squared distances from 5 have the sum 32; n - 1 = 7.
   const Summary summary = SummaryOf({2, 4, 4, 4, 5, 5, 7, 9});
   EXPECT_DOUBLE_EQ(*summary.mean, 5.0);
   EXPECT_DOUBLE_EQ(*summary.deviation, std::sqrt(32.0 / 7.0));
@@ -67,7 +67,7 @@ TEST(StatisticsTest, InterpolatesPercentilesWhateverTheOrderOfValues) {
 }
 
 TEST(StatisticsTest, KeepsTheSpreadOfValuesFarFromZero) {
-  // Sums of squares would lose all digits of the deviation, 1.
+  // With plain sums of squares all digits of the deviation, 1, would be lost.
   EXPECT_DOUBLE_EQ(*SummaryOf({1e9 - 1, 1e9, 1e9 + 1}).deviation, 1.0);
 }
 

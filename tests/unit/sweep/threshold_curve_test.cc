@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// The shipped experiment until a while after the fog has set in.
+/// The shipped experiment, until some time after the fog begins.
 Scenario ShortScenario() {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/steps=220"});
 }
@@ -42,7 +42,7 @@ TEST(SweepThresholdsTest, DoesNotDependOnTheNumberOfThreadsByABit) {
 }
 
 TEST(SweepThresholdsTest, EngagesTheHumanAlwaysAtZeroAndHasNoSafetyToGainAtOne) {
-  // DoC, a logistic function, is above 0 and below 1.
+  // DoC is a logistic function, so it is above 0 and below 1.
   const std::vector<ThresholdRow> rows = Sweep({0, 1}, 2);
   EXPECT_EQ(rows[0].rhe_pct.Result().mean, 100.0);
   EXPECT_EQ(rows[1].rhe_pct.Result().mean, 0.0);

@@ -1,4 +1,4 @@
-// Files that are there as a whole or not at all, and whether they could be.
+// Files that exist either completely or not at all, and checks whether they could be written.
 #include "tools/sweep/whole_file.h"
 
 #include <fcntl.h>
@@ -29,7 +29,7 @@ class WholeFileTest : public testing::Test {
   }
   bool IsEmpty() const { return std::filesystem::is_empty(folder_.path()); }
 
-  /// What is said of a file that cannot be written.
+  /// The error text for a file that cannot be written.
   template <class Call>
   static std::string ErrorOf(const Call& call) {
     try {
@@ -64,7 +64,7 @@ TEST_F(WholeFileTest, ReplacesNoFolder) {
 }
 
 TEST_F(WholeFileTest, FollowsNoLinkThatLiesWhereItWrites) {
-  // GIVEN links by the names that could be foreseen
+  // GIVEN links with the names that an attacker could predict
   const std::string precious = folder_.File("precious");
   std::ofstream(precious) << "precious";
   for (const char* ending : {".part", ".tmp", "~"}) {
@@ -183,7 +183,7 @@ TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
   std::ofstream(file_) << "of before";
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
   EXPECT_EQ(Content(file_), "of before");
-  // A folder for files is made if it is missing.
+  // A missing folder for files is made.
   EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures"), "--png"); }), "");
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
@@ -218,7 +218,7 @@ TEST_F(WholeFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
             folder + ": error: --out: cannot write: it is a folder");
   EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(file_, "--png"); }),
             file_ + ": error: --png: cannot write: Not a directory");
-  // Where folders exist but no file can be made, whoever asks.
+  // In this folder no user can make a file.
   EXPECT_EQ(ErrorOf([&] { RequireWritable("/proc/result.csv", "--out"); }),
             "/proc/result.csv: error: --out: cannot write: No such file or directory");
   EXPECT_EQ(ErrorOf([&] { RequireWritableFolder("/proc", "--logs"); }),

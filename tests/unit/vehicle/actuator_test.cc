@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // relative to a force of 1, over some hundred steps
 
-// Force after `duration_s` of a demand of 1 that came at time 0 to an actuator at rest.
+// The force after `duration_s`. A demand of 1 comes at time 0 to an actuator at rest.
 double StepResponse(double delay_s, double lag_s, double step_s, double duration_s) {
   Actuator actuator(delay_s, lag_s, step_s);
   const int steps = static_cast<int>(std::lround(duration_s / step_s));
@@ -43,7 +43,7 @@ TEST(ActuatorTest, ReportsTheMeanOverTheStep) {
   // Without delay: 1 - (tau / h)(1 - e^(-h / tau)) = e^-1 for h = tau.
   Actuator lag(0, 0.1, 0.1);
   EXPECT_NEAR(lag.Step(1), std::exp(-1), kRounding);
-  // Without lag, the demand arrives at 0.03 of 0.1 s.
+  // Without lag, the demand takes effect at 0.03 s of a step of 0.1 s.
   Actuator delay(0.03, 0, 0.1);
   EXPECT_NEAR(delay.Step(1), 0.7, kRounding);
   EXPECT_EQ(delay.force_n(), 1);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kStep_s = 0.1;
 constexpr double kDry = FrictionOf(Surface::kDry);
 
-// A car on a road, moved as the world moves cars.
+// A car on a road, which moves as the world moves cars.
 class Drive {
  public:
   Drive(const VehicleParameters& vehicle, double speed_mps, double command_mps2 = 0,
@@ -21,7 +21,7 @@ class Drive {
     car_.Begin(motion_, command_mps2);
   }
 
-  // Returns the mean acceleration of the last step.
+  // @return the mean acceleration of the last step
   double For(double duration_s, double command_mps2) {
     double change_mps = 0;
     for (int i = 0; i < std::lround(duration_s / kStep_s); ++i) {
@@ -51,7 +51,7 @@ class EveryVehicleTest : public testing::TestWithParam<VehicleParameters> {};
 INSTANTIATE_TEST_SUITE_P(Sets, EveryVehicleTest, testing::Values(kCompact, kSedan, kTruck));
 
 TEST_P(EveryVehicleTest, EndsAtTheSpeedWhereItsPowerIsUsedUp) {
-  // P = c v^3 + R v, by Cardano: with p = R/c, r = P/c.
+  // P = c v^3 + R v, solved by Cardano's formula with p = R/c, r = P/c.
   const VehicleParameters& vehicle = GetParam();
   const double p = Rolling(vehicle) / DragFactor(vehicle);
   const double r = vehicle.power_w / DragFactor(vehicle);
@@ -66,7 +66,8 @@ TEST_P(EveryVehicleTest, EndsAtTheSpeedWhereItsPowerIsUsedUp) {
 }
 
 TEST_P(EveryVehicleTest, CoastsDownAsTheClosedFormSays) {
-  // m_eff dv/dt = -R - c v^2: v = w tan(atan(v0 / w) - sqrt(R c) t / m_eff), w = sqrt(R / c).
+  // m_eff dv/dt = -R - c v^2 has the solution v = w tan(atan(v0 / w) - sqrt(R c) t / m_eff), w =
+  // sqrt(R / c).
   const VehicleParameters& vehicle = GetParam();
   const double c = DragFactor(vehicle);
   const double rolling = Rolling(vehicle);
@@ -76,7 +77,7 @@ TEST_P(EveryVehicleTest, CoastsDownAsTheClosedFormSays) {
   const auto expected_mps = [&](double t) {
     return w * std::tan(std::atan(from_mps / w) - std::sqrt(rolling * c) * t / mass);
   };
-  // A command within the dead band of what rolling and drag do anyway: no pedal is pressed.
+  // The command is within the dead band around coasting (rolling and drag), so no pedal is pressed.
   VehicleParameters coasting = vehicle;
   coasting.pedal_dead_band_mps2 = 5;
   Drive drive(coasting, from_mps, -1);
@@ -91,8 +92,8 @@ TEST_P(EveryVehicleTest, FollowsASteadyCommandWithinItsLimits) {
   EXPECT_NEAR(level.For(5, 0), 0, 1e-9);
   for (const double command : {0.1, -0.5, -2.0}) {
     Drive drive(GetParam(), 20, command);
-    // Drag changes with the speed, and what makes up for it comes late by delay and lag: the error
-    // is 2 c v (D + tau) / m_eff of the command, at 20 m/s below 1 % for each of the three.
+    // Drag changes with the speed, and its compensation comes late by delay and lag. The error is 2
+    // c v (D + tau) / m_eff of the command: at 20 m/s below 1 % for each of the three.
     EXPECT_NEAR(drive.For(5, command), command, 0.01 * std::abs(command)) << command;
   }
 }
@@ -146,8 +147,9 @@ TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
   EXPECT_EQ(drive.For(0.2, -4), 0);
   drive.For(0.4, -4);
   const double before = drive.For(0.1, -4);  // mean from 0.6 to 0.7 s
-  const double after = drive.For(0.1, -4);   // and to 0.8 s
-  // At 0.7 s, delay and time constant, between the two means: 63.2 %. Half the curvature off.
+  const double after = drive.For(0.1, -4);   // and up to 0.8 s
+  // 0.7 s is delay plus time constant, between the two means: 63.2 %. The tolerance is half the
+  // curvature.
   EXPECT_NEAR(0.5 * (before + after), -4 * (1 - std::exp(-1)), 4 * 0.004);
 }
 

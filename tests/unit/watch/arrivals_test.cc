@@ -9,7 +9,7 @@ namespace {
 
 const TimePoint kBegin = TimePoint{} + std::chrono::hours(1);
 constexpr Duration kSecond = milliseconds(1000);
-// Times are whole milliseconds: what is left is the rounding of sums of doubles.
+// Times are whole milliseconds, so only the rounding of sums of doubles matters.
 constexpr double kRounding = 1e-12;
 
 TEST(ArrivalsTest, MeasuresRateBandwidthAndAgeOfAnInterval) {
@@ -43,7 +43,8 @@ TEST(ArrivalsTest, SaysNothingOfGapsThatItHasNotSeen) {
   Arrivals arrivals;
   arrivals.Add(1, kBegin);
   EXPECT_FALSE(arrivals.Observe(kBegin + kSecond, kSecond).longest_gap_s);
-  // One gap, which began in the interval before: enough for the longest, not for a deviation.
+  // One gap, which began in the interval before. It suffices for the longest gap, but not for a
+  // deviation.
   arrivals.Add(1, kBegin + milliseconds(1300));
   const ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
   EXPECT_NEAR(view.longest_gap_s.value(), 1.3, kRounding);

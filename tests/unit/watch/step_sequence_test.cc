@@ -62,7 +62,8 @@ TEST(StepSequenceTest, CountsEveryCopyOnceAndNoCopyAsLate) {
 }
 
 TEST(StepSequenceTest, CountsAGapWiderThanTheWindowStepByStep) {
-  // 0 and 200 seen, 1 to 199 not: those up to 200 - kWindow are lost, the rest is missing.
+  // 0 and 200 were seen, 1 to 199 were not. Those up to 200 - kWindow are lost, the rest is
+  // missing.
   const auto counts = Seen({0, 200}).counts();
   EXPECT_EQ(counts.lost, 200 - StepSequence::kWindow);
   EXPECT_EQ(counts.missing, StepSequence::kWindow - 1);
@@ -100,7 +101,7 @@ TEST(StepSequenceTest, SurvivesTheLargestSteps) {
 }
 
 TEST(StepSequenceTest, TakesOldStepsForCopiesWhileTheRunGoesOn) {
-  // What a recorder repeats for a role that was restarted.
+  // The recorder repeats these steps for a role that was restarted.
   StepSequence sequence;
   AddRange(sequence, 0, 300);
   AddRange(sequence, 0, 100);

@@ -70,7 +70,7 @@ TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
 }
 
 TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatSomebodyMaySend) {
-  // GIVEN two readings whose difference is no 64-bit integer
+  // GIVEN two readings with a difference that does not fit into 64 bits
   status_t status = Status("radar", 1, 1);
   status.cpu_ms = std::numeric_limits<std::int64_t>::min();
   Add("STATUS", Encoded(status));
@@ -105,9 +105,9 @@ TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
   std::vector<std::uint8_t> cut = Radar(kRun, 2);
   cut.pop_back();
   Add("RADAR", Radar(kRun, 0));
-  Add("RADAR", Encoded(lidar));  // of this run, by its header
+  Add("RADAR", Encoded(lidar));  // its header says that it is of this run
   Add("RADAR", cut);
-  Add("RADAR", {1, 2, 3});  // of no run
+  Add("RADAR", {1, 2, 3});  // it belongs to no run
   const TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);
   const ChannelView& radar = view.runs[0].channels[0];
@@ -159,7 +159,7 @@ TEST_F(TrafficStatisticsTest, ComputesProcessorUseFromTwoReadings) {
   status.cpu_ms = 1050;
   Add("STATUS", Encoded(status), 300);
   EXPECT_DOUBLE_EQ(Observe(400).runs.at(0).roles.at(0).cpu_percent.value(), 25);
-  // WHEN nothing new is said THEN the last value stands
+  // WHEN no new reading comes THEN the last value stays
   EXPECT_DOUBLE_EQ(Observe(500).runs.at(0).roles.at(0).cpu_percent.value(), 25);
 }
 
@@ -167,7 +167,7 @@ TEST_F(TrafficStatisticsTest, CallsARoleSilentAfterASecond) {
   Add("STATUS", Encoded(Status("fusion", 1, 1)), 0);
   EXPECT_FALSE(Observe(1000).runs.at(0).roles.at(0).silent);
   EXPECT_TRUE(Observe(1001).runs.at(0).roles.at(0).silent);
-  // A copy of an old STATUS is no sign of life.
+  // A repeated old STATUS is not a sign of life.
   Add("STATUS", Encoded(Status("fusion", 1, 1)), 1100);
   EXPECT_TRUE(Observe(1200).runs.at(0).roles.at(0).silent);
   Add("STATUS", Encoded(Status("fusion", 1, 2)), 1300);
@@ -183,7 +183,8 @@ TEST_F(TrafficStatisticsTest, KeepsRolesInTheOrderOfTheGraphAndInstancesApart) {
   EXPECT_EQ(roles[0].status.role, "world");
   EXPECT_EQ(roles[1].status.instance, 3);
   EXPECT_EQ(roles[2].status.instance, 4);
-  // One that another has followed is forgotten in time; the last one of a role never is.
+  // After some time it forgets a process that another process has replaced. It never forgets the
+  // last process of a role.
   const auto later = Observe(60'000).runs.at(0).roles;
   ASSERT_EQ(later.size(), 2U);
   EXPECT_EQ(later[0].status.role, "world");
@@ -203,7 +204,7 @@ TEST_F(TrafficStatisticsTest, RemembersNoMoreThanItsBoundsWhateverArrives) {
   EXPECT_EQ(view.forgotten, (1001 - static_cast<int>(TrafficStatistics::kMaxRuns)) +
                                 (1000 - static_cast<int>(TrafficStatistics::kMaxOthers)) +
                                 (1000 - static_cast<int>(TrafficStatistics::kMaxRoles)));
-  // The run that speaks all the time is still there, with all that it said.
+  // The run that speaks all the time is still there, with all its messages.
   const auto run = std::ranges::find(view.runs, kRun, &RunView::run_id);
   ASSERT_NE(run, view.runs.end());
   EXPECT_EQ(run->channels.at(0).arrivals.messages, 1000);

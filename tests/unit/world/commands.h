@@ -1,4 +1,4 @@
-// Commands to the world, as a test wants them.
+// Commands to the world, for tests.
 #pragma once
 
 #include <cstdint>

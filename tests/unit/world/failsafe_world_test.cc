@@ -1,4 +1,4 @@
-// The world in real time is judged by what its TRUTH says of the cars.
+// The world in real time. The tests judge it by the cars in its TRUTH.
 #include "services/world/failsafe_world.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST_F(FailsafeWorldTest, SaysThatLastCommandsHold) {
   Step(kOk, kStale);
   EXPECT_EQ(world_.fallback(), "the follower's last command holds");
   EXPECT_EQ(truth_.follower_acceleration_mps2.at(0), -0.25);
-  follower_ = {};  // it speaks, and says nothing
+  follower_ = {};  // it publishes messages without a command
   Step(kOk, kOk);
   EXPECT_EQ(world_.fallback(), "the follower's last command holds");
 }

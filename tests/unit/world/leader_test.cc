@@ -14,7 +14,7 @@ LeadSection Lead(LeadProfile profile, double speed_mps) {
   return lead;
 }
 
-// Speed at a time, for profiles that go by time.
+// The speed at a time, for profiles that depend on time.
 double SpeedAt(const LeadSection& lead, double time_s) { return Leader(lead).SpeedAt(0, time_s); }
 
 TEST(LeaderTest, KeepsAConstantSpeed) {

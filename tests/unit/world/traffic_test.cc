@@ -97,7 +97,7 @@ TEST(WorldTrafficTest, FitsOneDatagramWithAsManyFollowersAsThereMayBe) {
 }
 
 TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
-  // GIVEN a sedan whose brakes come after 0.1 s, and then gradually
+  // GIVEN a sedan with brakes that act after 0.1 s, and then gradually
   World world(WithVehicles());
   world.Start(1);
   // WHEN it is told to brake
@@ -105,7 +105,7 @@ TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
   const truth_t second = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   truth_t later = second;
   for (int k = 0; k < 20; ++k) later = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
-  // THEN nothing of it is felt at first, then a part, in the end all
+  // THEN the braking is not felt at first, then partly, and in the end fully
   EXPECT_GT(first.host_acceleration_mps2, -0.5);
   EXPECT_LT(second.host_acceleration_mps2, first.host_acceleration_mps2);
   EXPECT_GT(second.host_acceleration_mps2, -2);
@@ -130,7 +130,7 @@ TEST(WorldVehicleTest, BrakesOnIceNoHarderThanItsTyresHold) {
   world.Start(1);
   for (int k = 0; k < 30; ++k) {
     const truth_t& truth = Truth(world.Step(HostCommand(-6), FollowerCommand(-6)));
-    // mu g and, at 20 m/s, not 0.2 m/s2 of drag.
+    // mu g, plus less than 0.2 m/s2 of drag at 20 m/s.
     ASSERT_GE(truth.host_acceleration_mps2, -0.15 * kGravity_mps2 - 0.2);
   }
 }
@@ -145,10 +145,10 @@ TEST(WorldVehicleTest, SubstepsChangeNothingButRoundingForVehiclesToo) {
   a.Start(1);
   b.Start(1);
   for (int k = 0; k < 150; ++k) {
-    const double command = k < 50 ? 2 : -4;  // to rest
+    const double command = k < 50 ? 2 : -4;  // it comes to rest
     const truth_t& one = Truth(a.Step(HostCommand(command), FollowerCommand(command)));
     const truth_t& other = Truth(b.Step(HostCommand(command), FollowerCommand(command)));
-    // 150 steps of 16 roundings on positions of some hundred metres.
+    // 150 steps with 16 roundings each, on positions of some hundred metres.
     ASSERT_NEAR(one.host_position_m, other.host_position_m, 1e-9) << k;
     ASSERT_NEAR(one.host_speed_mps, other.host_speed_mps, 1e-11) << k;
   }
@@ -177,7 +177,7 @@ TEST(WorldVehicleTest, ResumesAsIfItHadKeptItsAccelerationForLong) {
   after.Resume(truth);
   const truth_t& here = Truth(after.Step(HostCommand(-2), FollowerCommand(-2)));
   const truth_t& there = Truth(before.Step(HostCommand(-2), FollowerCommand(-2)));
-  // It had: both are settled, but for what drag changes within some tenths of a second.
+  // Both are settled, except that drag changes them within some tenths of a second.
   EXPECT_NEAR(here.host_acceleration_mps2, there.host_acceleration_mps2, 0.02);
 }
 

@@ -108,9 +108,9 @@ TEST_F(VehicleFallbackTest, StopsTheFollowerWithoutTheHost) {
 TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   Follower(kOk, &follower_);
   now_.follower_acceleration_mps2 = {-1.5};
-  // WHEN messages come in time, but none for the car
+  // WHEN messages come in time but contain no command for the car
   const follower_command_t nobody{};
-  // THEN the last command holds as long as one that is stale, and then the car stops
+  // THEN the last command holds as long as a stale one would, and then the car stops
   EXPECT_EQ(Follower(kOk, &nobody), -1.5);
   EXPECT_EQ(fallback_.follower_state(), kStale);
   EXPECT_NEAR(Follower(kOk, &nobody), -1.5 - 0.2, 1e-12);
@@ -216,12 +216,12 @@ TEST_F(SeveralFollowersTest, StopEachFromItsOwnAccelerationWhenTheirCommandsAreL
 
 TEST_F(SeveralFollowersTest, StopOnlyTheCarThatMessagesLeaveOut) {
   Step(kOk, &commands_);
-  // WHEN messages come in time, but not for the last car
+  // WHEN messages come in time but contain no command for the last car
   const follower_command_t two = FollowerCommands({-1, 0.5});
   EXPECT_EQ(Step(kOk, &two), (std::vector<double>{-1, 0.5, 1})) << "its last command holds";
   EXPECT_EQ(fallback_->follower_state(), kStale);
   EXPECT_FALSE(fallback_->follower_in_minimal_risk());
-  // THEN it stops after as long as one whose command is lost, and the others go on
+  // THEN this car stops after the same time as with a lost command, and the others go on
   const std::vector<double> stopping = Step(kOk, &two);
   EXPECT_EQ(stopping[0], -1);
   EXPECT_EQ(stopping[1], 0.5);

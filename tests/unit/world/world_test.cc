@@ -63,15 +63,15 @@ TEST(WorldTest, MovesEachCarByItsOwnCommand) {
 }
 
 TEST(WorldTest, ReportsTheMeanAccelerationOfACarThatCameToRest) {
-  // GIVEN: a host at 0.5 m/s that brakes with 10 m/s2, at rest after half of the step
+  // GIVEN: a host at 0.5 m/s that brakes with 10 m/s2 and is at rest after half of the step
   Scenario scenario;
   scenario.world.host_speed_mps = 0.5;
   World world(scenario);
   world.Start(1);
-  // WHEN: it comes to rest, and brakes on
+  // WHEN: it comes to rest and still brakes
   const truth_t resting = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
   const truth_t at_rest = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
-  // THEN: the acceleration is that of the speed, not that of the command
+  // THEN: its acceleration is that of its speed, not that of the command
   EXPECT_EQ(resting.host_speed_mps, 0.0);
   EXPECT_DOUBLE_EQ(resting.host_acceleration_mps2, -5.0);
   EXPECT_DOUBLE_EQ(resting.host_position_m, 0.0125);
@@ -92,7 +92,7 @@ TEST(WorldTest, TheLeaderFollowsItsProfileExactly) {
     EXPECT_EQ(truth.preceding_speed_mps, profile.SpeedAt(step, time_s));
     EXPECT_DOUBLE_EQ(truth.preceding_acceleration_mps2,
                      (truth.preceding_speed_mps - before.preceding_speed_mps) / 0.1);
-    // Constant acceleration within the step: the mean speed is that of its ends.
+    // The acceleration is constant within the step, so the mean speed is the mean of both ends.
     EXPECT_NEAR(truth.preceding_position_m - before.preceding_position_m,
                 0.05 * (truth.preceding_speed_mps + before.preceding_speed_mps), 1e-12);
     before = truth;
@@ -141,7 +141,8 @@ TEST(WorldTest, EndsOnTheStepOfTheFirstCollision) {
 }
 
 TEST(WorldTest, KeepsTheFirstCollisionWhenTheRunGoesOn) {
-  // GIVEN: a run that goes on, in which the follower hits the host after the host hit the leader
+  // GIVEN: a run that goes on after collisions; the host hits the leader, then the follower hits
+  // the host
   Scenario scenario = CollisionAhead();
   scenario.world.end_on_collision = false;
   scenario.world.follower_gap_m = 2.0;
@@ -154,7 +155,7 @@ TEST(WorldTest, KeepsTheFirstCollisionWhenTheRunGoesOn) {
     truth = Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0)));
     EXPECT_FALSE(truth.last);
   }
-  // THEN: the first collision stands, and the cars have gone on through each other
+  // THEN: the first collision is reported, and the cars have passed through each other
   EXPECT_EQ(truth.collision, truth_t::COLLISION_HOST);
   EXPECT_NEAR(truth.collision_time_s, 0.515, 1e-12);
   EXPECT_NEAR(truth.host_gap_m, 1.03 - 4.0, 1e-12);

@@ -1,5 +1,6 @@
-// What `fogline doctor` finds, and who finds it. Each function examines one subject and adds a
-// finding for each thing that it looked at, good or bad; none changes anything on the machine.
+// Findings of `fogline doctor`, and the functions that make them. Each function examines one
+// subject and adds a finding, good or bad, for each item. No function changes anything on the
+// machine.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +13,13 @@ namespace fogline {
 struct Finding {
   enum class Level {
     kOk,
-    kWarning,  // works, but slower, less exactly or without some convenience
+    kWarning,  // works, but slower, less exact or less convenient
     kProblem,  // runs over this network will fail
   };
-  std::string check;  // what was looked at: a key for programs
+  std::string check;  // the examined item: a key for programs
   Level level = Level::kOk;
   std::string what;
-  std::string remedy;  // "" where there is nothing to do
+  std::string remedy;  // "" if no remedy is needed
 };
 using Findings = std::vector<Finding>;
 
@@ -28,20 +29,20 @@ std::string_view NameOf(Finding::Level level);
 /// Route, multicast on this machine, socket filter, receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// What is heard on the network within a second: runs there, and runs that are announced there.
+/// Traffic on the network within a second: runs there, and runs that are announced there.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
-/// Clock, wake-up, synchronisation, processors, disk.
+/// Clock, wake-up time, synchronisation, processors, disk.
 void ExamineMachine(Findings& findings);
 
 /// LCM's programs, Java and the message types for lcm-spy.
 /// @param programs folder of this program
 void ExamineTools(const std::filesystem::path& programs, Findings& findings);
 
-/// fogline-ROLE beside this program: there, and of the same build.
+/// Whether fogline-ROLE programs exist beside this program and are of the same build.
 void ExaminePrograms(const std::filesystem::path& programs, Findings& findings);
 
-/// Processes of Fogline that run on this machine. None is touched.
+/// Processes of Fogline that run on this machine. It does not touch them.
 void ExamineProcesses(Findings& findings);
 
 }  // namespace fogline

@@ -43,11 +43,11 @@ void ExamineClock(Findings& findings) {
                       fine ? "" : "real time needs a high-resolution clock source"});
 }
 
-/// How late a process is woken up that sleeps for a millisecond, again and again.
+/// Measures how late a process wakes up after a sleep of one millisecond, over many sleeps.
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
-  constexpr double kTooLateMs = 5;  // what a real-time run counts as a late tick
+  constexpr double kTooLateMs = 5;  // a real-time run counts such a tick as late
   std::vector<double> late_ms;
   TimePoint due = Clock::now();
   for (int i = 0; i < kSleeps; ++i) {
@@ -106,7 +106,7 @@ void ExamineProcessors(Findings& findings) {
 
 void ExamineDisk(Findings& findings) {
   constexpr double kMega = 1e6;
-  // A run of the paper takes about 1 MB.
+  // A run of the paper's scenario takes about 1 MB.
   constexpr double kLittleMB = 1000;
   constexpr double kTooLittleMB = 20;
   std::error_code error;

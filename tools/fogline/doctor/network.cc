@@ -1,4 +1,4 @@
-// The network that LCM uses: route, multicast, buffers; who else is on it.
+// The network that LCM uses: route, multicast, buffers, and other processes on it.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ std::string Content(const char* file) {
   return text.str();
 }
 
-/// Value of a number in a URL's options, `otherwise` if it has none.
+/// Value of a number among a URL's options; `otherwise` if the URL lacks it.
 int UrlOption(const std::string& url, const std::string& name, int otherwise) {
   const std::size_t at = url.find(name + "=");
   if (at == std::string::npos) return otherwise;
@@ -60,7 +60,7 @@ std::string RouteRemedy() {
       kLoopbackRoute);
 }
 
-/// Traffic that stays on this machine. @return whether it can go
+/// Traffic that stays on this machine. @return whether it can be sent
 bool ExamineOwnMachine(const std::string& url, const std::string& group, Findings& findings) {
   if (const std::string why = WhyNoMulticast(url); !why.empty()) {
     findings.push_back({"multicast_route", Level::kProblem, why, "as root: ip link set lo up"});
@@ -105,7 +105,7 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   return true;
 }
 
-/// Sends a message forth and back between two connections. @return the time that it took, zero if
+/// Sends a message forth and back between two connections. @return the time that it took; zero if
 /// it was lost
 Duration RoundTrip(Bus& here, Bus& there, bool& back) {
   constexpr Duration kLimit = milliseconds(300);
@@ -120,7 +120,7 @@ Duration RoundTrip(Bus& here, Bus& there, bool& back) {
   return back ? Clock::now() - began : Duration::zero();
 }
 
-/// A real LCM message, on a port that nobody else uses, by the way that a ttl takes.
+/// Sends a real LCM message on a port that no other process uses, along the route of this ttl.
 void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
   constexpr int kRounds = 50;
   const MulticastAddress fresh = *ParseMulticastUrl(FreshMulticastUrl());
@@ -160,7 +160,7 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
   setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted));
   getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &size);
   close(probe);
-  granted /= 2;  // the kernel says twice what may be used, see socket(7)
+  granted /= 2;  // the kernel reports twice the usable size, see socket(7)
   if (granted >= wanted) {
     findings.push_back({"receive_buffer", Level::kOk,
                         fmt::format("the kernel grants receive buffers of {} bytes", granted), ""});
@@ -175,8 +175,8 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
                    wanted)});
 }
 
-/// What a socket receives first of a fragment and a message, if it filters as a Bus does: the first
-/// bytes of either, "" if nothing comes.
+/// Sends a fragment and then a message to a socket that has the filter of a Bus. @return the first
+/// bytes of the datagram that it receives first; "" if it receives none
 std::string FilteredFirst() {
   constexpr std::string_view kFragment("LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1A\0", 22);
   constexpr std::string_view kMessage("LC02\0\0\0\1A\0", 10);
@@ -190,7 +190,7 @@ std::string FilteredFirst() {
   ssize_t received = 0;
   if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
       AttachFilter(receiver, AnyChannelFilter())) {
-    // To itself: on this machine what is sent is there at once.
+    // It sends to itself; on one machine a datagram arrives at once.
     sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
     sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
     received = recv(receiver, magic.data(), magic.size(), 0);
@@ -254,12 +254,12 @@ void ReportAnnounced(const std::string& url, const BeaconListener& beacons, Find
 }  // namespace
 
 void ExamineNetwork(const std::string& url, Findings& findings) {
-  constexpr int kReceiveBuffer = 2 << 20;  // what a Bus asks for
+  constexpr int kReceiveBuffer = 2 << 20;  // the size that a Bus asks for
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const auto group = GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
-    // mpudpm goes where the route leads, with every ttl.
+    // mpudpm follows the route, whatever the ttl is.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
       ExamineLoopback(*group, std::min(ttl, 1), findings);

@@ -1,5 +1,5 @@
-// Processes of Fogline on this machine, from /proc (proc(5)): runs, roles that wait for one, and
-// what is left of runs that are gone.
+// Processes of Fogline on this machine, from /proc (proc(5)): runs, roles that wait for a run, and
+// processes that are left over from ended runs.
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ struct Process {
   pid_t parent = 0;
   char state = '?';
   std::string program;    // such as "fogline-radar"
-  bool replaced = false;  // the file that it was started from is gone
+  bool replaced = false;  // the file of the program was removed or replaced
   std::vector<std::string> arguments;
 
-  /// What follows an option, "" if it is not there.
+  /// Value of an option; "" if the option is missing.
   std::string Option(std::string_view name) const {
     for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
       if (arguments[i] == name) return arguments[i + 1];
@@ -47,7 +47,7 @@ std::optional<Process> ReadProcess(const std::filesystem::path& folder) {
   const std::string name = folder.filename().string();
   const char* end = name.data() + name.size();
   if (std::from_chars(name.data(), end, process.pid).ptr != end) return std::nullopt;
-  std::error_code error;  // it may end, or belong to somebody else
+  std::error_code error;  // the process may end meanwhile, or belong to another user
   std::string program = std::filesystem::read_symlink(folder / "exe", error).string();
   if (program.ends_with(kDeleted)) {
     process.replaced = true;
@@ -60,7 +60,7 @@ std::optional<Process> ReadProcess(const std::filesystem::path& folder) {
   std::ifstream in(folder / "stat");
   std::string stat;
   std::getline(in, stat);
-  // "PID (NAME) STATE PARENT ...", and a name may have parentheses.
+  // "PID (NAME) STATE PARENT ...", where a name may contain parentheses.
   std::istringstream fields(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)));
   fields >> process.state >> process.parent;
   return process;
@@ -110,7 +110,7 @@ void ExamineProcesses(Findings& findings) {
     const bool has_runner = parent != processes.end() && parent->second.program == "fogline";
     const Finding finding = AssessRole(process, has_runner);
     if (has_runner) runs[process.parent].push_back(&process);
-    // Roles of a sound run are named together.
+    // Roles of a run without problems are named together below.
     if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
   }
   for (const auto& [runner, roles] : runs) {

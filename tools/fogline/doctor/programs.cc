@@ -1,4 +1,4 @@
-// The programs that a run and those who watch it need.
+// The programs that a run and its observers need.
 #include <lcm/lcm.h>
 #include <unistd.h>
 
@@ -59,7 +59,7 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
                       "ninja -C build fogline_lcmtypes_java (needs default-jdk)"});
 }
 
-/// What a program prints when it is asked for its version; by role.
+/// Output of each program when it is asked for its version, by role.
 std::map<Role, std::string> AskVersions(const fs::path& programs) {
   constexpr Duration kLimit = milliseconds(5000);
   std::map<Role, std::string> versions;
