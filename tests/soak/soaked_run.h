@@ -34,10 +34,11 @@ struct Undisturbed {
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
 /// A run that is under way: on one machine that has a default route to elsewhere, as most have, or
-/// with its roles on three machines of one network.
+/// with its roles on three machines of one network. On one machine its messages go over loopback,
+/// as they do by default, or over the interface to elsewhere.
 class SoakedRun {
  public:
-  enum class Place { kOneMachine, kThreeMachines };
+  enum class Place { kLoopback, kInterface, kThreeMachines };
 
   SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
 
@@ -52,12 +53,15 @@ class SoakedRun {
 
   /// The runner, and every process of the run on all machines, the runner first.
   std::vector<pid_t> Processes() const;
+
+  // Strikes. @return whether there was such a process, and it had not ended by itself
+
   /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
-  void KillARole(std::mt19937_64& random);
+  bool KillARole(std::mt19937_64& random);
   /// Stops one that the runner has started.
-  void StopARole(std::mt19937_64& random);
+  bool StopARole(std::mt19937_64& random) const;
   /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
-  void KillTheRunnerAndResume();
+  bool KillTheRunnerAndResume();
 
   /// Waits for the end. @return the exit code and what the runner has printed
   Outcome Finish();
@@ -65,12 +69,11 @@ class SoakedRun {
   const std::string& command() const { return command_; }
 
  private:
-  void StartRoles();
   void StartRole(std::size_t role);
   void StartRunner(const std::vector<std::string>& arguments);
   std::vector<std::string> On(std::size_t machine, const std::vector<std::string>& command) const;
+  bool SignalAChild(int signal, std::mt19937_64& random) const;
 
-  Place place_;
   ScratchFolder folder_;
   std::string log_ = folder_.File("run.lcm");
   std::optional<Machine> machine_;
