@@ -34,7 +34,7 @@ function(fogline_add_tests name)
     FOGLINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGLINE_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
   # Tests of runs in real time run alone, without other tests beside them.
-  set(alone "*InRealtime*:*RealtimeTest.*:*UnderLoad*")
+  set(alone "*InRealtime*:*RealtimeTest.*:*UnderLoad*:DeafRoleTest.*:RealtimeHorizonTest.*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_FILTER "-Campaign/*:${alone}"
     DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name})

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
@@ -12,6 +11,7 @@
 
 #include "services/runtime/clock.h"
 #include "services/runtime/runner_watch.h"
+#include "tests/support/children.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
@@ -20,15 +20,6 @@ namespace {
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 // Longer than a role waits for its runner.
 constexpr auto kAway = RunnerWatch::kGone + milliseconds(2000);
-
-/// A process and its children.
-std::vector<pid_t> FamilyOf(pid_t parent) {
-  const std::string id = std::to_string(parent);
-  std::ifstream children("/proc/" + id + "/task/" + id + "/children");
-  std::vector<pid_t> family{parent};
-  for (pid_t child = 0; children >> child;) family.push_back(child);
-  return family;
-}
 
 /// A run with its driver on another machine.
 struct RunOnTwoMachines {
@@ -63,8 +54,8 @@ Absence Stopped(std::string name, std::vector<std::string> options,
 }
 
 const Absence kEverything = Stopped("everything", {}, [](const RunOnTwoMachines& run) {
-  std::vector<pid_t> all = FamilyOf(run.run.pid());
-  all.push_back(run.driver.pid());
+  std::vector<pid_t> all = ChildrenOf(run.run.pid());
+  all.insert(all.end(), {run.run.pid(), run.driver.pid()});
   return all;
 });
 const Absence kRunner = Stopped(

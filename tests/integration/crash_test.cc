@@ -7,11 +7,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <map>
 #include <random>
 #include <thread>
 
-#include "services/runtime/bus.h"
+#include "tests/integration/watched_run.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"
 
@@ -19,137 +18,6 @@ namespace fogline::test {
 namespace {
 
 using testing::HasSubstr;
-
-// Far longer than anything here takes on a busy machine.
-constexpr Duration kPatience = std::chrono::seconds(30);
-// Steps of a run that is watched, and its pace: a millisecond a step.
-constexpr int kSteps = 300;
-constexpr int kPace = 100;
-
-std::vector<std::string> PaperOf(int steps, const std::vector<std::string>& more) {
-  std::vector<std::string> command{Program("fogline"), "run",   "scenario/paper.json",
-                                   "--json",           "--set", "/steps=" + std::to_string(steps)};
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
-}
-
-/// Digest of the run that nothing happens to, of the paper's scenario with such changes.
-std::string UndisturbedDigest(int steps, const std::vector<std::string>& changes) {
-  static std::map<std::pair<int, std::vector<std::string>>, std::string> known;
-  std::string& digest = known[{steps, changes}];
-  if (digest.empty()) {
-    std::vector<std::string> arguments{"--transport", "direct"};
-    arguments.insert(arguments.end(), changes.begin(), changes.end());
-    const Outcome outcome = RunCommand(PaperOf(steps, arguments));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    digest = nlohmann::json::parse(outcome.out).at("digest");
-  }
-  return digest;
-}
-
-/// A run over the network whose STATUS messages tell this test who is who.
-class WatchedRun {
- public:
-  /// @param changes of the scenario, as "--set", "/steps=10"
-  explicit WatchedRun(const std::vector<std::string>& more = {}, int steps = kSteps,
-                      int pace = kPace, const std::vector<std::string>& changes = {})
-      : steps_(steps),
-        changes_(changes),
-        bus_(FreshMulticastUrl()),
-        log_(folder_.File("run.lcm")),
-        run_(Command(more, pace)) {
-    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
-      truth_t truth{};
-      if (Decode(bytes, truth)) step_ = std::max(step_, truth.header.step);
-    });
-    bus_.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) {
-      status_t status{};
-      if (Decode(bytes, status)) last_[status.role][status.pid] = status;
-    });
-  }
-
-  /// Handles messages until something is so. @throws std::runtime_error if it never is
-  template <class Condition>
-  void WaitUntil(const Condition& condition, const std::string& what) {
-    const TimePoint end = Clock::now() + kPatience;
-    while (!condition()) {
-      bus_.Wait(milliseconds(20));
-      if (Clock::now() > end || !IsAlive(run_.pid())) {
-        throw std::runtime_error("waited in vain for " + what + "\n" + run_.Err());
-      }
-    }
-  }
-  void WaitForStep(std::int64_t step) {
-    WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
-  }
-
-  /// The process that is a role now: one that this test has not killed.
-  pid_t PidOf(const std::string& role) {
-    pid_t pid = 0;
-    WaitUntil(
-        [&] {
-          for (const auto& [candidate, status] : last_[role]) {
-            if (!gone_.contains(candidate)) pid = candidate;
-          }
-          return pid != 0;
-        },
-        role);
-    return pid;
-  }
-  void Signal(const std::string& role, int signal) {
-    const pid_t pid = PidOf(role);
-    gone_[pid] = true;
-    kill(pid, signal);
-  }
-  /// What a process has said last of its state, -1 if nothing.
-  std::int8_t StateOf(const std::string& role, pid_t pid) {
-    return last_[role].contains(pid) ? last_[role][pid].state : std::int8_t{-1};
-  }
-  void WaitForState(const std::string& role, std::int8_t state) {
-    const pid_t pid = PidOf(role);
-    WaitUntil([&] { return last_[role][pid].state == state; }, "another state of " + role);
-  }
-
-  /// Waits for the end. @return the result, which must be that of the undisturbed run
-  nlohmann::json ExpectSameResult() {
-    EXPECT_EQ(run_.Wait(), 0) << run_.Err();
-    const auto result = nlohmann::json::parse(run_.Out(), nullptr, false);
-    EXPECT_EQ(result.value("digest", ""), UndisturbedDigest(steps_, changes_)) << run_.Err();
-    EXPECT_EQ(result.value("steps", 0), steps_);
-    return result;
-  }
-  /// How often the result says that a role was started again.
-  static int RestartsOf(const nlohmann::json& result, const std::string& role) {
-    for (const auto& entry : result.at("restarts")) {
-      if (entry.at("role") == role) return entry.at("count");
-    }
-    return 0;
-  }
-
-  Background& run() { return run_; }
-  std::string RunId() const { return run_.Err().substr(4, run_.Err().find(" on ") - 4); }
-  const std::string& url() const { return bus_.url(); }
-  std::string File(const std::string& name) const { return folder_.File(name); }
-
- private:
-  std::vector<std::string> Command(const std::vector<std::string>& more, int pace) const {
-    std::vector<std::string> arguments{"--lcm-url", bus_.url(), "--log",
-                                       log_,        "--pace",   std::to_string(pace)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.insert(arguments.end(), changes_.begin(), changes_.end());
-    return PaperOf(steps_, arguments);
-  }
-
-  const int steps_;
-  const std::vector<std::string> changes_;
-  ScratchFolder folder_;
-  Bus bus_;
-  std::string log_;
-  Background run_;
-  std::int64_t step_ = -1;
-  std::map<std::string, std::map<pid_t, status_t>> last_;
-  std::map<pid_t, bool> gone_;
-};
 
 std::vector<std::string> AllRoles() {
   std::vector<std::string> names;
@@ -260,7 +128,7 @@ TEST_P(HangTest, IsDetectedAndMended) { ExpectHangersAreStartedAgain({GetParam()
 INSTANTIATE_TEST_SUITE_P(Campaign, HangTest, testing::ValuesIn(EveryRole()),
                          [](const auto& role) { return role.param; });
 
-TEST(CrashTest, OfNobodyIsSeenByARunnerThatWasHeldUpItself) {
+TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
   // GIVEN a runner that stands still for longer than anybody may be silent
   WatchedRun watched({"--stall-timeout", "1"}, 3000);
   watched.WaitForStep(100);
@@ -283,7 +151,7 @@ TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
   EXPECT_THAT(watched.run().Err(), HasSubstr(", after 2 restarts (--restarts)\n"));
 }
 
-TEST(CrashTest, OfARoleFromElsewhereIsOverWhenSomebodyStartsItAgain) {
+TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
   // GIVEN a run that goes on for longer than it takes to be sure of a death
   WatchedRun watched({"--external", "driver"}, 1500);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
@@ -318,7 +186,7 @@ TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
   EXPECT_TRUE(IsAlive(stray.pid()));
 }
 
-TEST(CrashTest, OfARoleFromElsewhereThatComesToLifeAgainIsNone) {
+TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   // GIVEN a driver that stands still, and another one that has taken its place
   WatchedRun watched({"--external", "driver"}, 6000);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};

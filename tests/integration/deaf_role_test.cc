@@ -48,7 +48,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   // WHEN no role hears where the cars are
   machine.LoseChannel("TRUTH");
   ASSERT_TRUE(run.WaitForErr("radar (pid " + std::to_string(PidOf(run.Err(), "radar")) +
-                             ") has heard no TRUTH for 2."))
+                             ") has heard no TRUTH for "))
       << run.Err();
   machine.LoseNothing();
   // THEN the run starts a role again that reads TRUTH, and the role computes to the end
@@ -77,7 +77,7 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   machine.LoseChannel("HOST_EGO");
   EXPECT_EQ(run.Wait(), 3);
   EXPECT_THAT(run.Err(), HasSubstr("warning: acc (pid "));
-  EXPECT_THAT(run.Err(), HasSubstr(" on deaf) is deaf: it has heard no HOST_EGO for 2."));
+  EXPECT_THAT(run.Err(), HasSubstr(" on deaf) is deaf: it has heard no HOST_EGO for "));
   EXPECT_THAT(run.Err(),
               HasSubstr(" is deaf at the end of the run: it has heard no HOST_EGO for "));
 }
@@ -85,15 +85,17 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
 TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  Background run(lab[0].On(RealtimeRun(5, {"--external", "driver"})));
+  // It is deaf after some 3 s and hears again; on a busy machine both may take a second more.
+  constexpr int kSeconds = 8;
+  Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   lab[1].LoseChannel("TRUTH");
   EXPECT_TRUE(run.WaitForErr("warning: driver (pid " + std::to_string(driver.pid()) +
-                             " on lab2) is deaf: it has heard no TRUTH for 2."));
+                             " on lab2) is deaf: it has heard no TRUTH for "));
   lab[1].LoseNothing();
   EXPECT_EQ(run.Wait(), 0) << run.Err();
-  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), 5 * kRate_hz - 5);
+  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), kSeconds * kRate_hz - 5);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +20,7 @@
 
 #include "services/graph.h"
 #include "services/runtime/clock.h"
+#include "tests/support/children.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -68,14 +68,7 @@ class FullPipe {
   int pages_ = 0;
 };
 
-/// The processes that a process has started.
-std::vector<pid_t> ChildrenOf(pid_t pid) {
-  const std::string task = "/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid);
-  std::istringstream words(Content(task + "/children"));
-  return {std::istream_iterator<pid_t>(words), {}};
-}
-
-/// Waits for the process of a role that a run starts. @return 0 if none appears
+/// Waits for the process of a role that a run has started. @return 0 if it does not come
 pid_t WaitForRole(pid_t run, const std::string& program) {
   const TimePoint end = Clock::now() + kPatience;
   while (Clock::now() < end) {

@@ -1,5 +1,5 @@
-// The log or the traffic of a run is altered during the run or later. The run, or the reader of the
-// log, reports it.
+// The log of a run is changed while it goes on, or later: the run, or the reader of the log, says
+// so.
 #include <fcntl.h>
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
@@ -130,9 +130,9 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
 
 class FlippedBitTest : public LogIntegrityTest {
  protected:
-  /// Lets a run begin, stops its driver, and calls `disturb`, which changes the log on disk. Then
-  /// the driver goes on. @return the outcome of the run
-  Outcome Disturbed(const std::function<void(const Background& run)>& disturb) {
+  /// Lets a run begin, stops its driver, and has `disturb` change the log of what is on the disk.
+  /// @return what has come of the run
+  Outcome Disturbed(const std::function<void(Background& run)>& disturb) {
     Background run(Run({"--pace", "10", "--set", "/steps=60"}));
     Background driver(Driver());
     constexpr std::uintmax_t kSomeSteps = 30'000;
@@ -146,7 +146,7 @@ class FlippedBitTest : public LogIntegrityTest {
 };
 
 TEST_F(FlippedBitTest, InAMessageEndsTheRun) {
-  const Outcome outcome = Disturbed([&](const Background&) {
+  const Outcome outcome = Disturbed([&](Background&) {
     const Place radar = PlaceOf(log_, "RADAR");
     FlipLowestBit(log_, radar.at + radar.size - 17);  // in its range rate
   });
@@ -157,22 +157,20 @@ TEST_F(FlippedBitTest, InAMessageEndsTheRun) {
 }
 
 TEST_F(FlippedBitTest, BeforeTheRecorderIsKilledEndsTheRunToo) {
-  const Outcome outcome = Disturbed([&](const Background& run) {
+  const Outcome outcome = Disturbed([&](Background& run) {
     const Place radar = PlaceOf(log_, "RADAR");
     FlipLowestBit(log_, radar.at + radar.size - 17);
     kill(PidOf(run.Err(), "recorder"), SIGKILL);
-    while (run.Err().find("started again as pid") == std::string::npos && IsAlive(run.pid())) {
-    }
+    EXPECT_TRUE(run.WaitForErr("started again as pid")) << run.Err();
   });
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("the log on disk is not what the recorder wrote: "));
 }
 
 TEST_F(FlippedBitTest, IsTheOnlyThingThatEndsTheRunWhenItsRecorderIsKilled) {
-  const Outcome outcome = Disturbed([&](const Background& run) {
+  const Outcome outcome = Disturbed([&](Background& run) {
     kill(PidOf(run.Err(), "recorder"), SIGKILL);
-    while (run.Err().find("started again as pid") == std::string::npos && IsAlive(run.pid())) {
-    }
+    EXPECT_TRUE(run.WaitForErr("started again as pid")) << run.Err();
   });
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(Digest({log_}, 0)["seal"], "holds");
@@ -275,23 +273,25 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   {
     Bus bus(url_);
     Background logger({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url_, copy});
-    // Waits until the logger listens ("BEGIN"), and later until it has logged every message
-    // ("END").
+    // Until it listens, and until it has all. That takes less on a busy machine.
+    constexpr auto kPatience = std::chrono::seconds(20);
     const auto mark = [&](std::string_view channel) {
       const auto has = [&] {
         std::ifstream in(copy, std::ios::binary);
         const std::string content{std::istreambuf_iterator<char>(in), {}};
         return content.find(channel) != std::string::npos;
       };
-      while (!has() && IsAlive(logger.pid())) {
+      const TimePoint end = Clock::now() + kPatience;
+      while (!has() && IsAlive(logger.pid()) && Clock::now() < end) {
         bus.Publish(channel, Payload(kHeaderEnd));
         bus.Wait(milliseconds(10));
       }
+      return has();
     };
-    mark("BEGIN");
+    ASSERT_TRUE(mark("BEGIN"));
     Background player({"lcm-logplayer", "--speed=5", "--lcm-url=" + url_, log});
     ASSERT_EQ(player.Wait(), 0) << player.Err();
-    mark("END");
+    ASSERT_TRUE(mark("END"));
     logger.Signal(SIGINT);
     logger.Wait();
   }
@@ -411,86 +411,6 @@ TEST_F(LogIntegrityTest, RolesOfTheSameBuildAreAcceptedWithSameBuildOnEveryTrans
     EXPECT_EQ(json["verified"]["roles"].size(), 8U);
     EXPECT_THAT(json["verified"]["left_out"], IsEmpty());
   }
-}
-
-// ---- traffic ------------------------------------------------------------------------------------
-
-/// Carries messages between a run and one role on another network. It alters one message.
-class Bridge {
- public:
-  Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
-    for (const char* channel : {"RUN", "TRUTH", "RESEND"}) Carry(run_, role_, channel);
-    for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
-  }
-
-  /// The range of this step's LIDAR message grows by 0.25 m on its way.
-  void Alter(std::int64_t step) { altered_ = step; }
-
-  void RunUntilTheEndOf(const Background& program) {
-    while (IsAlive(program.pid())) {
-      run_.Wait(milliseconds(1));
-      run_.Drain();
-      role_.Drain();
-    }
-  }
-
- private:
-  void Carry(Bus& from, Bus& to, const std::string& channel) {
-    from.Subscribe(channel, [this, &to, channel](Bytes bytes) {
-      Payload payload(bytes.begin(), bytes.end());
-      lidar_t lidar{};
-      if (Decode(payload, lidar) && lidar.header.step == altered_) {
-        lidar.range_m += 0.25;
-        Encode(lidar, payload);
-      }
-      to.Publish(channel, payload);
-    });
-  }
-
-  Bus run_;
-  Bus role_;
-  std::int64_t altered_ = -1;
-};
-
-class AlteredTrafficTest : public LogIntegrityTest {
- protected:
-  /// A run with its LiDAR on the other side of the bridge.
-  Outcome RunAcross(Bridge& bridge, const Words& more) {
-    const Background lidar({Program("fogline-lidar"), "--lcm-url", lidar_url_});
-    Background run(With({Program("fogline"), "run", "scenario/paper.json", "--json", "--external",
-                         "lidar", "--lcm-url", url_, "--set", "/steps=50", "--log", log_},
-                        more));
-    bridge.RunUntilTheEndOf(run);
-    return {.code = run.Wait(), .out = run.Out(), .err = run.Err()};
-  }
-
-  const std::string lidar_url_ = Bus(FreshMulticastUrl()).url();
-  Bridge bridge_{url_, lidar_url_};
-};
-
-TEST_F(AlteredTrafficTest, IsFoundByComputingTheStepsAgain) {
-  bridge_.Alter(20);
-  const Outcome run = RunAcross(bridge_, {});
-  EXPECT_EQ(run.code, 1) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("fogline run: error: step 20: LIDAR of lidar: range_m is "));
-  const auto verified = nlohmann::json::parse(run.out)["verified"];
-  EXPECT_EQ(verified["same"], false);
-  EXPECT_EQ(verified["first"]["role"], "lidar");
-  EXPECT_EQ(verified["first"]["step"], 20);
-  EXPECT_EQ(verified["first"]["field"], "range_m");
-}
-
-TEST_F(AlteredTrafficTest, IsNotLookedForOnRequest) {
-  bridge_.Alter(20);
-  const Outcome run = RunAcross(bridge_, {"--no-verify"});
-  EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_TRUE(nlohmann::json::parse(run.out)["verified"].is_null());
-}
-
-TEST_F(AlteredTrafficTest, IsNotFoundWhereNothingWasAltered) {
-  const Outcome run = RunAcross(bridge_, {});
-  EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(nlohmann::json::parse(run.out)["verified"]["roles"].size(), 8U);
 }
 
 }  // namespace

@@ -21,8 +21,10 @@ namespace fogline::test {
 namespace {
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-// Exit code of `fogline run` for a run that failed.
+// Exit code of `fogline run` where a run failed. After a burst there is one reason for it: the
+// recorder cannot have everything again.
 constexpr int kFailed = 3;
+constexpr const char* kNotWhole = "fogline run: error: the log is not complete: at least ";
 
 struct Burst {
   int loss_pct;
@@ -39,7 +41,9 @@ struct Plan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// The time from the end of a burst until a role computed in time again. Empty if it never did.
+/// What became of a role after a burst: from when the network was clean until it computed in time,
+/// which is within a period after the world began the step; the world itself, within two periods
+/// after it began the step before.
 struct Back {
   Role role;
   std::optional<double> after_s;
@@ -132,9 +136,13 @@ class Listener {
 
  private:
   void Heard(Role from, std::int64_t step, TimePoint now) {
-    if (from == Role::kWorld && step > newest_) {
+    if (from == Role::kWorld) {
+      if (step <= newest_) return;  // sent again
+      if (step == newest_ + 1 && now - newest_heard_ <= 2 * period_) back_.try_emplace(from, now);
       newest_ = step;
+      newest_heard_ = now;
       began_[step] = now;
+      return;
     }
     const auto began = began_.find(step);
     if (began != began_.end() && now - began->second <= period_) back_.try_emplace(from, now);
@@ -143,6 +151,7 @@ class Listener {
   Duration period_;
   std::optional<Bus> bus_;
   std::int64_t newest_ = -1;
+  TimePoint newest_heard_{};
   std::map<std::int64_t, TimePoint> began_;
   std::map<Role, TimePoint> back_;
 };
@@ -226,7 +235,7 @@ class BurstRun {
       if (!json.is_object() || json["realtime"].value("unlogged_messages", 0) != 0) {
         result.trouble = "ended well without a whole log: " + run.Out() + err;
       }
-    } else if (code != kFailed || err.find("fogline run: error: ") == std::string::npos) {
+    } else if (code != kFailed || err.find(kNotWhole) == std::string::npos) {
       result.trouble = "exit code " + std::to_string(code) + ": " + err;
     }
   }
@@ -281,6 +290,8 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
+      // A burst is no reason to start a role again: none hangs, and none is deaf for long.
+      EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {
         const Burst& burst = result.plan.bursts[i];
@@ -354,7 +365,7 @@ class EveryLossBurstInRealtimeTest : public LossBurstInRealtimeTest,
 TEST_P(EveryLossBurstInRealtimeTest, IsOverASecondAfterTheNetworkIsClean) {
   const char* asked = std::getenv("FOGLINE_TEST_BURSTS");
   const std::size_t repeats =
-      asked == nullptr ? GetParam() : static_cast<std::size_t>(std::atoi(asked)) / 100;
+      asked == nullptr ? GetParam() : static_cast<std::size_t>(std::max(1, std::atoi(asked) / 100));
   std::deque<Plan> plans;
   for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
     for (const int machines : {1, 3}) {
@@ -372,6 +383,7 @@ TEST_P(EveryLossBurstInRealtimeTest, IsOverASecondAfterTheNetworkIsClean) {
       }
     }
   }
+  ASSERT_FALSE(plans.empty());
   constexpr unsigned kAtOnce = 4;
   Judge(PlayAll(std::move(plans), kAtOnce), 1.0);
   Print();

@@ -5,7 +5,10 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 fogline=$1
 transport=$2
-folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-memory-XXXXXX")
+# Where tools/test removes what a test that was killed has left behind.
+scratch="$(dirname "$fogline")/../Testing/tmp"
+mkdir -p "$scratch"
+folder=$(mktemp -d "$scratch/memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
 # Prints the peak resident memory in KiB of the runner or of the largest of its roles.

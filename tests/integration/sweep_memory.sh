@@ -6,7 +6,10 @@ cd "$(dirname "$0")/../.."
 fogline=$1
 runs=$2
 shift 2
-folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-memory-XXXXXX")
+# Where tools/test removes what a test that was killed has left behind.
+scratch="$(dirname "$fogline")/../Testing/tmp"
+mkdir -p "$scratch"
+folder=$(mktemp -d "$scratch/memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
 # Prints the peak resident memory in KiB. The policy lets only the automation drive, so each row is

@@ -36,102 +36,129 @@ std::vector<std::string> BadNetwork(Random& random) {
                                   Uniform(random, 0, 0.2), Uniform(random, 0, 5))};
 }
 
-void LoseInput(SoakedRun& run, Random& random, const Limits&) {
+bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   const int per_cent = static_cast<int>(Uniform(random, 5, 40));
   for (const Machine* machine : run.machines()) machine->LoseUdp(per_cent);
+  return true;
+}
+
+/// Has a machine lack something for so long, and until `felt`, a command of the shell, says that a
+/// message was lost by it: on a busy machine nothing may be sent for a moment.
+/// @return whether one was
+bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
+          const std::string& felt) {
+  constexpr int kTenths = 50;  // how long that may take; a role says something five times a second
+  return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
+                                "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
+                                "done; {}; echo $hit",
+                                begin, seconds, kTenths, felt, end)) == "yes\n";
 }
 
 /// For some time the kernel refuses to send a share of the datagrams: sendto() fails with EPERM.
-void RefuseToSend(const Machine& machine, double share, double seconds) {
+bool RefuseToSend(const Machine& machine, double share, double seconds) {
   const int of_1000 = std::max(1, static_cast<int>(1000 * share));
   const std::string which = share < 1 ? fmt::format("numgen random mod 1000 < {}", of_1000) : "";
-  machine.Do(
-      fmt::format("nft 'table inet refuse {{ chain output {{ type filter hook output priority 0;"
-                  " meta l4proto udp {} drop; }}; }}'; sleep {:.3f}; nft delete table inet refuse",
-                  which, seconds));
+  return Lack(machine,
+              fmt::format("nft 'table inet refuse {{ counter refused {{}}; chain output {{"
+                          " type filter hook output priority 0;"
+                          " meta l4proto udp {} counter name refused drop; }}; }}'",
+                          which),
+              "nft delete table inet refuse", seconds,
+              "! nft list counter inet refuse refused | grep -q 'packets 0 '");
 }
 
-void FailSends(SoakedRun& run, Random& random, const Limits&) {
-  RefuseToSend(AMachine(run, random), LogUniform(random, 0.001, 0.1), Uniform(random, 0.2, 2));
+bool FailSends(SoakedRun& run, Random& random, const Limits&) {
+  return RefuseToSend(AMachine(run, random), LogUniform(random, 0.01, 0.1),
+                      Uniform(random, 0.2, 2));
 }
 
-void ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
-  RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
+bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
+  return RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
 }
 
-void TakeInterface(SoakedRun& run, Random& random, const Limits&) {
-  AMachine(run, random)
-      .Do(fmt::format("routes=$(ip route show | grep -v 'proto kernel');"
-                      "ip link set eth0 down; sleep {:.3f}; ip link set eth0 up;"
-                      "echo \"$routes\" | while read route; do ip route replace $route; done",
-                      Uniform(random, 0.1, 1.5)));
+/// Takes something without which a machine has no route for multicast. The kernel counts the
+/// datagrams for which there is none (OutNoRoutes).
+bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
+                double seconds) {
+  const std::string unrouted = "$(awk '/^Ip: [0-9]/ { print $13 }' /proc/net/snmp)";
+  return Lack(machine,
+              "routes=$(ip route show | grep -v 'proto kernel'); before=" + unrouted + "; " + begin,
+              end + "; echo \"$routes\" | while read route; do ip route replace $route; done",
+              seconds, "[ " + unrouted + " -gt $before ]");
 }
 
-void TakeAddress(SoakedRun& run, Random& random, const Limits&) {
-  AMachine(run, random)
-      .Do(fmt::format("routes=$(ip route show | grep -v 'proto kernel');"
-                      "address=$(ip -o -4 addr show dev eth0 | sed 's/.*inet \\([^ ]*\\).*/\\1/');"
-                      "ip addr del $address dev eth0; sleep {:.3f}; ip addr add $address dev eth0;"
-                      "echo \"$routes\" | while read route; do ip route replace $route; done",
-                      Uniform(random, 0.1, 1.5)));
+bool TakeInterface(SoakedRun& run, Random& random, const Limits&) {
+  return TakeTheWay(AMachine(run, random), "ip link set eth0 down", "ip link set eth0 up",
+                    Uniform(random, 0.1, 1.5));
 }
 
-void TakeRoute(SoakedRun& run, Random& random, const Limits&) {
-  AMachine(run, random)
-      .Do(fmt::format("route=$(ip route show | grep -v 'proto kernel' | head -1);"
-                      "ip route del $route; sleep {:.3f}; ip route add $route",
-                      Uniform(random, 0.1, 1.5)));
+bool TakeAddress(SoakedRun& run, Random& random, const Limits&) {
+  return TakeTheWay(AMachine(run, random),
+                    "address=$(ip -o -4 addr show dev eth0 | sed 's/.*inet \\([^ ]*\\).*/\\1/');"
+                    "ip addr del $address dev eth0",
+                    "ip addr add $address dev eth0", Uniform(random, 0.1, 1.5));
 }
 
-void Partition(SoakedRun& run, Random& random, const Limits& limits) {
+bool TakeRoute(SoakedRun& run, Random& random, const Limits&) {
+  return TakeTheWay(AMachine(run, random), "ip route del $(echo \"$routes\" | head -1)", "true",
+                    Uniform(random, 0.1, 1.5));
+}
+
+bool Partition(SoakedRun& run, Random& random, const Limits& limits) {
   const auto machine = std::uniform_int_distribution<std::size_t>(0, 2)(random);
   run.lab().Unplug(machine);
   Last(LogUniform(random, 0.1, limits.partition_s));
   run.lab().Plug(machine);
+  return true;
 }
 
-void Kill(SoakedRun& run, Random& random, const Limits&) { run.KillARole(random); }
-void Stop(SoakedRun& run, Random& random, const Limits&) { run.StopARole(random); }
-void Resume(SoakedRun& run, Random&, const Limits&) { run.KillTheRunnerAndResume(); }
+bool Kill(SoakedRun& run, Random& random, const Limits&) { return run.KillARole(random); }
+bool Stop(SoakedRun& run, Random& random, const Limits&) { return run.StopARole(random); }
+bool Resume(SoakedRun& run, Random&, const Limits&) { return run.KillTheRunnerAndResume(); }
 
 /// All processes stop, one after another, as by Ctrl-Z, in a frozen container or on a sleeping
 /// machine.
-void Freeze(SoakedRun& run, Random& random, const Limits& limits) {
+bool Freeze(SoakedRun& run, Random& random, const Limits& limits) {
   std::vector<pid_t> processes = run.Processes();
   std::ranges::shuffle(processes, random);
   for (const pid_t process : processes) kill(process, SIGSTOP);
   Last(LogUniform(random, std::min(0.5, limits.freeze_s), limits.freeze_s));
   std::ranges::shuffle(processes, random);
   for (const pid_t process : processes) kill(process, SIGCONT);
+  return true;
 }
 
-void Anything(SoakedRun& run, Random& random, const Limits& limits) {
-  using Strike = void (*)(SoakedRun&, Random&, const Limits&);
+bool Anything(SoakedRun& run, Random& random, const Limits& limits) {
+  using Strike = bool (*)(SoakedRun&, Random&, const Limits&);
   static constexpr Strike kAny[] = {Kill,          Stop,        FailSends, ReloadFirewall,
                                     TakeInterface, TakeAddress, TakeRoute};
-  kAny[std::uniform_int_distribution<std::size_t>(0, std::size(kAny) - 1)(random)](run, random,
-                                                                                   limits);
+  return kAny[std::uniform_int_distribution<std::size_t>(0, std::size(kAny) - 1)(random)](
+      run, random, limits);
 }
 
 }  // namespace
 
 std::span<const FaultKind> FaultKinds() {
+  constexpr auto kLoopback = SoakedRun::Place::kLoopback;
+  constexpr auto kInterface = SoakedRun::Place::kInterface;
   static const FaultKind kKinds[] = {
-      {"none", "nothing happens", true, true, None, nullptr, 0},
-      {"loss", "the kernel loses 5 to 40 % of the datagrams", true, true, None, LoseInput, 1},
-      {"network", "messages are lost, doubled, overtaken, delayed", false, true, BadNetwork,
+      {"none", "nothing happens", true, kLoopback, None, nullptr, 0},
+      {"loss", "the kernel loses 5 to 40 % of the datagrams", true, kLoopback, None, LoseInput, 1},
+      {"network", "messages are lost, doubled, overtaken, delayed", false, kLoopback, BadNetwork,
        nullptr, 0},
-      {"kill", "a role is killed", true, true, None, Kill, 6},
-      {"stop", "a role is stopped and does not go on", false, true, None, Stop, 2},
-      {"freeze", "all processes stand still", true, true, None, Freeze, 1},
-      {"send", "0.1 to 10 % of the sends fail", true, true, None, FailSends, 4},
-      {"firewall", "every send of a machine fails", true, true, None, ReloadFirewall, 3},
-      {"interface", "an interface is down", true, true, None, TakeInterface, 3},
-      {"address", "an interface has no address", true, true, None, TakeAddress, 3},
-      {"route", "the route to elsewhere is away", true, true, None, TakeRoute, 3},
-      {"partition", "a machine's cable is unplugged", true, false, None, Partition, 2},
-      {"resume", "the runner is killed, another one resumes its log", false, true, None, Resume, 2},
-      {"mix", "many of these in one run on a bad network", false, true, BadNetwork, Anything, 5},
+      {"kill", "a role is killed", true, kLoopback, None, Kill, 6},
+      {"stop", "a role is stopped and does not go on", false, kLoopback, None, Stop, 2},
+      {"freeze", "all processes stand still", true, kLoopback, None, Freeze, 1},
+      {"send", "1 to 10 % of the sends fail", true, kLoopback, None, FailSends, 4},
+      {"firewall", "every send of a machine fails", true, kLoopback, None, ReloadFirewall, 3},
+      {"interface", "an interface is down", true, kInterface, None, TakeInterface, 3},
+      {"address", "an interface has no address", true, kInterface, None, TakeAddress, 3},
+      {"route", "the route to elsewhere is away", true, kInterface, None, TakeRoute, 3},
+      {"partition", "a machine's cable is unplugged", true, std::nullopt, None, Partition, 2},
+      {"resume", "the runner is killed, another one resumes its log", false, kLoopback, None,
+       Resume, 2},
+      {"mix", "many of these in one run on a bad network", false, kInterface, BadNetwork, Anything,
+       5},
   };
   return kKinds;
 }

@@ -1,6 +1,7 @@
 // The kinds of faults of a soak.
 #pragma once
 
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -20,13 +21,13 @@ struct Limits {
 struct FaultKind {
   std::string_view name;
   std::string_view what;
-  bool three_machines;  // it needs three machines; the other kinds run on one machine or on three
-  bool one_machine;
-  /// Options of `fogline run` that make the fault; empty if `strike` makes it.
+  bool three_machines;  // some of its runs are on three machines: all of them if none is on one
+  std::optional<SoakedRun::Place> alone;  // where its other runs are
+  /// Options of `fogline run` that make it; empty if Strike does.
   std::vector<std::string> (*options)(std::mt19937_64& random);
-  /// Makes the fault once. @pre the run still goes on
-  void (*strike)(SoakedRun& run, std::mt19937_64& random, const Limits& limits);
-  int most_strikes;  // in a run
+  /// Strikes once. @return whether it has hit the run @pre the run goes on
+  bool (*strike)(SoakedRun& run, std::mt19937_64& random, const Limits& limits);
+  int most_strikes;  // in one run
 };
 
 std::span<const FaultKind> FaultKinds();

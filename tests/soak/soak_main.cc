@@ -36,7 +36,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 struct Options {
   double minutes = 60;
-  std::int64_t runs = 0;  // 0: as many as fit into the time
+  std::int64_t runs = 0;  // 0: as many as the time lets
+  std::int64_t each = 0;  // so many of each kind, in place of `runs`
   std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::string only;
@@ -47,7 +48,7 @@ struct Options {
 /// The results of the runs of one kind.
 struct Tally {
   std::int64_t runs = 0;
-  std::int64_t struck = 0;  // faults that happened before their run ended
+  std::int64_t struck = 0;  // faults that hit a run
   std::int64_t failed = 0;
   std::int64_t repairs = 0;
   std::int64_t restarts = 0;
@@ -70,7 +71,7 @@ Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
   std::vector<std::string> options = kind.options(random);
   // Slow enough that a fault of a tenth of a second covers many steps.
   options.insert(options.end(), {"--pace", "10", "--stall-timeout", "90"});
-  const bool three = kind.three_machines && (!kind.one_machine || random() % 3 == 0);
+  const bool three = kind.three_machines && (!kind.alone || random() % 3 == 0);
   std::vector<double> shares;
   if (kind.most_strikes > 0) {
     shares.resize(std::uniform_int_distribution<std::size_t>(
@@ -79,13 +80,11 @@ Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
   for (double& share : shares) share = std::uniform_real_distribution(0.02, 0.95)(random);
   std::ranges::sort(shares);
 
-  SoakedRun run(experiment,
-                three ? SoakedRun::Place::kThreeMachines : SoakedRun::Place::kOneMachine, options);
+  SoakedRun run(experiment, three ? SoakedRun::Place::kThreeMachines : *kind.alone, options);
   Ended ended;
   for (const double share : shares) {
     if (!run.WaitForShare(share, undisturbed)) break;
-    kind.strike(run, random, limits);
-    ++ended.struck;
+    if (kind.strike(run, random, limits)) ++ended.struck;
   }
   const std::string command = run.command();
   const Outcome outcome = run.Finish();
@@ -112,6 +111,8 @@ class Soak {
       if (options.only.empty() || kind.name == options.only) kinds_.push_back(&kind);
     }
     tallies_.resize(kinds_.size());
+    runs_ =
+        options.each > 0 ? options.each * static_cast<std::int64_t>(kinds_.size()) : options.runs;
   }
 
   int Run() {
@@ -120,9 +121,7 @@ class Soak {
     for (std::thread& job : jobs) job.join();
     PrintTallies();
     if (interrupted != 0) return kInterrupted;
-    return std::ranges::any_of(tallies_, [](const Tally& tally) { return tally.failed > 0; })
-               ? kDifferent
-               : kAllEqual;
+    return failed_ == 0 && Complains() == 0 ? kAllEqual : kDifferent;
   }
 
  private:
@@ -132,8 +131,7 @@ class Soak {
 
   bool Over(std::int64_t number) const {
     if (interrupted != 0) return true;
-    return options_.runs > 0 ? number >= options_.first + options_.runs
-                             : Elapsed_s() > 60 * options_.minutes;
+    return runs_ > 0 ? number >= options_.first + runs_ : Elapsed_s() > 60 * options_.minutes;
   }
 
   void Work() {
@@ -162,9 +160,12 @@ class Soak {
     if (!ended.failure.empty()) {
       ++tally.failed;
       ++failed_;
-      fmt::print("run {} ({}) failed; again: tools/soak --seed {} --first {} --runs 1{}\n{}\n",
-                 number, kinds_[kind]->name, options_.seed, number,
-                 options_.only.empty() ? "" : " --only " + options_.only, ended.failure);
+      fmt::print(
+          "run {} ({}) failed; again: tools/soak --seed {} --first {} --runs 1 --freeze {}"
+          " --partition {}{}\n{}\n",
+          number, kinds_[kind]->name, options_.seed, number, options_.limits.freeze_s,
+          options_.limits.partition_s, options_.only.empty() ? "" : " --only " + options_.only,
+          ended.failure);
       std::fflush(stdout);
     }
     fmt::print(stderr, "{:.1f} min: {} runs, {} failed\n", Elapsed_s() / 60, done_, failed_);
@@ -182,7 +183,22 @@ class Soak {
     fmt::print("{} runs in {:.1f} min, {} failed\n", done_, Elapsed_s() / 60, failed_);
   }
 
+  /// Says of what nothing was learnt. @return how many such things there are
+  int Complains() const {
+    if (done_ == 0) fmt::print(stderr, "soak: error: no run was made: --minutes is too short\n");
+    int complaints = done_ == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+      const Tally& tally = tallies_[i];
+      if (kinds_[i]->most_strikes == 0 || tally.runs == 0 || tally.struck > 0) continue;
+      fmt::print(stderr, "soak: error: {}: {} runs, and no fault hit one of them\n",
+                 kinds_[i]->name, tally.runs);
+      ++complaints;
+    }
+    return complaints;
+  }
+
   const Options options_;
+  std::int64_t runs_ = 0;  // 0: as many as the time lets
   const SteadyClock::time_point began_ = SteadyClock::now();
   std::vector<const FaultKind*> kinds_;
   std::atomic<std::int64_t> next_;
@@ -210,8 +226,11 @@ int Main(int argc, char** argv) {
   app.add_option("--minutes", options.minutes, "Start runs for so long")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--runs", options.runs, "This many runs, however long they take")
-      ->check(CLI::PositiveNumber);
+  auto* runs = app.add_option("--runs", options.runs, "This many runs, however long they take")
+                   ->check(CLI::PositiveNumber);
+  app.add_option("--each", options.each, "This many runs of each kind, however long they take")
+      ->check(CLI::PositiveNumber)
+      ->excludes(runs);
   app.add_option("--first", options.first, "Number of the first run: what it draws")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--seed", options.seed, "What all runs draw")->capture_default_str();
@@ -227,10 +246,12 @@ int Main(int argc, char** argv) {
   app.add_option("--partition", options.limits.partition_s, "Longest partition, in s")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
-  app.footer(TextOfKinds() +
-             "\nExit codes: 0 all digests equal, 1 one differs or a run failed, 2 bad usage,\n"
-             "4 machines cannot be made here, 130 interrupted.\n\n"
-             "Examples:\n  tools/soak\n  tools/soak --minutes 5 --only freeze");
+  app.footer(
+      TextOfKinds() +
+      "\nExit codes: 0 all digests equal, 1 one differs, a run failed, no run was made, or no\n"
+      "fault hit any run of a kind, 2 bad usage, 4 machines cannot be made here, 130\n"
+      "interrupted.\n\n"
+      "Examples:\n  tools/soak\n  tools/soak --minutes 5 --only freeze");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

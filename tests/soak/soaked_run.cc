@@ -1,10 +1,8 @@
 #include "tests/soak/soaked_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,11 +10,16 @@
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
+#include "tests/support/children.h"
 
 namespace fogline::test {
 namespace {
 
-constexpr std::chrono::seconds kPatience(300);
+// Ten times what a run takes here; `fogline run` gives up no earlier than after its stall timeout.
+constexpr std::chrono::seconds kPatience(60);
+// What Background::Wait() returns of a process that SIGKILL has ended.
+constexpr int kKilled = 128 + SIGKILL;
+// Over the interface to which the route leads. The default, ttl=0, is loopback.
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 // The roles that this program starts itself, with their machines. The runner starts the recorder on
 // the first machine.
@@ -28,22 +31,6 @@ std::vector<std::string> RunCommandLine(const Experiment& experiment) {
   std::vector<std::string> command{Program("fogline"), "run", experiment.scenario, "--json"};
   command.insert(command.end(), experiment.changes.begin(), experiment.changes.end());
   return command;
-}
-
-/// The child processes of `parent`.
-std::vector<pid_t> ChildrenOf(pid_t parent) {
-  std::vector<pid_t> children;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename();
-    if (!std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) continue;
-    std::ifstream stat(entry.path() / "stat");
-    std::string line;
-    std::getline(stat, line);
-    const std::size_t end = line.rfind(')');  // format: "pid (name) S parent ..."
-    if (end == std::string::npos || end + 4 >= line.size() || line[end + 2] == 'Z') continue;
-    if (std::atoi(line.c_str() + end + 4) == parent) children.push_back(std::stoi(name));
-  }
-  return children;
 }
 
 template <class Values>
@@ -81,10 +68,10 @@ Undisturbed RunUndisturbed(const Experiment& experiment) {
 }
 
 SoakedRun::SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options)
-    : place_(place), options_(std::move(options)) {
+    : options_(std::move(options)) {
+  if (place != Place::kLoopback) options_.insert(options_.end(), {"--lcm-url", kUrl});
   if (place == Place::kThreeMachines) {
     lab_.emplace(3);
-    options_.insert(options_.end(), {"--lcm-url", kUrl});
     for (const auto& [role, machine] : kByHand) {
       options_.insert(options_.end(), {"--external", std::string(NameOf(role))});
     }
@@ -146,27 +133,27 @@ std::vector<pid_t> SoakedRun::Processes() const {
   return all;
 }
 
-void SoakedRun::KillARole(std::mt19937_64& random) {
-  if (roles_.empty()) {
-    const auto own = ChildrenOf(run_->pid());
-    if (!own.empty()) kill(OneOf(own, random), SIGKILL);
-    return;
-  }
+bool SoakedRun::SignalAChild(int signal, std::mt19937_64& random) const {
+  const auto own = ChildrenOf(run_->pid());
+  return !own.empty() && kill(OneOf(own, random), signal) == 0;
+}
+
+bool SoakedRun::KillARole(std::mt19937_64& random) {
+  if (roles_.empty()) return SignalAChild(SIGKILL, random);
   const auto role = std::uniform_int_distribution<std::size_t>(0, roles_.size() - 1)(random);
   roles_[role]->Signal(SIGKILL);
-  roles_[role]->Wait();
+  const bool killed = roles_[role]->Wait() == kKilled;
   StartRole(role);
+  return killed;
 }
 
-void SoakedRun::StopARole(std::mt19937_64& random) {
-  const auto own = ChildrenOf(run_->pid());
-  if (!own.empty()) kill(OneOf(own, random), SIGSTOP);
-}
+bool SoakedRun::StopARole(std::mt19937_64& random) const { return SignalAChild(SIGSTOP, random); }
 
-void SoakedRun::KillTheRunnerAndResume() {
+bool SoakedRun::KillTheRunnerAndResume() {
   run_->Signal(SIGKILL);
-  run_->Wait();
+  const bool killed = run_->Wait() == kKilled;
   StartRunner({Program("fogline"), "run", "--json", "--resume", log_});
+  return killed;
 }
 
 Outcome SoakedRun::Finish() {

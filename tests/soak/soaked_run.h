@@ -33,11 +33,12 @@ struct Undisturbed {
 /// @throws std::runtime_error if the program fails
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
-/// A run in progress. It is on one machine that has a default route to elsewhere, as most machines
-/// have, or its roles are on three machines of one network.
+/// A run that is under way: on one machine that has a default route to elsewhere, as most have, or
+/// with its roles on three machines of one network. On one machine its messages go over loopback,
+/// as they do by default, or over the interface to elsewhere.
 class SoakedRun {
  public:
-  enum class Place { kOneMachine, kThreeMachines };
+  enum class Place { kLoopback, kInterface, kThreeMachines };
 
   SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
 
@@ -52,12 +53,15 @@ class SoakedRun {
 
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
-  /// Kills the process of a random role by SIGKILL, and starts it again if the runner does not.
-  void KillARole(std::mt19937_64& random);
-  /// Stops the process of a random role that the runner has started.
-  void StopARole(std::mt19937_64& random);
-  /// Kills the runner by SIGKILL, waits for it, and starts another one that resumes its log.
-  void KillTheRunnerAndResume();
+
+  // Strikes. @return whether there was such a process, and it had not ended by itself
+
+  /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
+  bool KillARole(std::mt19937_64& random);
+  /// Stops one that the runner has started.
+  bool StopARole(std::mt19937_64& random) const;
+  /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
+  bool KillTheRunnerAndResume();
 
   /// Waits for the end. @return the exit code and the output of the runner
   Outcome Finish();
@@ -65,12 +69,11 @@ class SoakedRun {
   const std::string& command() const { return command_; }
 
  private:
-  void StartRoles();
   void StartRole(std::size_t role);
   void StartRunner(const std::vector<std::string>& arguments);
   std::vector<std::string> On(std::size_t machine, const std::vector<std::string>& command) const;
+  bool SignalAChild(int signal, std::mt19937_64& random) const;
 
-  Place place_;
   ScratchFolder folder_;
   std::string log_ = folder_.File("run.lcm");
   std::optional<Machine> machine_;

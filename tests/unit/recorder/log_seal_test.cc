@@ -109,10 +109,10 @@ TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
   EXPECT_EQ(run.seal->says.build_id, std::vector<std::int64_t>{4711});
 }
 
-TEST_F(LogSealTest, ShowsEveryBitThatIsFlippedAnywhereInTheFile) {
+TEST_F(LogSealTest, ShowsABitThatIsFlippedInAnyByteOfTheFile) {
   SealIt();
   const std::string sealed = Content(log_);
-  // Every byte, each with another bit than its neighbours.
+  // One bit of each byte, another one than in the bytes beside it.
   for (std::size_t at = 0; at < sealed.size(); ++at) {
     std::string altered = sealed;
     altered[at] = static_cast<char>(altered[at] ^ (1 << (at % 8)));
@@ -123,7 +123,7 @@ TEST_F(LogSealTest, ShowsEveryBitThatIsFlippedAnywhereInTheFile) {
   }
 }
 
-TEST_F(LogSealTest, ShowsStepsThatWereChangedToWhoReadsTheRunAlone) {
+TEST_F(LogSealTest, ShowsStepsThatWereChangedToAReaderOfTheRunAlone) {
   SealIt();
   std::string altered = Content(log_);
   const std::size_t radar = altered.find("RADAR");

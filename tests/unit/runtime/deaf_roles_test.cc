@@ -88,7 +88,7 @@ TEST_F(DeafRolesTest, ARoleThatWasStartedAgainAndHeardNothingYetIsDeafToo) {
   EXPECT_TRUE(IsDeaf());
 }
 
-TEST_F(DeafRolesTest, AWorldThatStandsStillMakesNobodyDeaf) {
+TEST_F(DeafRolesTest, AWorldThatStandsStillMakesNoRoleDeaf) {
   for (int i = 0; i < 20; ++i) {
     world_step_ = 20;
     Pass(1);
@@ -129,7 +129,7 @@ TEST_F(DeafRolesTest, ItsSuccessorIsNot) {
   EXPECT_FALSE(IsDeaf());
 }
 
-TEST_F(DeafRolesTest, NobodyIsInLockstep) {
+TEST_F(DeafRolesTest, InLockstepNoRoleIsDeaf) {
   deaf_ = DeafRoles(Duration::zero());
   Pass(20);
   EXPECT_FALSE(IsDeaf());

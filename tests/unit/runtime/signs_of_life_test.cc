@@ -34,13 +34,13 @@ TEST_F(SignsOfLifeTest, AProcessThatIsSilentWhileTheOthersAreHeardHangs) {
   EXPECT_LT(Chance(Role::kFusion, 1000), kUnlikely);
 }
 
-TEST_F(SignsOfLifeTest, WhereNobodyIsHeardNobodyHangs) {
+TEST_F(SignsOfLifeTest, WhereNoProcessIsHeardNoneHangs) {
   EXPECT_EQ(Chance(Role::kFusion, 10'000), 1);
   Speak(Role::kRunner, 0, 1000);
   EXPECT_EQ(Chance(Role::kRecorder, 10'000), 1) << "it spoke last";
 }
 
-TEST_F(SignsOfLifeTest, WhoFellSilentWithAllOthersIsNotBlamed) {
+TEST_F(SignsOfLifeTest, AProcessThatFellSilentWithAllOthersMayLive) {
   signs_.Heard(Role::kFusion, 0, At(0));
   // GIVEN that the other roles spoke once more before a network lost everything
   Speak(Role::kFusion, 10, 200);
@@ -56,7 +56,7 @@ TEST_F(SignsOfLifeTest, OnANetworkThatLosesMuchItTakesLongerToBeSure) {
   EXPECT_LT(Chance(Role::kFusion, 12'000), 10 * kUnlikely);
 }
 
-TEST_F(SignsOfLifeTest, AFewOthersThatAreSilentTooHideNobody) {
+TEST_F(SignsOfLifeTest, AFewOthersThatAreSilentTooHideNoHang) {
   for (const Role role : {Role::kFusion, Role::kAcc}) signs_.Heard(role, 0, At(0));
   for (std::int64_t ms = 10; ms < 2010; ms += 200) {
     for (const Role role : {Role::kWorld, Role::kRadar, Role::kLidar})

@@ -1,0 +1,103 @@
+// The traffic of a run is changed on its way: the steps, computed again from the log, show it.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+#include "services/runtime/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+using Payload = std::vector<std::uint8_t>;
+
+/// Carries messages between a run and a role of it on another network, and alters one of them.
+class Bridge {
+ public:
+  Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
+    for (const char* channel : {"RUN", "TRUTH", "RESEND"}) Carry(run_, role_, channel);
+    for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
+  }
+
+  /// The range of this step becomes larger on its way.
+  void Alter(std::int64_t step) { altered_ = step; }
+
+  void RunUntilTheEndOf(const Background& program) {
+    while (IsAlive(program.pid())) {
+      run_.Wait(milliseconds(1));
+      run_.Drain();
+      role_.Drain();
+    }
+  }
+
+ private:
+  void Carry(Bus& from, Bus& to, const std::string& channel) {
+    from.Subscribe(channel, [this, &to, channel](Bytes bytes) {
+      Payload payload(bytes.begin(), bytes.end());
+      lidar_t lidar{};
+      if (Decode(payload, lidar) && lidar.header.step == altered_) {
+        lidar.range_m += 0.25;
+        Encode(lidar, payload);
+      }
+      to.Publish(channel, payload);
+    });
+  }
+
+  Bus run_;
+  Bus role_;
+  std::int64_t altered_ = -1;
+};
+
+class AlteredTrafficTest : public testing::Test {
+ protected:
+  /// A run whose LiDAR is behind the bridge.
+  Outcome RunAcross(Bridge& bridge, const Words& more) {
+    const Background lidar({Program("fogline-lidar"), "--lcm-url", lidar_url_});
+    Words command{Program("fogline"), "run",        "scenario/paper.json",
+                  "--json",           "--external", "lidar",
+                  "--lcm-url",        url_,         "--set",
+                  "/steps=50",        "--log",      folder_.File("run.lcm")};
+    command.insert(command.end(), more.begin(), more.end());
+    Background run(command);
+    bridge.RunUntilTheEndOf(run);
+    return {.code = run.Wait(), .out = run.Out(), .err = run.Err()};
+  }
+
+  const ScratchFolder folder_;
+  const std::string url_ = Bus(FreshMulticastUrl()).url();
+  const std::string lidar_url_ = Bus(FreshMulticastUrl()).url();
+  Bridge bridge_{url_, lidar_url_};
+};
+
+TEST_F(AlteredTrafficTest, IsFoundByComputingTheStepsAgain) {
+  bridge_.Alter(20);
+  const Outcome run = RunAcross(bridge_, {});
+  EXPECT_EQ(run.code, 1) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("fogline run: error: step 20: LIDAR of lidar: range_m is "));
+  const auto verified = nlohmann::json::parse(run.out)["verified"];
+  EXPECT_EQ(verified["same"], false);
+  EXPECT_EQ(verified["first"]["role"], "lidar");
+  EXPECT_EQ(verified["first"]["step"], 20);
+  EXPECT_EQ(verified["first"]["field"], "range_m");
+}
+
+TEST_F(AlteredTrafficTest, IsNotLookedForOnRequest) {
+  bridge_.Alter(20);
+  const Outcome run = RunAcross(bridge_, {"--no-verify"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(nlohmann::json::parse(run.out)["verified"].is_null());
+}
+
+TEST_F(AlteredTrafficTest, IsNotFoundWhereNothingWasAltered) {
+  const Outcome run = RunAcross(bridge_, {});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out)["verified"]["roles"].size(), 8U);
+}
+
+}  // namespace
+}  // namespace fogline::test
