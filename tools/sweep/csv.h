@@ -19,7 +19,8 @@ class SweepFile {
   /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. What is
   /// incomplete at its end is cut off. With `force` what is there is replaced.
   /// @throws InputError if the file is there and is not of the same sweep, if somebody is writing
-  ///     it, or if it cannot be written; std::runtime_error when the disk is full
+  ///     it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error when the
+  ///     disk is full
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 
@@ -27,7 +28,7 @@ class SweepFile {
   std::int64_t next_unit() const { return next_unit_; }
 
   /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the
-  /// file has been removed
+  /// file has been removed; Interrupted in a pipe that is not read
   void Append(const std::vector<SweepRow>& rows);
 
  private:

@@ -11,8 +11,8 @@ namespace fogline {
 /// Merges the complete files of all shards, in whatever order they are given. The merged file is
 /// there as a whole or not at all. Returns its rows.
 /// @throws InputError if a shard is missing, double, incomplete or of another sweep, or if `merged`
-///     exists and there is no `force`, or is no sweep; std::runtime_error when the disk is full;
-///     Interrupted
+///     exists and there is no `force`, or is no sweep; as RefuseForeignSideFiles();
+///     std::runtime_error when the disk is full; Interrupted
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force);
 
