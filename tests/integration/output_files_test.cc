@@ -205,5 +205,54 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   close(reader);
 }
 
+/// The verbs that write a document into a file, with arguments but for that file.
+class DocumentTest : public OutputFilesTest {
+ protected:
+  DocumentTest() {
+    const Outcome run =
+        RunCommand({Program("fogline"), "run", "scenario/recorded_lead.json", "--transport",
+                    "direct", "--set", "/steps=20", "--quiet", "--log", recorded_});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+  std::vector<Words> Calls() const {
+    return {{"sweep", "scenario/paper.json", "--set", "/steps=20", "--seeds", "1:2", "--out"},
+            {"report", log_, "--output"},
+            {"compare", recorded_, "scenario/data/acc_platoon_a.csv", "--out"},
+            {"calibrate", "scenario/paper.json", "--free", "/fog/bias_m=0.2:0.3", "--set",
+             "/steps=310", "--seeds", "1:1", "--evaluations", "1", "--out"}};
+  }
+  static Outcome Call(Words words, const Words& more) {
+    words.insert(words.begin(), Program("fogline"));
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words);
+  }
+
+  const std::string recorded_ = folder_.File("recorded.lcm");
+};
+
+TEST_F(DocumentTest, IsAllThatComesOutOfStdoutIfItIsToGoThere) {
+  for (const Words& words : Calls()) {
+    SCOPED_TRACE(words.front());
+    const std::string file = folder_.File(words.front());
+    ASSERT_EQ(Call(words, {file}).code, 0);
+    const Outcome outcome = Call(words, {"/dev/stdout"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, Content(file));
+  }
+}
+
+TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
+  std::vector<Words> calls = Calls();
+  calls.push_back({"sweep", "--merge", "part.csv", "--out"});
+  for (const Words& words : calls) {
+    SCOPED_TRACE(words.front());
+    const Outcome outcome = Call(words, {"/dev/stdout", "--json"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: stdout is taken by " +
+                               words.back() + " /dev/stdout; give " + words.back() + " a file\n");
+  }
+}
+
 }  // namespace
 }  // namespace fogline::test
