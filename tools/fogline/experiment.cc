@@ -189,7 +189,9 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
         "{}: the log on disk is not what the recorder wrote: it is longer", PathText(log)));
   }
   ExperimentResult result = std::move(logged.result);
-  if (options.verify) result.verification = VerifyRun(log, logged, run.other_builds);
+  if (options.verify.value_or(options.resume || !options.external.empty())) {
+    result.verification = VerifyRun(log, logged, run.other_builds);
+  }
   if (checked && !options.log.empty()) {
     const auto key = KeyOf(options.traffic);
     keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);

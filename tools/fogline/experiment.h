@@ -44,8 +44,10 @@ struct ExperimentOptions {
   std::vector<Role> external;            // roles that somebody else starts
   Duration wait = milliseconds(60'000);  // for these to be ready; 0: for ever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;        // of each role that is killed or hangs; 0: that ends the run
-  bool verify = false;      // compute the roles' steps again from the log, and compare
+  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  /// Whether to compute the roles' steps again from the log, and compare. Unsaid: with roles that
+  /// are started elsewhere, and for a run that goes on.
+  std::optional<bool> verify;
   bool same_build = false;  // end the run if a role is of another build than the runner's
   TrafficOptions traffic;
   bool announce = false;         // say on stderr where the run is and which processes take part
