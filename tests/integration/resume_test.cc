@@ -231,12 +231,16 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
                                             seen.url() + "' --pace 100\n"));
   }
   {
-    Background again(
-        Words{Program("fogline"), "run", "--resume", log_, "--restarts", "0", "--pace", "10"});
+    const std::string options =
+        " --transport udpm --pace 10 --stall-timeout 5.5 --restarts 0 --wait 7.25 --same-build "
+        "--no-verify";
+    Background again({"sh", "-c",
+                      "export " + path + "LCM_DEFAULT_URL='udpm://239.255.76.99:7699?ttl=0';" +
+                          "exec fogline run --resume " + log_ + options});
     ASSERT_TRUE(again.WaitForErr("processes: "));
     kill(PidOf(again.Err(), "fusion"), SIGKILL);
     ASSERT_EQ(again.Wait(), 3);
-    EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + " --pace 10\n"));
+    EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + options + "\n"));
   }
   // WHEN it is done as it is said; THEN it goes on
   const Outcome outcome = RunCommand({"sh", "-c", path + "fogline run --resume " + log_});
