@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -27,6 +28,9 @@ constexpr std::size_t kMostEntries = 10'000;
 
 // Longest wait for data from a pipe; long enough for a remote shell to answer.
 constexpr int kPipeLimit_ms = 5000;
+
+// How often it is asked whether to wait on for room in a pipe: a person does not notice the delay.
+constexpr int kRoomPause_ms = 100;
 
 std::string Message(int error) { return std::generic_category().message(error); }
 
@@ -50,6 +54,13 @@ bool HasMore(int fd) {
     ready = poll(&waited, 1, kPipeLimit_ms);
   } while (ready < 0 && errno == EINTR);
   return ready > 0;
+}
+
+// Waits a moment until a pipe or terminal takes something. @return false if it does not yet
+bool HasRoom(int fd) {
+  pollfd waited{.fd = fd, .events = POLLOUT, .revents = 0};
+  const int ready = poll(&waited, 1, kRoomPause_ms);
+  return ready > 0 || (ready < 0 && errno != EINTR);  // the write says what is wrong
 }
 
 // The names of the files of a folder, sorted; none if the folder cannot be listed or has more than
@@ -140,13 +151,17 @@ std::string WhyNoRegularFile(const std::filesystem::path& file) {
 }
 
 int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
+  // A signal interrupts one thread, which need not be this one. So it is waited for room here, and
+  // no more is written than room is certain for.
+  const std::size_t most = stop == nullptr ? bytes.size() : PIPE_BUF;
   while (!bytes.empty()) {
-    const ssize_t size = write(fd, bytes.data(), bytes.size());
+    if (stop != nullptr && !HasRoom(fd)) {
+      if (stop()) return EINTR;
+      continue;
+    }
+    const ssize_t size = write(fd, bytes.data(), std::min(bytes.size(), most));
     if (size < 0 && errno != EINTR) return errno;
     if (size > 0) bytes.remove_prefix(static_cast<std::size_t>(size));
-    // If a signal interrupts write() after a part of the bytes, write() returns the size of that
-    // part and not EINTR.
-    if (!bytes.empty() && stop != nullptr && stop()) return EINTR;
   }
   return 0;
 }

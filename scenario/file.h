@@ -46,7 +46,7 @@ class OpenFile {
 };
 
 /// Writes all bytes to an open file. @return 0, or errno
-/// @param stop whether a signal that interrupts the call ends it, with EINTR
+/// @param stop asked while a pipe or terminal has no room; if it says so, the call ends with EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 
 /// Throws if a call failed because the process or the machine has used up descriptors, memory or

@@ -86,6 +86,16 @@ TEST_F(AlteredTrafficTest, IsFoundByComputingTheStepsAgain) {
   EXPECT_EQ(verified["first"]["field"], "range_m");
 }
 
+TEST_F(AlteredTrafficTest, EndsATableAlsoWhereStderrIsAFullDisk) {
+  bridge_.Alter(20);
+  const Background lidar({Program("fogline-lidar"), "--lcm-url", lidar_url_});
+  Background table({"sh", "-c", "exec 2>/dev/full; exec \"$@\"", "sh", Program("fogline"), "table",
+                    "scenario/paper.json", "--thresholds", "0.5", "--set", "/steps=50",
+                    "--external", "lidar", "--lcm-url", url_});
+  bridge_.RunUntilTheEndOf(table);
+  EXPECT_EQ(table.Wait(), 1);
+}
+
 TEST_F(AlteredTrafficTest, IsNotLookedForOnRequest) {
   bridge_.Alter(20);
   const Outcome run = RunAcross(bridge_, {"--no-verify"});

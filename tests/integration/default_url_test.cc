@@ -86,6 +86,7 @@ TEST(WaitTest, OfARunSaysWhatIsMissingAndWhatStartsItAndHasALimit) {
   EXPECT_THAT(run.err, HasSubstr("waiting for the driver (0.5 s): start it with: fogline-driver "
                                  "--lcm-url '" +
                                  url + "'\n"));
+  EXPECT_EQ(run.err.find("\n\n"), std::string::npos) << run.err;
   EXPECT_THAT(run.err, HasSubstr("fogline run: error: waited 0.5 s for the acc, the driver in "
                                  "vain; start with: fogline-acc --lcm-url '" +
                                  url + "' and fogline-driver --lcm-url '" + url + "' "));

@@ -108,6 +108,12 @@ TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsAFullDisk) {
     EXPECT_EQ(RunCommand(Shell("exec 2>/dev/full", command)).code, 2)
         << command.front() << " " << command[1];
   }
+  const std::string cut = folder.File("cut.lcm");
+  Words run = ShortRun(cut);
+  run.insert(run.end(), {"--transport", "direct"});
+  ASSERT_EQ(RunCommand(run).code, 0);
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
+  EXPECT_EQ(RunCommand(Shell("exec 2>/dev/full", {fogline, "digest", cut})).code, 1);
 }
 
 TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsClosedOrItsReaderIsGone) {

@@ -286,6 +286,19 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
 }
 
+TEST_F(ExportTest, ReplacesNoScenarioThatDoesNotStandBesideTheFilesOfAnExport) {
+  ASSERT_EQ(Export({"--out", out_}).code, 0);
+  const std::string scenario = out_ + "/scenario.json";
+  const std::string before = Content(scenario);
+  std::filesystem::remove(out_ + "/RADAR.csv");
+  const Outcome outcome = Export({"--out", out_, "--force"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, scenario +
+                             ": error: --out: the file is no export and stays as it is, --force "
+                             "or not\n");
+  EXPECT_EQ(Content(scenario), before);
+}
+
 TEST_F(ExportTest, WritesWhatALogThatWasCutOffHasAndSaysSo) {
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
   const Outcome outcome = Export({"--out", out_});

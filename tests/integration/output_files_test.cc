@@ -1,13 +1,17 @@
 // The kinds of output for results: files, links, pipes and devices, treated as a person expects.
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock-matchers.h>
@@ -150,6 +154,99 @@ TEST_F(OutputFilesTest, AForcedCalibrationReplacesOnlyAScenario) {
   std::filesystem::copy(SourceDirectory() / "scenario/dense_fog.json", found);
   EXPECT_EQ(calibrate(found).code, 0);
   EXPECT_THAT(Content(found), HasSubstr("Sourav"));
+}
+
+TEST_F(OutputFilesTest, ASweepReplacesNoFileBesideItsOwnThatIsOfNoSweep) {
+  std::filesystem::copy(SourceDirectory() / "scenario/paper.json", folder_.File("paper.json"));
+  std::ofstream(folder_.File("notes.sums")) << "precious";
+  std::ofstream(folder_.File("list.sums")) << "0123abcd\n0123abcd  file\n";
+  const Words before = Files();
+  for (const Words& files :
+       {Words{"paper", ".json", "sweep description"}, Words{"notes", ".sums", "file of checksums"},
+        Words{"list", ".sums", "file of checksums"}}) {
+    const std::string file = folder_.File(files[0]);
+    const std::string content = Content(file + files[1]);
+    for (const char* force : {"--force", "--jobs=1"}) {
+      const Outcome sweep =
+          RunCommand({Program("fogline"), "sweep", folder_.File("paper.json"), "--set", "/steps=20",
+                      "--seeds", "1:4", "--out", file, force});
+      EXPECT_EQ(sweep.code, 2);
+      EXPECT_EQ(sweep.err, file + files[1] + ": error: --out: the file is no " + files[2] +
+                               " and stays as it is, --force or not\n");
+      EXPECT_EQ(Content(file + files[1]), content);
+    }
+  }
+  EXPECT_EQ(Files(), before);
+}
+
+TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
+  const std::string pipe = folder_.File("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  Background sweep({Program("fogline"), "sweep", "scenario/paper.json", "--set", "/steps=20",
+                    "--seeds", "1:100000", "--jobs", "2", "--out", pipe});
+  // Until there is much in it, and then no more comes.
+  constexpr std::chrono::milliseconds kPause(300);
+  int bytes = 0;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  for (int before = -1; bytes < 32'768 || bytes != before; std::this_thread::sleep_for(kPause)) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();
+    before = bytes;
+    ASSERT_EQ(ioctl(reader, FIONREAD, &bytes), 0);
+  }
+  sweep.Signal(SIGINT);
+  EXPECT_EQ(sweep.Wait(std::chrono::seconds(20)), 130);
+  EXPECT_EQ(sweep.Err(), "fogline sweep: interrupted in " + pipe + "\n");
+  close(reader);
+}
+
+/// The verbs that write a document into a file, with arguments but for that file.
+class DocumentTest : public OutputFilesTest {
+ protected:
+  DocumentTest() {
+    const Outcome run =
+        RunCommand({Program("fogline"), "run", "scenario/recorded_lead.json", "--transport",
+                    "direct", "--set", "/steps=20", "--quiet", "--log", recorded_});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+  std::vector<Words> Calls() const {
+    return {{"sweep", "scenario/paper.json", "--set", "/steps=20", "--seeds", "1:2", "--out"},
+            {"report", log_, "--output"},
+            {"compare", recorded_, "scenario/data/acc_platoon_a.csv", "--out"},
+            {"calibrate", "scenario/paper.json", "--free", "/fog/bias_m=0.2:0.3", "--set",
+             "/steps=310", "--seeds", "1:1", "--evaluations", "1", "--out"}};
+  }
+  static Outcome Call(Words words, const Words& more) {
+    words.insert(words.begin(), Program("fogline"));
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words);
+  }
+
+  const std::string recorded_ = folder_.File("recorded.lcm");
+};
+
+TEST_F(DocumentTest, IsAllThatComesOutOfStdoutIfItIsToGoThere) {
+  for (const Words& words : Calls()) {
+    SCOPED_TRACE(words.front());
+    const std::string file = folder_.File(words.front());
+    ASSERT_EQ(Call(words, {file}).code, 0);
+    const Outcome outcome = Call(words, {"/dev/stdout"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, Content(file));
+  }
+}
+
+TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
+  std::vector<Words> calls = Calls();
+  calls.push_back({"sweep", "--merge", "part.csv", "--out"});
+  for (const Words& words : calls) {
+    SCOPED_TRACE(words.front());
+    const Outcome outcome = Call(words, {"/dev/stdout", "--json"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: stdout is taken by " +
+                               words.back() + " /dev/stdout; give " + words.back() + " a file\n");
+  }
 }
 
 }  // namespace

@@ -206,6 +206,7 @@ TEST_F(ResumeTest, RefusesNoMessageOfARunThatGoesOnUndisturbed) {
   SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(200);
   const auto result = ExpectSameEnd(whole);
   for (const auto& [kind, count] : result["refused"].items()) EXPECT_EQ(count, 0) << kind;
+  EXPECT_EQ(result["verified"]["roles"].size(), 8U);
 }
 
 TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
@@ -240,12 +241,16 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
                                             seen.url() + "' --pace 100\n"));
   }
   {
-    Background again(
-        Words{Program("fogline"), "run", "--resume", log_, "--restarts", "0", "--pace", "10"});
+    const std::string options =
+        " --transport udpm --pace 10 --stall-timeout 5.5 --restarts 0 --wait 7.25 --same-build "
+        "--no-verify";
+    Background again({"sh", "-c",
+                      "export " + path + "LCM_DEFAULT_URL='udpm://239.255.76.99:7699?ttl=0';" +
+                          "exec fogline run --resume " + log_ + options});
     ASSERT_TRUE(again.WaitForErr("processes: "));
     kill(PidOf(again.Err(), "fusion"), SIGKILL);
     ASSERT_EQ(again.Wait(), 3);
-    EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + " --pace 10\n"));
+    EXPECT_THAT(again.Err(), HasSubstr("\n  the log so far: " + log_ + command + options + "\n"));
   }
   // WHEN a person enters the command that the run printed, THEN the run continues
   const Outcome outcome = RunCommand({"sh", "-c", path + "fogline run --resume " + log_});
@@ -266,6 +271,7 @@ TEST_F(ResumeTest, OfACompleteRunSaysItsResultAgainAndComputesNothing) {
   EXPECT_EQ(result["resumed_steps"], kSteps);
   EXPECT_EQ(result["transport"], nullptr);
   EXPECT_EQ(result["log"], log_);
+  EXPECT_EQ(ExpectSameEnd(whole, {"--verify"})["verified"]["roles"].size(), 8U);
 }
 
 TEST_F(ResumeTest, NamesWhatTheLogHasAndIsSaidAgain) {
@@ -375,6 +381,28 @@ TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
                           "driver is another program, or another version, than the one that was "
                           "recorded\n"));
   }
+}
+
+TEST_F(ResumeTest, ComputesAgainWhatItGoesOnFrom) {
+  Undisturbed();
+  // GIVEN a log that was changed before the steps that every role says again
+  const auto resume = [&](std::int64_t steps, const Words& more) {
+    Copy(File("whole.lcm"), log_,
+         [&](EventLogWriter&, const Event& event, std::vector<std::uint8_t>& data) {
+           const std::int64_t step = ReadInt64(data, kStepOffset);
+           if (step == 100 && event.channel == "DRIVER_COMMAND") data[kHeaderEnd + 7] ^= 1;
+           return step < steps && event.channel != "FOGLINE_SEAL";
+         });
+    return Resume(more);
+  };
+  const auto expect_found = [](const Outcome& outcome) {
+    EXPECT_THAT(outcome.err, HasSubstr("error: step 100: DRIVER_COMMAND of driver: "));
+    EXPECT_EQ(outcome.code, 1);
+  };
+  expect_found(resume(250, {"--transport", "memq"}));
+  EXPECT_EQ(resume(250, {"--transport", "memq", "--no-verify"}).code, 0);
+  EXPECT_EQ(resume(kSteps, {}).code, 0) << "it is complete, and nothing goes on";
+  expect_found(resume(kSteps, {"--verify"}));
 }
 
 }  // namespace

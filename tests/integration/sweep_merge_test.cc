@@ -107,5 +107,42 @@ TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
   EXPECT_EQ(Content(File(shards[0])), first);
 }
 
+TEST_F(SweepMergeTest, DoesNotBelieveARowWithoutAChecksum) {
+  const Words sweep = kShort + Words{"--seeds", "1:8"};
+  const Words shards = Shards(2, sweep);
+  // GIVEN checksums that end early, and another digit in the row behind them
+  std::filesystem::resize_file(File(shards[1] + ".sums"), 3 * 9);
+  std::string text = Content(File(shards[1]));
+  const std::string whole = text;
+  text[text.size() - 2] = text[text.size() - 2] == '1' ? '2' : '1';
+  std::ofstream(File(shards[1])) << text;
+  const Outcome merge = Merge(shards, "merged.csv");
+  EXPECT_EQ(merge.code, 2);
+  EXPECT_EQ(merge.err, File(shards[1]) +
+                           ":5: error: the row has no checksum; run its sweep again to have it "
+                           "computed again\n");
+  EXPECT_FALSE(std::filesystem::exists(File("merged.csv")));
+  // WHEN it is done as it is said
+  EXPECT_EQ(Made(shards[1], sweep + Words{"--shard", "2/2"}), whole);
+  EXPECT_EQ(Merge(shards, "merged.csv").code, 0);
+}
+
+TEST_F(SweepMergeTest, ReplacesNoFileBesideTheMergedOneThatIsOfNoSweep) {
+  const Words shards = Shards(2, kShort + Words{"--seeds", "1:4"});
+  std::ofstream(File("merged.json")) << R"({"version": 1})";
+  std::ofstream(File("other.sums")) << "d41d8cd98f00b204e9800998ecf8427e  thesis.tex\n";
+  for (const Words& files : {Words{"merged", ".json", "sweep description"},
+                             Words{"other", ".sums", "file of checksums"}}) {
+    const std::string side = File(files[0]) + files[1];
+    const std::string before = Content(side);
+    const Outcome merge = Merge(shards, files[0]);
+    EXPECT_EQ(merge.code, 2);
+    EXPECT_EQ(merge.err, side + ": error: --out: the file is no " + files[2] +
+                             " and stays as it is, --force or not\n");
+    EXPECT_EQ(Content(side), before);
+    EXPECT_FALSE(std::filesystem::exists(File(files[0])));
+  }
+}
+
 }  // namespace
 }  // namespace fogline::test

@@ -67,5 +67,20 @@ TEST_P(TransportTest, HasTheSameDigestAndMeasuresInOneProcessInMemoryAndOverTheN
 INSTANTIATE_TEST_SUITE_P(Shipped, TransportTest, testing::ValuesIn(ShippedScenarios()),
                          [](const auto& scenario) { return scenario.param; });
 
+TEST(VerifyTest, IsRefusedForARunThatHasNothingToCompare) {
+  for (const std::vector<std::string>& verb :
+       {std::vector<std::string>{"run", "scenario/paper.json", "--transport", "direct"},
+        {"table", "scenario/paper.json"}}) {
+    std::vector<std::string> command{Program("fogline")};
+    command.insert(command.end(), verb.begin(), verb.end());
+    command.emplace_back("--verify");
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_EQ(outcome.err, "fogline " + verb.front() +
+                               ": error: --verify: a run with --transport direct is one process, "
+                               "in which no message can be altered on its way\n");
+  }
+}
+
 }  // namespace
 }  // namespace fogline::test

@@ -1,10 +1,12 @@
 #include "tools/export/csv_export.h"
 
+#include <algorithm>
 #include <deque>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -62,13 +64,19 @@ void WriteChannel(const ChannelTable& table, WholeFile& file) {
   file.Write(text);
 }
 
-/// The first characters of a file.
-std::string HeadOf(const std::filesystem::path& file, std::size_t size) {
+bool BeginsWith(const std::filesystem::path& file, std::string_view text) {
   std::ifstream in(file, std::ios::binary);
-  std::string head(size, '\0');
+  std::string head(text.size(), '\0');
   in.read(head.data(), std::ssize(head));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return head;
+  return in.gcount() == std::ssize(text) && head == text;
+}
+
+/// Whether an export has written a channel there, into a file or a pipe. Its columns begin with
+/// those of its messages' header.
+bool IsChannel(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return !IsReplaceable(file) || (std::filesystem::is_regular_file(file, ignored) &&
+                                  BeginsWith(file, "header.run_id,header.step,"));
 }
 
 }  // namespace
@@ -83,11 +91,11 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 }
 
 bool IsCsvExport(const std::filesystem::path& file) {
-  // A channel's columns begin with those of its messages' header. A scenario begins with its
-  // version.
-  const std::string_view begin =
-      file.filename() == kScenarioFile ? "{\n  \"version\": " : "header.run_id,header.step,";
-  return HeadOf(file, begin.size()) == begin;
+  if (file.filename() != kScenarioFile) return IsChannel(file);
+  // Other scenarios begin like this, too.
+  if (!BeginsWith(file, "{\n  \"version\": ")) return false;
+  const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
+  return std::all_of(files.begin(), files.end() - 1, IsChannel);
 }
 
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
@@ -100,7 +108,8 @@ void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
   for (WholeFile& file : files) file.Close();
   if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
-  for (WholeFile& file : files) file.RemoveOld();
+  // The scenario first: where it stands, all channels do.
+  for (auto file = files.rbegin(); file != files.rend(); ++file) file->RemoveOld();
   for (WholeFile& file : files) file.Finish();
 }
 

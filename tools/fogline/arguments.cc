@@ -95,6 +95,22 @@ void PrintJson(const nlohmann::ordered_json& json, int indent) {
 
 void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text)); }
 
+void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json) {
+  std::error_code ignored;
+  // What nothing reads may have both.
+  if (!json || !IsStdout(document) || std::filesystem::equivalent(document, "/dev/null", ignored)) {
+    return;
+  }
+  throw InputError(fmt::format("error: --json: stdout is taken by {0} {1}; give {0} a file", option,
+                               PathText(document)));
+}
+
+void PrintBeside(const std::filesystem::path& document, std::string_view text) {
+  if (!IsStdout(document)) return fmt::print("{}", text);
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  Complain(text);
+}
+
 nlohmann::ordered_json BuildJson(BuildId build) {
   if (build == kUnknownBuild) return nullptr;
   return BuildText(build);

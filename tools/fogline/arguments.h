@@ -87,6 +87,14 @@ SeedRange ReadSeeds(const std::string& text);
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
+/// Refuses --json of a verb whose document goes to stdout itself: nothing could tell the two apart.
+/// @param option that says where the document goes, such as "--out"; "" for nowhere
+/// @throws InputError
+void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
+
+/// What a verb says of its result: on stdout, or on stderr if its document goes to stdout.
+void PrintBeside(const std::filesystem::path& document, std::string_view text);
+
 /// 16 hexadecimal digits, or null for an unknown build.
 nlohmann::ordered_json BuildJson(BuildId build);
 

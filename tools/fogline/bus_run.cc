@@ -184,6 +184,38 @@ class BusyElsewhere {
   TimePoint look_at_{};
 };
 
+/// What a person is warned of while a run goes on, each thing once.
+class Warnings {
+ public:
+  Warnings(Conductor& conductor, Progress& progress) : conductor_(conductor), progress_(progress) {}
+
+  void LookAtTheClock() {
+    const Duration away = conductor_.TakeAway();
+    if (away == Duration::zero()) return;
+    Say(fmt::format("the runner was held up for {:.1f} s {}",
+                    std::chrono::duration<double>(away).count(), conductor_.Where()));
+  }
+
+  void LookAtTheRoles() {
+    if (!compared_ && conductor_.phase() == Conductor::Phase::kRunning) {
+      compared_ = true;
+      for (const OtherBuild& other : OtherBuilds(conductor_)) Say(other.Text());
+    }
+    if (key_trouble_.empty()) {
+      key_trouble_ = conductor_.KeyTrouble();
+      if (!key_trouble_.empty()) Say(key_trouble_);
+    }
+  }
+
+ private:
+  void Say(const std::string& what) { progress_.Say("warning: " + what); }
+
+  Conductor& conductor_;
+  Progress& progress_;
+  bool compared_ = false;  // the builds
+  std::string key_trouble_;
+};
+
 std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProcess* relay,
                                      std::int64_t run_id, const Scenario& scenario,
                                      const ExperimentOptions& options,
@@ -210,8 +242,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
   if (options.announce) {
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
-  std::string trouble;
-  bool compared = false;  // the builds of the roles, once
+  Warnings warnings(conductor, progress);
   FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     conductor.OnEveryStatus([&](const status_t& status) {
@@ -223,10 +254,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
            conductor.phase() == Conductor::Phase::kRunning) {
       const TimePoint now = Clock::now();
       const TimePoint next = std::min(conductor.Poll(now), now + kLookEvery);
-      if (const Duration away = conductor.TakeAway(); away > Duration::zero() && options.announce) {
-        progress.Say(fmt::format("warning: the runner was held up for {:.1f} s {}",
-                                 std::chrono::duration<double>(away).count(), conductor.Where()));
-      }
+      if (options.announce) warnings.LookAtTheClock();
       if (bus.Wait(next - now)) bus.Drain();
       supervisor.Look(Clock::now());
       if (relay != nullptr) {
@@ -236,16 +264,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, Conductor& conductor, RelayProces
       external.Check(conductor, now);
       if (beacon.Due(now)) beacon.Send(now, conductor.Awaited(now));
       progress.Show(conductor.step());
-      if (options.announce && !compared && conductor.phase() == Conductor::Phase::kRunning) {
-        compared = true;
-        for (const OtherBuild& other : OtherBuilds(conductor)) {
-          progress.Say("warning: " + other.Text());
-        }
-      }
-      if (options.announce && trouble.empty()) {
-        trouble = conductor.KeyTrouble();
-        if (!trouble.empty()) progress.Say(fmt::format("warning: {}", trouble));
-      }
+      if (options.announce) warnings.LookAtTheRoles();
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {

@@ -170,6 +170,7 @@ Findings Search(const CalibrateArguments& arguments, const Objective& objective)
 }
 
 int RunCalibrate(const CalibrateArguments& arguments) {
+  RefuseJsonBeside(arguments.out, "--out", arguments.json);
   const Objective objective(MakeProblem(arguments));
   const std::string text =
       arguments.out.empty() ? "" : PrepareOut(arguments, objective.problem().scenario);
@@ -179,7 +180,7 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   if (arguments.json) {
     PrintJson(FindingsJson(objective.problem(), findings, arguments.scenario.string()));
   } else {
-    fmt::print("{}", FindingsText(objective.problem(), findings));
+    PrintBeside(arguments.out, FindingsText(objective.problem(), findings));
   }
   if (!arguments.out.empty()) {
     WriteOut(arguments.out, text, objective.problem(), found.values);

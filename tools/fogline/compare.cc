@@ -213,17 +213,16 @@ Comparison Compare(const LoggedRun& run, const Recording& recording, std::ostrea
   return comparison;
 }
 
-void PrintText(const CompareArguments& arguments, const Comparison& comparison) {
-  fmt::print("{} beside {}, {} steps\n", PathText(arguments.log), PathText(arguments.recording),
-             comparison.speed_mps.steps());
-  fmt::print("  {:<12}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "recorded", "RMSE", "spread",
-             "largest");
+std::string ToText(const CompareArguments& arguments, const Comparison& comparison) {
+  std::string text = fmt::format("{} beside {}, {} steps\n", PathText(arguments.log),
+                                 PathText(arguments.recording), comparison.speed_mps.steps());
+  text += fmt::format("  {:<12}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "recorded", "RMSE",
+                      "spread", "largest");
   const auto line = [](const char* name, const Differences& d) {
-    fmt::print("  {:<12}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", name, d.mean(),
-               d.recorded_mean(), d.rmse(), d.spread(), d.largest());
+    return fmt::format("  {:<12}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", name, d.mean(),
+                       d.recorded_mean(), d.rmse(), d.spread(), d.largest());
   };
-  line("speed [m/s]", comparison.speed_mps);
-  line("gap [m]", comparison.gap_m);
+  return text + line("speed [m/s]", comparison.speed_mps) + line("gap [m]", comparison.gap_m);
 }
 
 nlohmann::ordered_json ToJson(const CompareArguments& arguments, const Comparison& comparison) {
@@ -245,6 +244,7 @@ nlohmann::ordered_json ToJson(const CompareArguments& arguments, const Compariso
 }
 
 int RunCompare(const CompareArguments& arguments) {
+  RefuseJsonBeside(arguments.out, "--out", arguments.json);
   const LoggedRun run = ReadLoggedRun(arguments.log);
   if (run.result.samples.empty()) Refuse(arguments.log, "no steps");
   if (run.scenario.lead.profile != LeadProfile::kRecorded) {
@@ -274,7 +274,7 @@ int RunCompare(const CompareArguments& arguments) {
   if (arguments.json) {
     PrintJson(ToJson(arguments, comparison));
   } else {
-    PrintText(arguments, comparison);
+    PrintBeside(arguments.out, ToText(arguments, comparison));
   }
   return run.complete ? kDone : kCheckFailed;
 }

@@ -194,7 +194,9 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
         "{}: the log cannot be signed: what the recorder told of its end was lost", PathText(log)));
   }
   ExperimentResult result = std::move(logged.result);
-  if (options.verify) result.verification = VerifyRun(log, logged, run.other_builds);
+  if (options.verify.value_or(options.resume || !options.external.empty())) {
+    result.verification = VerifyRun(log, logged, run.other_builds);
+  }
   if (checked && !options.log.empty()) {
     keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
   }

@@ -45,9 +45,11 @@ struct ExperimentOptions {
   std::vector<Role> external;            // roles that are started elsewhere
   Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;        // of each role that is killed or hangs; 0: its first death ends the run
-  bool verify = false;      // compute the roles' steps again from the log and compare
-  bool same_build = false;  // end the run if a role's build differs from the runner's
+  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  /// Whether to compute the roles' steps again from the log, and compare. Unsaid: with roles that
+  /// are started elsewhere, and for a run that goes on.
+  std::optional<bool> verify;
+  bool same_build = false;  // end the run if a role is of another build than the runner's
   TrafficOptions traffic;
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result

@@ -19,8 +19,8 @@ std::string ExternalRoles::Command(Role role) const {
 std::string ExternalRoles::Text(const std::vector<Role>& roles) const {
   std::string text;
   for (const Role role : roles) {
-    text += fmt::format("waiting for the {} ({}): start it with: {}\n", NameOf(role), Limit(),
-                        Command(role));
+    text += fmt::format("{}waiting for the {} ({}): start it with: {}", text.empty() ? "" : "\n",
+                        NameOf(role), Limit(), Command(role));
   }
   return text;
 }

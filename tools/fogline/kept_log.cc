@@ -1,6 +1,6 @@
 #include "tools/fogline/kept_log.h"
 
-#include <algorithm>
+#include <chrono>
 #include <string_view>
 
 #include <fmt/core.h>
@@ -36,6 +36,10 @@ std::string Word(std::string_view text) {
   return quoted + "'";
 }
 
+std::string InSeconds(Duration time) {
+  return fmt::format("{:g}", std::chrono::duration<double>(time).count());
+}
+
 }  // namespace
 
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
@@ -48,14 +52,24 @@ std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
 
 std::string CommandToGoOn(const ExperimentOptions& options) {
   if (options.log.empty() || options.realtime) return "";
+  const ExperimentOptions unsaid;
   std::string command = "fogline run --resume " + Word(options.log.string());
   if (IsLcmUrl(options.transport)) {
     command += " --lcm-url " + Word(options.transport);
-  } else if (options.transport != ExperimentOptions().transport) {
+  } else if (options.transport != unsaid.transport || UrlOfEnvironment()) {
     command += " --transport " + options.transport;
   }
   for (const Role role : options.external) command += fmt::format(" --external {}", NameOf(role));
   if (options.pace != 0) command += fmt::format(" --pace {:g}", options.pace);
+  if (options.stall_limit != unsaid.stall_limit) {
+    command += " --stall-timeout " + InSeconds(options.stall_limit);
+  }
+  if (options.restarts != unsaid.restarts) {
+    command += fmt::format(" --restarts {}", options.restarts);
+  }
+  if (options.wait != unsaid.wait) command += " --wait " + InSeconds(options.wait);
+  if (options.same_build) command += " --same-build";
+  if (options.verify) command += *options.verify ? " --verify" : " --no-verify";
   for (const std::string& word : ToArguments(options.traffic)) command += " " + Word(word);
   return command;
 }

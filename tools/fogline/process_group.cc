@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "scenario/file.h"
 #include "tools/fogline/child.h"
 
 namespace fogline {

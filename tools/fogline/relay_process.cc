@@ -1,6 +1,5 @@
 #include "tools/fogline/relay_process.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,7 +12,6 @@
 
 #include <fmt/core.h>
 
-#include "scenario/file.h"
 #include "services/runtime/clock.h"
 #include "tools/fogline/child.h"
 

@@ -226,6 +226,7 @@ int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
   }
+  RefuseJsonBeside(arguments.output, "--output", arguments.json);
   RefuseToReplaceOther(arguments.output);
   RequireWritable(arguments.output, "--output");
   for (const FigureOption& option : kFigureOptions) {

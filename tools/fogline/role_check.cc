@@ -1,11 +1,13 @@
 #include "tools/fogline/role_check.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "scenario/loader.h"
+#include "tools/fogline/child.h"
 
 namespace fogline {
 
@@ -39,6 +41,22 @@ std::string Verification::Trouble() const {
       "step {}: {} of {}: {} is {} in the log, and {} when it is computed again: was it altered on "
       "its way?",
       first.step, first.channel, NameOf(failure->role), first.field, first.a, first.b);
+}
+
+std::vector<OtherBuild> OtherBuildsIn(const RunLog& run) {
+  std::vector<OtherBuild> others;
+  if (!run.seal || !run.seal->whole) return others;
+  const log_seal_t& says = run.seal->says;
+  for (const RoleInfo& info : kRoles) {
+    const auto place = std::ranges::find(says.role, info.name) - says.role.begin();
+    if (place >= std::ssize(says.build_id)) continue;
+    const BuildId build = says.build_id[static_cast<std::size_t>(place)];
+    const BuildId ours = BuildIdOf(ProgramOf(info.role));
+    // In a run in one process each role is of the build of that process.
+    if (build != kUnknownBuild && (build == ours || build == OwnBuildId())) continue;
+    others.push_back({.role = info.role, .pid = 0, .host = "", .build = build, .ours = ours});
+  }
+  return others;
 }
 
 Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,

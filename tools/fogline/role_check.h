@@ -48,6 +48,10 @@ struct Verification {
   std::string Trouble() const;
 };
 
+/// The roles of which the seal of a log says that they were of another build than the programs
+/// here, or does not say of which; none for a log without a seal.
+std::vector<OtherBuild> OtherBuildsIn(const RunLog& run);
+
 /// @param others roles of another build; their algorithms are not in this program
 Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
                        const std::vector<OtherBuild>& others);

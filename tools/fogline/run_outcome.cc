@@ -11,10 +11,11 @@ namespace fogline {
 namespace {
 
 nlohmann::ordered_json VerificationJson(const Verification& verification) {
-  nlohmann::ordered_json json{{"same", verification.Holds()},
+  nlohmann::ordered_json json{{"same", nullptr},
                               {"roles", nlohmann::ordered_json::array()},
                               {"left_out", nlohmann::ordered_json::array()},
                               {"trouble", nullptr}};
+  if (!verification.roles.empty()) json["same"] = verification.Holds();
   for (const Role role : verification.roles) json["roles"].push_back(NameOf(role));
   for (const Verification::LeftOut& one : verification.left_out) {
     json["left_out"].push_back({{"role", NameOf(one.role)}, {"why", one.why}});

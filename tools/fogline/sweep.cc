@@ -115,6 +115,7 @@ int Merge(const SweepArguments& arguments) {
 }
 
 int RunSweepVerb(const SweepArguments& arguments) {
+  RefuseJsonBeside(arguments.out, "--out", arguments.json);
   if (!arguments.merge.empty()) return Merge(arguments);
   const SweepPlan plan = MakePlan(arguments);
   const Shard shard = ParseShard(arguments.shard);

@@ -45,9 +45,9 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
       "End the run if a role is of another build than this one, or does not say of which");
   CLI::Option* verify = verb.add_flag(
       "--verify", verify_,
-      "Compute every role's steps again from the log and compare (default with --external); roles "
-      "of another build and runs in real time are left out");
-  verb.add_flag("--no-verify", no_verify_, "Do not, with --external either")->excludes(verify);
+      "Compute every role's steps again from the log and compare (default with --external, and "
+      "for a run that goes on); roles of another build and runs in real time are left out");
+  verb.add_flag("--no-verify", no_verify_, "Do not in any case")->excludes(verify);
   AddTrafficOptions(verb, traffic_);
 }
 
@@ -75,13 +75,18 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }
+  if (options.transport == "direct" && verify_) {
+    throw InputError(
+        "error: --verify: a run with --transport direct is one process, in which no message can be "
+        "altered on its way");
+  }
   options.external.clear();
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(external_, info.name) != external_.end()) {
       options.external.push_back(info.role);
     }
   }
-  options.verify = verify_ || (!external_.empty() && !no_verify_);
+  options.verify = verify_ ? std::optional(true) : no_verify_ ? std::optional(false) : std::nullopt;
   options.same_build = same_build_;
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {

@@ -41,7 +41,7 @@ int Run(const CLI::App& app, const Action& action) {
     Complain(fmt::format("{}: {}", name, interrupted.what()));
     return kInterrupted;
   } catch (const CheckFailed& error) {
-    fmt::print(stderr, "{}: error: {}\n", name, error.what());
+    Complain(fmt::format("{}: error: {}", name, error.what()));
     return kCheckFailed;
   } catch (const std::exception& error) {
     Complain(fmt::format("{}: error: {}", name, error.what()));

@@ -17,8 +17,10 @@
 #include "scenario/file.h"
 #include "scenario/loader.h"
 #include "scenario/wording.h"
+#include "services/runtime/interrupt.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"
+#include "tools/sweep/side_files.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -81,6 +83,7 @@ SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, c
     : path_(file), plan_(plan), next_unit_(plan.ShardBegin(shard)) {
   if (IsReplaceable(path_)) {
     RequireFolderOf(path_, "--out");
+    RefuseForeignSideFiles(path_);
     Open();
     IsToBeReplaced(shard, force) ? Start(shard) : Resume(shard);
   } else {
@@ -222,8 +225,10 @@ void SweepFile::RequireInPlace() const {
 }
 
 void SweepFile::Write(std::string_view text, const Handle& file) const {
-  const int error = WriteAll(file.fd, text);
+  // A file takes what comes; a pipe may never be read.
+  const int error = WriteAll(file.fd, text, sums_.fd < 0 ? WasInterrupted : nullptr);
   if (error == 0) return;
+  if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));
   throw std::runtime_error(
       fmt::format("{}: cannot write: {}; call it again to go on where the file ends",
                   PathText(path_), std::strerror(error)));

@@ -17,19 +17,19 @@ namespace fogline {
 
 class SweepFile {
  public:
-  /// Opens the file of a shard: a new one, or an unfinished one of the same sweep. An incomplete
-  /// end is cut off. With `force` an existing file is replaced.
-  /// @throws InputError if the file exists and is not of the same sweep, if another process is
-  /// writing
-  ///     it, or if it cannot be written; std::runtime_error when the disk is full
+  /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. What is
+  /// incomplete at its end is cut off. With `force` what is there is replaced.
+  /// @throws InputError if the file is there and is not of the same sweep, if somebody is writing
+  ///     it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error when the
+  ///     disk is full
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 
   /// First unit that is not in the file yet; the shard's end if it is complete.
   std::int64_t next_unit() const { return next_unit_; }
 
-  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or
-  /// when the file has been removed or replaced
+  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the
+  /// file has been removed; Interrupted in a pipe that is not read
   void Append(const std::vector<SweepRow>& rows);
 
  private:

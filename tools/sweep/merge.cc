@@ -15,6 +15,7 @@
 #include "services/runtime/interrupt.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"
+#include "tools/sweep/side_files.h"
 #include "tools/sweep/whole_file.h"
 
 namespace fogline {
@@ -58,6 +59,19 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   return ordered;
 }
 
+/// @throws InputError for a row that has another checksum than `line`, or none beside rows that do
+void RequireSum(RowChecker& checker, const std::string& line, const std::filesystem::path& shard,
+                std::int64_t row) {
+  if (!checker.has_sums()) return;
+  const RowChecker::Verdict verdict = checker.Check(line);
+  if (verdict == RowChecker::Verdict::kSame) return;
+  throw InputError(
+      fmt::format("{}:{}: error: {}", PathText(shard), row + 2,
+                  verdict == RowChecker::Verdict::kOther
+                      ? "not the line that its sweep has written there"
+                      : "the row has no checksum; run its sweep again to have it computed again"));
+}
+
 /// Copies the rows of a shard, with the header if it is the first one.
 void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
@@ -66,10 +80,7 @@ void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile
   std::int64_t rows = -1;  // -1 is the header
   for (; std::getline(in, line) && !in.eof(); ++rows) {
     if (WasInterrupted()) throw Interrupted("interrupted; nothing is merged");
-    if (rows >= 0 && checker.has_sums() && checker.Check(line) == RowChecker::Verdict::kOther) {
-      throw InputError(fmt::format("{}:{}: error: not the line that its sweep has written there",
-                                   PathText(shard.path), rows + 2));
-    }
+    if (rows >= 0) RequireSum(checker, line, shard.path, rows);
     if (rows >= 0 && sums != nullptr) sums->Write(SumLine(line));
     line += '\n';
     if (rows >= 0) {
@@ -98,6 +109,7 @@ void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force) {
   RefuseToReplace(merged, "--out", force, "sweep", IsSweep);
+  if (IsReplaceable(merged)) RefuseForeignSideFiles(merged);
   for (const std::filesystem::path& shard : shards) {
     std::error_code ignored;
     if (std::filesystem::equivalent(shard, merged, ignored)) {

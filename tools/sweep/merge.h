@@ -10,9 +10,8 @@ namespace fogline {
 /// Merges the complete files of all shards, given in any order. The merged file is written whole or
 /// not at all. @return the number of its rows
 /// @throws InputError if a shard is missing, double, incomplete or of another sweep, or if `merged`
-///     exists and `force` is false or `merged` is no sweep; std::runtime_error when the disk is
-///     full;
-///     Interrupted
+///     exists and there is no `force`, or is no sweep; as RefuseForeignSideFiles();
+///     std::runtime_error when the disk is full; Interrupted
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force);
 

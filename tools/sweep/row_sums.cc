@@ -5,6 +5,11 @@
 #include <fmt/core.h>
 
 namespace fogline {
+namespace {
+
+constexpr std::size_t kSumDigits = kSumLineBytes - 1;
+
+}  // namespace
 
 std::filesystem::path SumsFile(const std::filesystem::path& csv) {
   return std::filesystem::path(csv) += ".sums";
@@ -14,6 +19,18 @@ std::string SumLine(std::string_view row) {
   boost::crc_32_type sum;
   sum.process_bytes(row.data(), row.size());
   return fmt::format("{:08x}\n", sum.checksum());
+}
+
+bool IsSums(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  for (std::string line; std::getline(in, line);) {
+    if (in.eof()) line.erase(line.find_last_not_of('\0') + 1);
+    const bool has_length = line.size() == kSumDigits || (in.eof() && line.size() < kSumDigits);
+    if (!has_length || line.find_first_not_of("0123456789abcdef") != std::string::npos) {
+      return false;
+    }
+  }
+  return true;
 }
 
 RowChecker::RowChecker(const std::filesystem::path& csv) {

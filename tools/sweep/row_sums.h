@@ -20,6 +20,10 @@ std::string SumLine(std::string_view row);
 /// Bytes of such a line.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
+/// Whether a file has the lines of rows and nothing else. What a kill or a power cut may leave of
+/// the last line counts as one.
+bool IsSums(const std::filesystem::path& file);
+
 /// Checks the rows of a file in their order.
 class RowChecker {
  public:

@@ -1,0 +1,16 @@
+#include "tools/sweep/side_files.h"
+
+#include "tools/sweep/description.h"
+#include "tools/sweep/row_sums.h"
+#include "tools/sweep/whole_file.h"
+
+namespace fogline {
+
+void RefuseForeignSideFiles(const std::filesystem::path& csv) {
+  // With --force, because a file that a sweep has written is replaced without it, too.
+  RefuseToReplace(DescriptionFile(csv), "--out", true, "sweep description",
+                  [&csv](const std::filesystem::path&) { return IsSweep(csv); });
+  RefuseToReplace(SumsFile(csv), "--out", true, "file of checksums", IsSums);
+}
+
+}  // namespace fogline

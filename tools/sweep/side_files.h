@@ -1,0 +1,14 @@
+// The files that a sweep keeps beside its CSV file.
+#pragma once
+
+#include <filesystem>
+
+namespace fogline {
+
+/// Refuses a sweep that would replace a file which no sweep has written: "--out scenario/paper"
+/// must not cost "scenario/paper.json".
+/// @throws InputError "FILE.json: error: --out: the file is no sweep description and stays as it
+///     is, --force or not", or the same of FILE.sums
+void RefuseForeignSideFiles(const std::filesystem::path& csv);
+
+}  // namespace fogline
