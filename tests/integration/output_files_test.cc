@@ -247,6 +247,8 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
     EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: stdout is taken by " +
                                words.back() + " /dev/stdout; give " + words.back() + " a file\n");
   }
+  // What nothing reads may have both.
+  EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);
 }
 
 }  // namespace

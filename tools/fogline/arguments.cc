@@ -98,7 +98,8 @@ void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text));
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json) {
   std::error_code ignored;
   // What nothing reads may have both.
-  if (!json || !IsStdout(document) || std::filesystem::equivalent(document, "/dev/null", ignored)) {
+  if (!json || !IsStdout(document) ||
+      std::filesystem::canonical(document, ignored) == "/dev/null") {
     return;
   }
   throw InputError(fmt::format("error: --json: stdout is taken by {0} {1}; give {0} a file", option,
