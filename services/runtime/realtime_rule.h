@@ -6,9 +6,10 @@
 // nor judged.
 //
 // What is of a step that cannot be under way is refused: unless nothing new has been heard for some
-// periods, by what was heard of the steps themselves; else by what the runner says of the progress.
-// So a role that is wrong about how far the run is (it was started in the middle of it, and heard
-// an old message first) is right again soon, and no message alone can make it wrong.
+// periods, by what was heard of the steps themselves; and always by what the runner says of the
+// progress. So a role that is wrong about how far the run is (it was started in the middle of it,
+// and heard an old message first) is right again soon. A false message can make it wrong by the
+// slack of two steps, and many of them by no more than what the runner's word lets pass, a second.
 //
 // It also judges every input by age (input_health.h), says in STATUS how each is, who is to blame,
 // and how well it keeps its time, and says it at once when that changes.
