@@ -18,6 +18,7 @@
 #include "services/runtime/channel_filter.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/faults.h"
+#include "services/runtime/lcm_sockets.h"
 #include "services/runtime/seal.h"
 
 struct _lcm_t;
@@ -130,8 +131,10 @@ class Bus {
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
-  bool routed_ = false;       // the group is heard and reached as the route leads, which may change
-  TimePoint joined_{};        // when it was seen to last that the group is joined there
+  // Where the group is heard and reached as the route leads, which may change; and when it was seen
+  // to last that it is joined there.
+  std::optional<GroupMembership> membership_;
+  TimePoint joined_{};
   FailedSends failed_sends_;
   // Of memq, which nobody but this object publishes on: messages that wait to be handled.
   bool in_memory_;
