@@ -15,7 +15,8 @@ namespace fogline {
 class RunSeeker {
  public:
   /// @throws InputError as Bus()
-  RunSeeker(Role role, const std::string& meeting_url) : role_(role), listener_(meeting_url) {}
+  RunSeeker(Role role, const std::string& meeting_url)
+      : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
   /// To be called while the role has no run. @return the run to go to now, if there is one: the
   ///     newest that waits for this role and was not tried in vain
@@ -26,10 +27,11 @@ class RunSeeker {
   /// True once the run is over, or nothing was heard of it for kPatience. The role then goes back
   /// to the meeting address.
   bool InVain(TimePoint now);
-  /// The run that was gone to last is not tried again.
+  /// The run that was gone to last is not tried again, unless it has had the role meanwhile: then
+  /// its place was taken, and may be free again.
   void GiveUp();
-  /// This run is not to be tried (again).
-  void Ignore(std::int64_t run_id);
+  /// This run, which the role has a part in, is not to be tried.
+  void Ignore(std::int64_t run_id) { own_ = run_id; }
   /// The role is at the network of this run, and has no part in it any more.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
@@ -46,8 +48,10 @@ class RunSeeker {
   };
   Role role_;
   BeaconListener listener_;
-  OwnPauses pauses_{Clock::now()};
+  TimePoint began_;
+  OwnPauses pauses_;
   std::optional<Try> tried_;
+  std::optional<std::int64_t> own_;
   std::deque<std::int64_t> in_vain_;
 };
 
