@@ -152,7 +152,7 @@ class Node {
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner to say something to this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// Fails if nothing could be sent for too long; has what could not be sent told soon.
+  /// Has what could not be sent told soon; in lockstep fails if that was everything for too long.
   void CheckSends(TimePoint now);
   /// Takes what the runner says of the run as a whole, if it says it for the first time.
   bool TakeNews(const run_t& run, TimePoint now);
