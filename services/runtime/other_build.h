@@ -24,7 +24,8 @@ struct OtherBuild {
   BuildId build;  // what it says
   BuildId ours;   // that of the role's program beside the runner
 
-  /// "driver (pid 4711 on lab2) is of build 1f..., the runner's is 2e...", or what is not known.
+  /// "driver (pid 4711 on lab2) is of build 1f..., that of the runner is 2e...", or what is not
+  /// known.
   std::string Text() const;
 };
 
