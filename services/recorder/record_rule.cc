@@ -1,6 +1,7 @@
 #include "services/recorder/record_rule.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fogline {
 namespace {
@@ -34,6 +35,25 @@ void RecordRule::ListenToStatus() {
 void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use) {
   for (; !heard_.empty() && heard_.front().step <= step; heard_.pop_front()) {
     use(heard_.front().bytes);
+  }
+}
+
+StepRing::Verdict RecordRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
+  const StepRing::Verdict verdict = RealtimeRule::Classify(input, step, bytes);
+  const StepRing& ring = inputs()[input].ring;
+  // A message of the step that stands in the ring is in the log; of an older one it is not known.
+  if (verdict != StepRing::Verdict::kLate || ring.Has(step) || step <= ring.newest() - kRingSteps) {
+    return verdict;
+  }
+  Refused& refused = refused_[input];
+  if (std::exchange(refused.steps[RingSlot(step)], step + 1) != step + 1) ++refused.count;
+  return verdict;
+}
+
+void RecordRule::WriteStatus(TimePoint now) {
+  RealtimeRule::WriteStatus(now);
+  for (std::size_t i = 0; i < status().input_late.size(); ++i) {
+    status().input_late[i] = refused_[i].count;
   }
 }
 

@@ -18,8 +18,11 @@ class RecordRule final : public RealtimeRule {
  public:
   RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
 
+  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   void OnProgress() override;
+  /// Late is only what the log does not have: `unlogged_messages` is counted with that.
+  void WriteStatus(TimePoint now) override;
 
   /// Passes the STATUS messages that came in this step or before to `use`, each once.
   void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
@@ -37,6 +40,12 @@ class RecordRule final : public RealtimeRule {
     std::vector<std::uint8_t> bytes;
   };
 
+  /// Messages of an input that came when their step was written, each counted once.
+  struct Refused {
+    std::int64_t count = 0;
+    std::array<std::int64_t, kRingSteps> steps{};  // plus one: those that were counted last
+  };
+
   TimePoint Fire(TimePoint now) override;
   /// Steps up to this one are under way. From now on a message of them that has not come counts as
   /// late.
@@ -50,6 +59,7 @@ class RecordRule final : public RealtimeRule {
 
   std::int64_t run_id_;
   std::array<Open, kRingSteps> open_{};
+  std::array<Refused, kNumChannels> refused_{};  // by input
   std::deque<Heard> heard_;
   TimePoint ask_at_{};
   bool listening_ = false;

@@ -9,20 +9,13 @@
 
 #include "scenario/loader.h"
 #include "scenario/wording.h"
+#include "services/recorder/step_order.h"
 #include "services/runtime/digest.h"
 #include "services/runtime/scenario_parts.h"
 #include "services/runtime/seal.h"
 
 namespace fogline {
-namespace {
-
-constexpr std::size_t ChannelsPerStep() {
-  std::size_t count = 0;
-  for (const ChannelInfo& channel : kChannels) count += channel.pace == Pace::kStep ? 1 : 0;
-  return count;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 /// Combines the events of a log into steps.
 class RunLogReader::Assembler {
@@ -65,7 +58,7 @@ class RunLogReader::Assembler {
   bool Ready() const {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
-    if (step == run_.steps && next.count == ChannelsPerStep()) return true;
+    if (step == run_.steps && next.count == kStepChannels) return true;
     return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
   }
 

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <lcm/lcm.h>
-#include <poll.h>
 #include <sodium.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -23,6 +22,7 @@
 #include "services/runtime/diagnostics.h"
 #include "services/runtime/lcm_sockets.h"
 #include "services/runtime/multicast_route.h"
+#include "services/runtime/poll.h"
 #include "services/runtime/tcpq_client.h"
 
 namespace fogline {
@@ -91,13 +91,14 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
     throw InputError(fmt::format("error: {}", why));
   }
+  bool routed = false;
   {
     // From its first datagram on, a socket takes only LCM's self-test. This does not hold for
     // mpudpm, which announces its ports on a channel of its own.
     std::optional<LcmSockets> sockets;
     if (url_.starts_with("udpm://")) {
       const LcmSockets::Reach reach = ReachOf(url_);
-      routed_ = reach == LcmSockets::Reach::kRoute;
+      routed = reach == LcmSockets::Reach::kRoute;
       sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), reach);
     }
     lcm_ = lcm_create(url_.c_str());
@@ -108,6 +109,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     }
   }
   for (const int socket : sockets_) WidenBuffer(socket);
+  if (routed) membership_.emplace(sockets_, url_);
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
@@ -224,15 +226,14 @@ void Bus::OnFailedSend(int error) {
 
 void Bus::OnSentAgain() {
   failed_sends_.since.reset();
-  if (!routed_) return;
-  for (const int socket : sockets_) JoinAgain(socket, url_);
+  if (membership_) membership_->Renew();
 }
 
 void Bus::JoinAgainIfSilent() {
   const TimePoint now = Clock::now();
   if (now - std::max(now_, joined_) < kJoinAgainEvery) return;
   joined_ = now;
-  for (const int socket : sockets_) JoinAgain(socket, url_);
+  membership_->Renew();
 }
 
 bool Bus::Wait(Duration timeout) {
@@ -241,7 +242,7 @@ bool Bus::Wait(Duration timeout) {
     timeout = std::min(timeout, faults_->NextDue() - Clock::now());
   }
   if (waiting_ == 0 && !Readable(timeout)) {
-    if (routed_) JoinAgainIfSilent();
+    if (membership_) JoinAgainIfSilent();
     return faults_ && HandleDue();
   }
   now_ = Clock::now();
@@ -268,11 +269,7 @@ bool Bus::HandleDue() {
 
 bool Bus::Readable(Duration timeout) {
   if (tcpq_) return tcpq_->Readable(timeout);
-  pollfd waited{.fd = fd_, .events = POLLIN, .revents = 0};
-  const auto left = std::max(Duration::zero(), timeout);
-  const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
-                       .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
-  const int ready = ppoll(&waited, 1, &limit, nullptr);
+  const int ready = PollFor(fd_, POLLIN, timeout);
   if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
   return ready > 0;
 }

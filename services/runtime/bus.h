@@ -18,6 +18,7 @@
 #include "services/runtime/channel_filter.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/faults.h"
+#include "services/runtime/lcm_sockets.h"
 #include "services/runtime/seal.h"
 
 struct _lcm_t;
@@ -138,8 +139,10 @@ class Bus {
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
-  bool routed_ = false;       // the route decides on the group's interface, and may change
-  TimePoint joined_{};        // when it was last made sure that the group is joined there
+  // Where the group is heard and reached as the route leads, which may change; and when it was seen
+  // to last that it is joined there.
+  std::optional<GroupMembership> membership_;
+  TimePoint joined_{};
   FailedSends failed_sends_;
   // With memq only this object publishes: waiting_ counts its messages that wait to be handled.
   bool in_memory_;

@@ -129,9 +129,11 @@ class Conductor {
     std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    std::optional<TimePoint> undead;  // since then an instance that counts as dead speaks
-    std::string hindrance;            // why it cannot be started again for now
-    int replaced = 0;                 // how often an external role was replaced, and when last
+    std::optional<TimePoint> undead;  // one that is dead speaks, since then; and when last
+    std::int64_t undead_instance = 0;
+    TimePoint undead_heard{};
+    std::string hindrance;  // why it cannot be started again for now
+    int replaced = 0;       // times that an external role was started again, and when last
     TimePoint replaced_at{};
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }

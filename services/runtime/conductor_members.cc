@@ -66,8 +66,12 @@ void Conductor::OnUndead(Role role, const status_t& status, TimePoint now) {
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;
   }
-  announce_at_ = now;  // tells the process that another one has its place
-  if (!member.undead) member.undead = now;
+  announce_at_ = now;  // that another one has its place
+  const bool speaks_on = member.undead && member.undead_instance == status.instance &&
+                         HeldAgainst(member.undead_heard, now) <= kSilent;
+  if (!speaks_on) member.undead = now;
+  member.undead_instance = status.instance;
+  member.undead_heard = now;
   if (HeldAgainst(*member.undead, now) > kLeaves) FailForTwo(*member.status, status);
 }
 
@@ -77,7 +81,9 @@ bool Conductor::AdmitOther(Role role, const status_t& status, TimePoint now) {
     if (member.rival && member.rival->instance == status.instance) member.rival.reset();
     return false;
   }
-  if (!member.rival || member.rival->instance != status.instance) {
+  const bool speaks_on = member.rival && member.rival->instance == status.instance &&
+                         HeldAgainst(member.rival_heard, now) <= kSilent;
+  if (!speaks_on) {
     member.rival = status;
     member.rival_since = now;
     announce_at_ = now;  // tells the process that another one has its place

@@ -1,6 +1,7 @@
 #include "services/runtime/deaf_roles.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -16,6 +17,9 @@ constexpr int kDeafPeriods = 5;
 // Three signs of life. A longer pause between two STATUS messages says nothing about the time in
 // between.
 constexpr Duration kSteady = milliseconds(600);
+// By so many steps a role may be ahead of what is known of its producer: a STATUS is on its way for
+// less than 100 ms, which are five steps at 50 Hz.
+constexpr std::int64_t kAhead = 5;
 
 }  // namespace
 
@@ -42,10 +46,18 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     // age.
     const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
                       age >= ear.age + std::min(since, kSteady) / 2;
-    if (!aged || status.input_late[i] > ear.late) {
-      ear.missed = {};
-    } else if (since <= kSteady && Computes(kChannels[channel].from, now)) {
-      ear.missed += since;
+    const Role from = kChannels[channel].from;
+    // To a role that is ahead all that is genuine comes late: it hears it, and takes none of it.
+    const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
+    if (!aged || late) {
+      ear.missed = ear.unsure = {};
+    } else if (!Computes(from, now)) {
+      ear.unsure = {};
+    } else {
+      if (since <= kSteady) ear.unsure += since;
+      // Behind its last step nothing is missed.
+      const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
+      if (computed) ear.missed += std::exchange(ear.unsure, {});
     }
     ear.age = age;
     ear.late = status.input_late[i];
@@ -60,6 +72,11 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
 bool DeafRoles::Computes(Role role, TimePoint now) const {
   const Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
   return now - speaker.heard <= kSteady && now - speaker.advanced <= kSteady + 2 * period_;
+}
+
+bool DeafRoles::IsAheadOf(Role role, std::int64_t step, TimePoint now) const {
+  const Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  return step > speaker.step + (now - speaker.advanced) / period_ + kAhead;
 }
 
 std::optional<Deafness> DeafRoles::Missing(Role role, Duration limit) const {

@@ -47,6 +47,7 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
+    Duration unsure{};  // since its producer was heard to have computed a step; to be added then
   };
   struct Speaker {
     TimePoint heard{};
@@ -58,6 +59,8 @@ class DeafRoles {
   std::optional<Deafness> Missing(Role role, Duration limit) const;
   /// Whether the role computes step after step, by its STATUS.
   bool Computes(Role role, TimePoint now) const;
+  /// A step is further than the role can be that should have computed it.
+  bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;
 
   Duration period_;
   Duration limit_;

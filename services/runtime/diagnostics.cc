@@ -27,25 +27,29 @@ namespace {
 // for a key: a process that has failed keeps its log locked until it ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
-/// While an object lives, a write to a pipe without a reader does not end the process. This holds
-/// for its thread only. Other writes behave as usual: `fogline digest *.lcm | head` ends.
-class WithoutSigpipe {
+/// Keeps a write from ending or stopping the process, for the length of a scope and in this thread:
+/// one to a pipe without a reader (SIGPIPE), and one from the background to a terminal that is set
+/// to stop that (SIGTTOU; `stty tostop`). Other writes behave as usual: `fogline digest *.lcm |
+/// head` ends.
+class WithoutSignals {
  public:
-  WithoutSigpipe() {
+  WithoutSignals() {
     sigemptyset(&sigpipe_);
     sigaddset(&sigpipe_, SIGPIPE);
     sigset_t pending;
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
-    pthread_sigmask(SIG_BLOCK, &sigpipe_, &before_);
+    sigset_t both = sigpipe_;
+    sigaddset(&both, SIGTTOU);  // the terminal sends none to who blocks it
+    pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
-  ~WithoutSigpipe() {
+  ~WithoutSignals() {
     constexpr timespec kNow{};
     if (!was_pending_) sigtimedwait(&sigpipe_, nullptr, &kNow);
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   }
-  WithoutSigpipe(const WithoutSigpipe&) = delete;
-  WithoutSigpipe& operator=(const WithoutSigpipe&) = delete;
+  WithoutSignals(const WithoutSignals&) = delete;
+  WithoutSignals& operator=(const WithoutSignals&) = delete;
 
  private:
   sigset_t sigpipe_{};
@@ -70,14 +74,14 @@ class Stderr {
 
   void WriteLine(std::string line, Duration limit) {
     const std::scoped_lock lock(mutex_);
-    if (dropped_ > 0) {
-      limit = Duration::zero();  // the reader has been waited for
-      line.insert(0, fmt::format("... {} lines are missing here\n", dropped_));
-    }
+    if (waited_in_vain_) limit = Duration::zero();
+    if (dropped_ > 0) line.insert(0, fmt::format("... {} lines are missing here\n", dropped_));
     if (Write(line, limit)) {
       dropped_ = 0;
+      waited_in_vain_ = false;
     } else {
       ++dropped_;
+      waited_in_vain_ = waited_in_vain_ || limit > Duration::zero();
     }
   }
 
@@ -101,7 +105,7 @@ class Stderr {
   /// @return whether the text was written, or the first part of it; the rest follows with the next
   ///     write
   bool Write(std::string_view text, Duration limit) {
-    const WithoutSigpipe scope;
+    const WithoutSignals scope;
     const TimePoint end = Clock::now() + limit;
     rest_.erase(0, Put(rest_, end));
     if (!rest_.empty()) return false;
@@ -145,9 +149,10 @@ class Stderr {
   std::mutex mutex_;
   int fd_ = STDERR_FILENO;
   bool is_socket_ = false;
-  bool asks_first_ = false;   // asks poll() before a write, because the write might wait
-  std::string rest_;          // of a text that was written in part
-  std::int64_t dropped_ = 0;  // lines since the last one that was written
+  bool asks_first_ = false;      // poll(), since a write might wait
+  std::string rest_;             // of what was written in part
+  std::int64_t dropped_ = 0;     // lines since the last one that was written
+  bool waited_in_vain_ = false;  // for the reader, since then
 };
 
 void WriteLine(std::string_view line, Duration limit) noexcept {

@@ -1,16 +1,21 @@
 #include "services/runtime/lcm_sockets.h"
 
 #include <arpa/inet.h>
+#include <net/if.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "services/runtime/channel_filter.h"
+#include "services/runtime/diagnostics.h"
 #include "services/runtime/lcm_url.h"
 #include "services/runtime/multicast_route.h"
 
@@ -36,6 +41,11 @@ std::string Content(const char* file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+/// Of an interface; 0 if there is none.
+int InterfaceIndex(const std::string& interface) {
+  return static_cast<int>(if_nametoindex(interface.c_str()));
 }
 
 }  // namespace
@@ -86,15 +96,32 @@ LcmSockets::Reach ReachOf(const std::string& url) {
                                                         : LcmSockets::Reach::kRoute;
 }
 
-void JoinAgain(int socket, const std::string& url) {
-  const auto group = GroupOf(url);
-  ip_mreq membership{};
-  if (!group || inet_pton(AF_INET, group->c_str(), &membership.imr_multiaddr) != 1) return;
-  const std::string interface = RouteInterface(Content("/proc/net/route"), *group);
-  if (interface.empty() || HasGroup(Content("/proc/net/igmp"), interface, *group)) return;
-  // `membership` names no interface: both calls use the interface of the present route.
-  SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &membership, sizeof(membership));
-  SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
+GroupMembership::GroupMembership(std::vector<int> sockets, const std::string& url)
+    : sockets_(std::move(sockets)), group_(GroupOf(url).value_or("")) {
+  inet_pton(AF_INET, group_.c_str(), &joined_.imr_multiaddr);
+  joined_.imr_ifindex = InterfaceIndex(RouteInterface(Content("/proc/net/route"), group_));
+}
+
+void GroupMembership::Renew() {
+  const std::string interface = RouteInterface(Content("/proc/net/route"), group_);
+  const int index = InterfaceIndex(interface);
+  if (index == 0) return;  // there is no route
+  if (index == joined_.imr_ifindex && HasGroup(Content("/proc/net/igmp"), interface, group_)) {
+    return;
+  }
+  std::string trouble;
+  for (const int socket : sockets_) {
+    // A socket remembers a group that its interface has lost, so it leaves it in any case.
+    SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &joined_, sizeof(joined_));
+    ip_mreqn there = joined_;
+    there.imr_ifindex = index;
+    if (SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &there, sizeof(there)) == 0) continue;
+    trouble =
+        fmt::format("warning: cannot hear {} on {}: {}", group_, interface, std::strerror(errno));
+  }
+  joined_.imr_ifindex = index;
+  if (!trouble.empty() && trouble != trouble_) Notice(trouble);
+  trouble_ = std::move(trouble);
 }
 
 }  // namespace fogline

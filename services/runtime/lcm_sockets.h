@@ -53,9 +53,21 @@ bool LoopbackIsUp();
 /// How far a udpm:// URL reaches: only loopback with ttl=0 and loopback up, otherwise the route.
 LcmSockets::Reach ReachOf(const std::string& url);
 
-/// Joins the group of a udpm:// URL again on the interface of its present route, unless that
-/// interface has the group already. An interface that goes down, or loses its last address, loses
-/// its groups.
-void JoinAgain(int socket, const std::string& url);
+/// That sockets are in the group of a udpm:// URL on the interface to which its route leads. With
+/// an interface or its last address go its groups, and a route may change.
+class GroupMembership {
+ public:
+  /// @param sockets those that LCM has just had join where the route leads
+  GroupMembership(std::vector<int> sockets, const std::string& url);
+  /// Joins where the route leads now, if that is another interface or the group has gone there, and
+  /// leaves where it was joined before. Says on stderr what is in the way.
+  void Renew();
+
+ private:
+  std::vector<int> sockets_;
+  std::string group_;
+  ip_mreqn joined_{};
+  std::string trouble_;  // as said last
+};
 
 }  // namespace fogline

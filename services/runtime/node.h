@@ -156,7 +156,7 @@ class Node {
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// Fails if nothing could be sent for too long. A failed send makes the next STATUS come sooner.
+  /// Has what could not be sent told soon; in lockstep fails if that was everything for too long.
   void CheckSends(TimePoint now);
   /// Takes a RUN's news about the whole run. @return whether the RUN is newer than all before
   bool TakeNews(const run_t& run, TimePoint now);

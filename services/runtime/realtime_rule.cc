@@ -15,6 +15,10 @@ constexpr std::int64_t kSlack = 2;
 // The greatest age of the progress that the runner reports: five signs of life of the roles, some
 // of which may be lost.
 constexpr Duration kHearsay = milliseconds(1000);
+// What is heard comes late when it is sent again, which nothing is that is older than a ring; what
+// the runner says while it hears nothing itself, for less than a minute of a run that goes on.
+constexpr std::int64_t kHeardPeriods = kRingSteps;
+constexpr Duration kToldFor = milliseconds(60'000);
 
 }  // namespace
 
@@ -28,8 +32,8 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
       step_us_(std::llround(scenario.step_s * kMicrosPerSecond)),
       limits_(scenario.health),
       clock_(period_, Clock::now()),
-      heard_(period_, kSlack),
-      told_(period_, kSlack + kHearsay / period_),
+      heard_(period_, kSlack, kHeardPeriods * period_),
+      told_(period_, kSlack + kHearsay / period_, kToldFor),
       tick_input_(static_cast<std::size_t>(
           std::ranges::find(inputs(), Role::kWorld,
                             [](const Input& input) { return kChannels[input.channel].from; }) -
@@ -45,9 +49,9 @@ RealtimeRule::RealtimeRule(Node& node, const Scenario& scenario, double speed)
 void RealtimeRule::OnProgress() { told_.Heard(progress(), Clock::now()); }
 
 std::int64_t RealtimeRule::NewestPossible(TimePoint now) const {
-  if (!heard_.known()) return told_.Newest(now);
-  const std::int64_t heard = heard_.Newest(now);
-  return clock_.Silence(now) <= kUnheard * period_ ? heard : std::max(heard, told_.Newest(now));
+  const std::int64_t told = told_.Newest(now);
+  const bool hears = heard_.known() && clock_.Silence(now) <= kUnheard * period_;
+  return hears ? std::min(heard_.Newest(now), told) : told;
 }
 
 void RealtimeRule::Begun(std::int64_t step, TimePoint now) {

@@ -5,11 +5,11 @@
 // message that comes after the end of its step is late: it is counted and never used. A role does
 // not wait for an input on demand and does not judge it.
 //
-// A message of a step that cannot be under way is refused. The newest possible step is estimated
-// from the steps that were heard. If nothing new has been heard for some periods, the runner's
-// progress counts, too. So a role that has a wrong idea of the run's progress (it was started in
-// the middle of the run and heard an old message first) soon corrects it, and no single message can
-// make it wrong.
+// What is of a step that cannot be under way is refused: unless nothing new has been heard for some
+// periods, by what was heard of the steps themselves; and always by what the runner says of the
+// progress. So a role that is wrong about how far the run is (it was started in the middle of it,
+// and heard an old message first) is right again soon. A false message can make it wrong by the
+// slack of two steps, and many of them by no more than what the runner's word lets pass, a second.
 //
 // The rule also judges every input by age (input_health.h). STATUS reports the state of each input,
 // the culprit, and how well the role keeps its time. A change of a state is reported at once.

@@ -7,9 +7,16 @@ namespace fogline {
 std::optional<Announcement> RunSeeker::Look(TimePoint now) {
   pauses_.Attend(now);
   listener_.Look();
+  const std::vector<Announcement> runs = listener_.Runs();
+  for (const Announcement& run : runs) {
+    if (!run.Awaits(role_)) std::erase(in_vain_, run.run_id);
+  }
   if (tried_) return std::nullopt;
-  for (const Announcement& run : listener_.Runs()) {
-    if (!run.Awaits(role_) || std::ranges::find(in_vain_, run.run_id) != in_vain_.end()) continue;
+  for (const Announcement& run : runs) {
+    if (!run.Awaits(role_) || run.run_id == own_ ||
+        std::ranges::find(in_vain_, run.run_id) != in_vain_.end()) {
+      continue;
+    }
     tried_ = {.run_id = run.run_id, .at = now};
     return run;
   }
@@ -21,17 +28,16 @@ bool RunSeeker::InVain(TimePoint now) {
   now = pauses_.Attend(now);
   listener_.Look();
   const std::vector<Announcement> runs = listener_.Runs();
-  return pauses_.HeldAgainst(tried_->at, now) > kPatience ||
-         std::ranges::find(runs, tried_->run_id, &Announcement::run_id) == runs.end();
+  const bool announced =
+      std::ranges::find(runs, tried_->run_id, &Announcement::run_id) != runs.end();
+  // Before that it may not have heard of a run that goes on.
+  const bool would_know = pauses_.HeldAgainst(began_, now) > Announcements::kGone;
+  return pauses_.HeldAgainst(tried_->at, now) > kPatience || (would_know && !announced);
 }
 
 void RunSeeker::GiveUp() {
-  Ignore(tried_->run_id);
+  in_vain_.push_back(tried_->run_id);
   tried_.reset();
-}
-
-void RunSeeker::Ignore(std::int64_t run_id) {
-  in_vain_.push_back(run_id);
   if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
 }
 

@@ -16,7 +16,8 @@ namespace fogline {
 class RunSeeker {
  public:
   /// @throws InputError as Bus()
-  RunSeeker(Role role, const std::string& meeting_url) : role_(role), listener_(meeting_url) {}
+  RunSeeker(Role role, const std::string& meeting_url)
+      : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
   /// Call it while the role has no run.
   /// @return the run to join now: the newest that waits for this role and was not tried in vain;
@@ -28,11 +29,12 @@ class RunSeeker {
   /// Whether the run is over, or nothing was heard of it for kPatience. The role then goes back to
   /// the meeting address.
   bool InVain(TimePoint now);
-  /// The role leaves the run that it tries, and does not try it again.
+  /// The run that was gone to last is not tried again, unless it has had the role meanwhile: then
+  /// its place was taken, and may be free again.
   void GiveUp();
-  /// The role will not try this run (again).
-  void Ignore(std::int64_t run_id);
-  /// The role is at the network of this run but has no part in the run.
+  /// This run, which the role has a part in, is not to be tried.
+  void Ignore(std::int64_t run_id) { own_ = run_id; }
+  /// The role is at the network of this run, and has no part in it any more.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
@@ -48,8 +50,10 @@ class RunSeeker {
   };
   Role role_;
   BeaconListener listener_;
-  OwnPauses pauses_{Clock::now()};
+  TimePoint began_;
+  OwnPauses pauses_;
   std::optional<Try> tried_;
+  std::optional<std::int64_t> own_;
   std::deque<std::int64_t> in_vain_;
 };
 

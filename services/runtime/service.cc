@@ -27,6 +27,8 @@ enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 1
 // roles, then the rest of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
+// A network that cannot be joined is tried again so often; it is away until somebody mends it.
+constexpr Duration kTryAgain = milliseconds(500);
 
 struct Arguments {
   std::string name;  // of the program
@@ -91,11 +93,13 @@ class Service {
  private:
   void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
+  /// If it cannot, it stays where it is. @throws as Bus()
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
-    node_.reset();
-    bus_.emplace(url);
-    Apply(arguments_.traffic, arguments_.role, *bus_);
-    node_ = make_(*bus_, run_id);
+    auto bus = std::make_unique<Bus>(url);
+    Apply(arguments_.traffic, arguments_.role, *bus);
+    node_ = make_(*bus, run_id);
+    bus_ = std::move(bus);
+    starts_over_ = false;
   }
 
   std::string HowToStartOne() const {
@@ -117,16 +121,38 @@ class Service {
     }
   }
 
-  /// Goes to the network of a run that waits for the role. Goes back if nothing is heard there.
+  /// @throws std::runtime_error after --wait
+  void LimitWait(TimePoint now) const {
+    if (arguments_.wait_s <= 0 ||
+        pauses_.HeldAgainst(began_, now) <= std::chrono::duration<double>(arguments_.wait_s)) {
+      return;
+    }
+    throw std::runtime_error(
+        fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
+                    arguments_.wait_s, bus_->url(), HowToStartOne()));
+  }
+
+  /// Whether it was told neither a network nor a run.
+  bool MaySeek() const { return arguments_.url.empty() && !arguments_.run_id; }
+
+  /// Opens the seeker if its network is there. @return whether there is one
+  bool OpenSeeker(TimePoint now) {
+    if (seeker_) return true;
+    if (now < try_at_) return false;
+    try_at_ = now + kTryAgain;
+    try {
+      seeker_.emplace(arguments_.role, MeetingUrl());
+    } catch (const std::exception&) {  // not yet
+      return false;
+    }
+    return true;
+  }
+
+  /// Goes where a run waits for the role, and back if it does not.
   /// @throws std::runtime_error after --wait
   void Seek(TimePoint now) {
-    if (arguments_.wait_s > 0 &&
-        pauses_.HeldAgainst(began_, now) > std::chrono::duration<double>(arguments_.wait_s)) {
-      throw std::runtime_error(
-          fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
-                      arguments_.wait_s, bus_->url(), HowToStartOne()));
-    }
-    if (!seeker_) return;
+    LimitWait(now);
+    if (!MaySeek() || !OpenSeeker(now)) return;
     if (seeker_->InVain(now)) return GoBack("nothing is heard of it");
     const auto run = seeker_->Look(now);
     if (!run) return;
@@ -145,11 +171,8 @@ class Service {
   /// Called while the runner is silent. If another run waits for the role, the process goes there.
   /// (The node itself hears runs on its present network.)
   void SeekAnother(TimePoint now) {
-    if (!arguments_.url.empty() || arguments_.run_id) return;
-    if (!seeker_) {
-      seeker_.emplace(arguments_.role, MeetingUrl());
-      seeker_->Ignore(node_->run_id());
-    }
+    if (!MaySeek() || !OpenSeeker(now)) return;
+    seeker_->Ignore(node_->run_id());
     const auto run = seeker_->Look(now);
     if (!run) return;
     node_->Release(fmt::format("went to run {}: the runner was silent", run->run_id));
@@ -157,20 +180,33 @@ class Service {
     GoTo(*run);
   }
 
-  /// The node has given up its place. The process waits for a run on the same network.
+  /// The node has given up its place. It waits for a run where it is, as soon as that network is
+  /// there. @throws std::runtime_error after --wait
   void StartOver(TimePoint now) {
-    Say(node_->error());
-    began_ = now;
-    if (arguments_.url.empty() && !seeker_) {
-      seeker_.emplace(arguments_.role, MeetingUrl());
-      if (!SameNetwork(bus_->url(), MeetingUrl())) seeker_->Stay(node_->run_id(), now);
+    if (!std::exchange(starts_over_, true)) {
+      Say(node_->error());
+      began_ = now;
+      try_at_ = now;
     }
-    Join(std::string(bus_->url()), std::nullopt);
+    LimitWait(now);
+    if (now < try_at_) return;
+    const bool had_seeker = seeker_.has_value();
+    if (MaySeek() && OpenSeeker(now) && !had_seeker && !SameNetwork(bus_->url(), MeetingUrl())) {
+      seeker_->Stay(node_->run_id(), now);
+    }
+    try_at_ = now + kTryAgain;
+    try {
+      Join(std::string(bus_->url()), std::nullopt);
+    } catch (const std::exception&) {  // not yet
+    }
   }
 
   void GoBack(const std::string& why) {
     seeker_->GiveUp();
-    Join(MeetingUrl(), std::nullopt);
+    try {
+      Join(MeetingUrl(), std::nullopt);
+    } catch (const std::exception&) {  // it stays where it is
+    }
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
 
@@ -191,9 +227,11 @@ class Service {
   const NodeFactory& make_;
   TimePoint began_;  // when the wait for a run began
   OwnPauses pauses_;
-  std::optional<Bus> bus_;
+  std::unique_ptr<Bus> bus_;
   std::unique_ptr<Node> node_;
   std::optional<RunSeeker> seeker_;  // while there is no run yet
+  TimePoint try_at_{};               // when to try again what a network that is away has prevented
+  bool starts_over_ = false;
   bool warned_ = false;
   bool preferred_ = false;
 };

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "services/runtime/clock.h"
 
@@ -17,20 +18,23 @@ namespace fogline {
 class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param slack steps by which the world can be ahead of the best proof
-  StepHorizon(Duration period, std::int64_t slack) : period_(period), slack_(slack) {}
+  /// @param slack steps by which the world can be further than the best proof says
+  /// @param remembered time for which a proof counts at least; twice as long at most. Proofs must
+  ///     not all come late for so long.
+  StepHorizon(Duration period, std::int64_t slack, Duration remembered)
+      : period_(period), slack_(slack), remembered_(remembered) {}
 
   /// The world had begun `step` by `now`.
   void Heard(std::int64_t step, TimePoint now) {
     const Proof proof{.step = step, .time = now};
-    if (num_recent_ == kRemembered) {
-      loosest_ = recent_;
-      num_recent_ = 0;
+    if (known_ && now - recent_since_ >= remembered_) {
+      loosest_ = std::exchange(recent_, proof);
+      recent_since_ = now;
     }
+    if (!known_) recent_since_ = now;
     if (!known_ || Allows(proof, loosest_)) loosest_ = proof;
-    if (num_recent_ == 0 || Allows(proof, recent_)) recent_ = proof;
+    if (!known_ || Allows(proof, recent_)) recent_ = proof;
     known_ = true;
-    ++num_recent_;
   }
 
   bool known() const { return known_; }
@@ -38,10 +42,6 @@ class StepHorizon {
   std::int64_t Newest(TimePoint now) const {
     return loosest_.step + (now - loosest_.time) / period_ + slack_;
   }
-
-  /// At least this many proofs are remembered, and at most twice as many. That is many more than
-  /// can come late in a row (late proofs are those of steps that a node asked for again).
-  static constexpr int kRemembered = 256;
 
  private:
   struct Proof {
@@ -58,10 +58,11 @@ class StepHorizon {
 
   Duration period_;
   std::int64_t slack_;
+  Duration remembered_;
   bool known_ = false;
   Proof loosest_;
-  Proof recent_;  // loosest of the last num_recent_ proofs
-  int num_recent_ = 0;
+  Proof recent_;  // loosest of the last ones
+  TimePoint recent_since_{};
 };
 
 }  // namespace fogline

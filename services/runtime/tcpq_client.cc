@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,6 +16,7 @@
 #include <fmt/core.h>
 
 #include "scenario/file.h"
+#include "services/runtime/poll.h"
 
 namespace fogline::tcpq {
 namespace {
@@ -34,17 +34,7 @@ constexpr std::size_t kMaxReceived = 64 << 20;
 // that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
-/// Waits for a socket. With -1 in its place it waits until the time has passed.
-bool Poll(int socket, short events, Duration timeout) {
-  pollfd waited{.fd = socket, .events = events, .revents = 0};
-  const auto left = std::max(Duration::zero(), timeout);
-  const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
-                       .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
-  return ppoll(&waited, 1, &limit, nullptr) > 0;
-}
-
-/// A file that is never readable. It replaces a lost connection, so that a poll of it wakes no
-/// program.
+/// A file that is never readable: polled in place of a lost connection, it wakes no program.
 int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
 
 }  // namespace
@@ -93,7 +83,7 @@ int Client::Connect(Duration limit) const {
   if (error == EINPROGRESS) {
     socklen_t size = sizeof(error);
     error = ETIMEDOUT;
-    if (Poll(connection, POLLOUT, limit)) {
+    if (PollFor(connection, POLLOUT, limit) > 0) {
       getsockopt(connection, SOL_SOCKET, SO_ERROR, &error, &size);
     }
   }
@@ -230,7 +220,9 @@ void Client::Handle() {
   if (watcher_) watcher_(frame.name, frame.payload);
 }
 
-bool Client::Ready(short events, Duration timeout) const { return Poll(fd_, events, timeout); }
+bool Client::Ready(short events, Duration timeout) const {
+  return PollFor(fd_, events, timeout) > 0;
+}
 
 void Client::Receive() {
   const ssize_t size = recv(fd_, chunk_.data(), chunk_.size(), 0);
@@ -255,10 +247,10 @@ void Client::BeReplacedBy(int file) {
 bool Client::ConnectAgain(Duration timeout) {
   const TimePoint now = Clock::now();
   if (tries_ > kTries || try_at_ - now > timeout) {
-    Poll(-1, 0, timeout);
+    PollFor(-1, 0, timeout);
     return false;
   }
-  Poll(-1, 0, try_at_ - now);
+  PollFor(-1, 0, try_at_ - now);
   try_at_ = Clock::now() + kTryEvery;
   if (++tries_ > kTries) throw ConnectionLost(trouble_);
   parser_ = FrameParser(kRelayMagic, limits_);

@@ -217,7 +217,37 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
   for (Background& driver : drivers) EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
-/// A run with a driver from elsewhere. Its runner is killed in the middle of the run.
+TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled) {
+  Meeting meeting;
+  std::deque<Background> drivers;
+  for (int i = 0; i < 2; ++i) {
+    drivers.emplace_back(meeting.Command("fogline-driver", {}));
+    ASSERT_TRUE(drivers.back().WaitForErr("waiting for a run", kPatience));
+  }
+  Background run(
+      meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "8"}));
+  ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
+  // GIVEN that both have gone there, and one has found its place taken
+  const auto is_other = [](const Background& driver) {
+    const std::string said = driver.Err();
+    return said.find("another process is the driver") != std::string::npos ||
+           said.find(" again\n") != std::string::npos;
+  };
+  const TimePoint end = Clock::now() + kPatience;
+  while (std::ranges::none_of(drivers, is_other) && Clock::now() < end) {
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  ASSERT_EQ(std::ranges::count_if(drivers, is_other), 1);
+  Background& first = drivers[is_other(drivers[0]) ? 1 : 0];
+  Background& other = drivers[is_other(drivers[0]) ? 0 : 1];
+  // WHEN the first is killed THEN the other is there before the run gives up
+  first.Signal(SIGKILL);
+  ASSERT_EQ(run.Wait(), 0) << run.Err() << other.Err();
+  EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
+  EXPECT_EQ(other.Wait(), 0) << other.Err();
+}
+
+/// A run with a driver from elsewhere, whose runner is killed under way.
 void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"--external", "driver", "--pace", "1"};
   arguments.insert(arguments.end(), more.begin(), more.end());

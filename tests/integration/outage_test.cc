@@ -11,6 +11,8 @@
 
 #include "services/recorder/event_log.h"
 #include "services/runtime/clock.h"
+#include "services/runtime/multicast_route.h"
+#include "services/runtime/runner_watch.h"
 #include "services/runtime/wire.h"
 #include "tests/support/network_test.h"
 
@@ -51,6 +53,8 @@ class OutageTest : public NetworkTest {
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
+  /// No event tells when a process has noticed an outage.
+  static void LastFor(Duration time) { std::this_thread::sleep_for(time); }
 };
 
 class OwnMachineOutageTest : public OutageTest, public testing::WithParamInterface<Outage> {};
@@ -151,7 +155,65 @@ TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
                     HasSubstr("the log so far: " + Log())));
 }
 
-/// The steps of TRUTH in a log, which a program may still be writing.
+TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
+  // GIVEN a run in real time that waits a second for a step, with its driver on another machine
+  const Lab lab(2);
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  Background run(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--json",
+                            "--realtime", "--set", "/steps=50", "--external", "driver", "--lcm-url",
+                            kUrl, "--stall-timeout", "1", "--log", Log()}));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN that one can send nothing for longer
+  lab[1].Do(kFirewall);
+  LastFor(milliseconds(1800));
+  lab[1].Do("nft delete table inet reload");
+  // THEN it takes part to the end, and what it could not send is told
+  run.Wait();
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+  const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
+  ASSERT_TRUE(result.is_object()) << run.Err();
+  ASSERT_EQ(result["failed_sends"].size(), 1U) << result["failed_sends"];
+  EXPECT_EQ(result["failed_sends"][0]["error"], "Operation not permitted");
+}
+
+TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
+  // GIVEN a driver that may go to any run that is announced, in a run over an interface
+  const Machine machine("lab");
+  SetUpInterface(machine);
+  Background driver(
+      machine.On({"env", std::string("LCM_DEFAULT_URL=") + kUrl, Program("fogline-driver")}));
+  Background run(
+      machine.On(PacedRun({"--lcm-url", kUrl, "--external", "driver", "--restarts", "0"})));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN it hears nothing of its runner for long enough to look for another run
+  machine.Do("ip addr flush dev eth0");
+  LastFor(RunnerWatch::kSilent + milliseconds(1000));
+  machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
+  // THEN it goes on with its own
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
+TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
+  const Machine machine("lab");
+  machine.Do(
+      "for i in 0 1; do ip link add eth$i type veth peer name peer$i;"
+      " ip addr add 192.0.$i.1/24 dev eth$i; ip link set eth$i up; ip link set peer$i up; done;"
+      "ip route add 239.0.0.0/8 dev eth0");
+  const auto has_group = [&machine](const std::string& interface) {
+    return HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
+  };
+  Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  ASSERT_TRUE(driver.WaitForErr("waiting for a run")) << driver.Err();
+  EXPECT_TRUE(has_group("eth0"));
+  machine.Do("ip route replace 239.0.0.0/8 dev eth1");
+  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  while (!has_group("eth1") && Clock::now() < end) LastFor(milliseconds(50));
+  EXPECT_TRUE(has_group("eth1"));
+  EXPECT_FALSE(has_group("eth0"));
+}
+
+/// The steps of TRUTH in a log that a program has written or is writing.
 std::set<std::int64_t> StepsIn(const std::string& log) {
   std::set<std::int64_t> steps;
   EventLogReader reader(log);

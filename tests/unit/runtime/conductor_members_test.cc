@@ -126,6 +126,54 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
   EXPECT_EQ(Holder(), OtherDriver().instance);
 }
 
+/// The same while time passes, as it does for what is heard.
+class StrayWordTest : public ExternalDriverTest {
+ protected:
+  /// The driver, or a process that has its place, says so often that it is there.
+  void SpeakFor(milliseconds time, status_t& who) {
+    for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
+      Say(who);
+      for (const TimePoint next = Clock::now() + milliseconds(100); Clock::now() < next;) {
+        external_.Poll(Clock::now());
+        script_.bus().Wait(milliseconds(10));
+      }
+    }
+  }
+  void Say(status_t& who) {
+    ++who.sequence;
+    script_.Say(who);
+  }
+};
+
+TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
+  BeAtStep(-1);
+  status_t& driver = role(Role::kDriver);
+  status_t other = OtherDriver();
+  Say(other);
+  SpeakFor(milliseconds(1300), driver);
+  Say(other);
+  EXPECT_NE(external_.phase(), Conductor::Phase::kFailed) << external_.error();
+  // Unless it goes on.
+  for (int i = 0; i < 12; ++i) {
+    Say(other);
+    SpeakFor(milliseconds(100), driver);
+  }
+  EXPECT_THAT(external_.error(), HasSubstr("two processes are the driver: "));
+}
+
+TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
+  BeAtStep(-1);
+  status_t& dead = role(Role::kDriver);
+  status_t other = OtherDriver();
+  // GIVEN a driver that is replaced when it was silent for a second
+  while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
+  SpeakFor(milliseconds(200), other);
+  Say(dead);
+  SpeakFor(milliseconds(1300), other);
+  Say(dead);
+  EXPECT_NE(external_.phase(), Conductor::Phase::kFailed) << external_.error();
+}
+
 TEST_F(ConductorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
   RoleBuilds builds;
   builds.fill(4711);

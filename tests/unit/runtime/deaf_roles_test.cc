@@ -16,6 +16,7 @@ class DeafRolesTest : public testing::Test {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;
     std::int64_t late = 0;
+    std::int64_t step = 17;  // that it has computed last
   };
   void SayWorld() {
     status_t status{};
@@ -24,7 +25,7 @@ class DeafRolesTest : public testing::Test {
   }
   void SayRadar(const Ear& ear) {
     status_t status{};
-    status.header.step = 17;
+    status.header.step = ear.step;
     status.num_inputs = 1;
     status.input = {"TRUTH"};
     status.input_state = {ear.state};
@@ -108,6 +109,35 @@ TEST_F(DeafRolesTest, AMessageNowAndThenOrALateOneIsHeard) {
     SayRadar({.age_ms = age_ms_, .late = i});
   }
   EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
+  // GIVEN a role that takes all that is genuine for late, since it has computed what was forged
+  const auto pass_ahead = [this](std::int64_t steps) {
+    for (int i = 1; i <= 12; ++i) {
+      now_ += milliseconds(200);
+      world_step_ += 2;
+      age_ms_ += 200;
+      SayWorld();
+      SayRadar({.age_ms = age_ms_, .late = 100 * steps + i, .step = world_step_ + steps});
+    }
+  };
+  pass_ahead(1);
+  EXPECT_FALSE(IsDeaf()) << "its producer is slow";
+  pass_ahead(12);
+  EXPECT_TRUE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, AtTheEndNothingIsMissedOfStepsThatNeverWere) {
+  Pass(3);
+  // WHEN the world has computed its last step, and the role is late
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(200);
+    age_ms_ += 200;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
 }
 
 TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {

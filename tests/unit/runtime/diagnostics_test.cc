@@ -3,9 +3,12 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -103,6 +106,34 @@ TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderThatIsSlow) {
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }
 
+TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
+  const Ends ends = GetParam()();
+  const Ends told = Pipe();
+  const pid_t writer = fork();
+  if (writer == 0) {
+    dup2(ends.in, STDERR_FILENO);
+    const std::string long_line(1000, 'x');
+    for (int i = 0; i < 1000; ++i) Notice(long_line);  // more than it holds
+    const char byte = 0;
+    if (write(told.in, &byte, 1) != 1) _exit(1);
+    Complain(long_line + " the error");
+    _exit(0);
+  }
+  close(ends.in);
+  // GIVEN a reader that begins a moment after there was no room for the error
+  char byte = 0;
+  ASSERT_EQ(read(told.out, &byte, 1), 1);
+  usleep(200'000);
+  std::string text;
+  std::array<char, 1 << 16> buffer{};
+  for (ssize_t size = 0; (size = read(ends.out, buffer.data(), buffer.size())) > 0;) {
+    text.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+  waitpid(writer, nullptr, 0);
+  EXPECT_THAT(text, HasSubstr(" lines are missing here\n"));
+  EXPECT_THAT(text.substr(std::max<std::size_t>(text.size(), 20) - 20), EndsWith(" the error\n"));
+}
+
 TEST_P(DiagnosticsTest, NothingIsChangedForOtherProcessesThatHaveTheSameDescription) {
   const Ends ends = GetParam()();
   InChild(ends.in, [] {
@@ -128,6 +159,45 @@ TEST_P(DiagnosticsTest, ALineWithoutAReaderEndsNoProcess) {
 
 INSTANTIATE_TEST_SUITE_P(To, DiagnosticsTest, testing::Values(Pipe, Sockets),
                          [](const auto& ends) { return ends.index == 0 ? "Pipe" : "Socket"; });
+
+/// Says something in the background of a terminal that stops whatever writes there (stty tostop).
+/// @return the status of the process that says it, as waitpid() tells it
+int StatusInBackground(const char* terminal) {
+  setsid();
+  const int own = open(terminal, O_RDWR);  // the first one: it belongs to the session
+  termios settings{};
+  tcgetattr(own, &settings);
+  settings.c_lflag |= TOSTOP;
+  tcsetattr(own, TCSANOW, &settings);
+  const pid_t background = fork();
+  if (background == 0) {
+    setpgid(0, 0);
+    dup2(own, STDERR_FILENO);
+    Notice("a line");
+    _exit(7);
+  }
+  int status = 0;
+  waitpid(background, &status, WUNTRACED);
+  if (WIFSTOPPED(status)) kill(background, SIGKILL);
+  return status;
+}
+
+TEST(DiagnosticsTerminalTest, AProcessInTheBackgroundIsNotStopped) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(terminal, 0);
+  ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
+  const pid_t session = fork();
+  if (session == 0) {
+    alarm(30);
+    const int status = StatusInBackground(ptsname(terminal));
+    _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+  }
+  int status = 0;
+  waitpid(session, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+  EXPECT_THAT(Read(terminal), HasSubstr("a line"));
+  close(terminal);
+}
 
 TEST(DiagnosticsTextTest, WhatATerminalWouldObeyIsEscaped) {
   const Ends ends = Pipe();

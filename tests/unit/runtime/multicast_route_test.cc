@@ -47,10 +47,16 @@ TEST(MulticastRouteTest, FindsWhichInterfaceHasAGroup) {
       "\t\t\t\t434CFFEF     1 0:00000000\t\t0\n"
       "\t\t\t\t010000E0     1 0:00000000\t\t0\n"
       "4\teth0      :     1      V3\n"
-      "\t\t\t\t010000E0     1 0:00000000\t\t0\n";
+      "\t\t\t\t010000E0     1 0:00000000\t\t0\n"
+      "5\twlp0s20f3u:     1      V3\n"
+      "\t\t\t\t434CFFEF     1 0:00000000\t\t0\n"
+      "6\tenx00e04c680:     1      V3\n"
+      "\t\t\t\t434CFFEF     1 0:00000000\t\t0\n";
   EXPECT_TRUE(HasGroup(kTable, "lo", kGroup));
   EXPECT_FALSE(HasGroup(kTable, "eth0", kGroup));
   EXPECT_TRUE(HasGroup(kTable, "eth0", "224.0.0.1"));
+  EXPECT_TRUE(HasGroup(kTable, "wlp0s20f3u", kGroup)) << "ten characters";
+  EXPECT_TRUE(HasGroup(kTable, "enx00e04c680", kGroup));
   EXPECT_FALSE(HasGroup(kTable, "eth", "224.0.0.1"));
   EXPECT_FALSE(HasGroup(kTable, "lo", "no address"));
   EXPECT_FALSE(HasGroup("", "lo", kGroup));

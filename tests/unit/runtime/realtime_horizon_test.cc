@@ -112,6 +112,24 @@ TEST_F(RealtimeHorizonTest, NorIsItTakenByARoleThatHasHeardNothingForLong) {
   EXPECT_TRUE(IsComputed());
 }
 
+TEST_F(RealtimeHorizonTest,
+       ManyMessagesOfStepsThatAreJustPossibleHideForASecondAtMostWhatIsUnderWay) {
+  Join(200);
+  ASSERT_TRUE(IsComputed());
+  // WHEN forged messages claim steps further and further ahead
+  for (std::int64_t ahead = 1; ahead < 2000; ++ahead) Say(Now() + ahead);
+  // THEN what is genuine is computed again as soon as the run is where the runner's word lets it be
+  const TimePoint end = Clock::now() + kPatience;
+  bool computed = false;
+  for (std::int64_t step = Now(); !computed && Clock::now() < end; step = Now()) {
+    const std::size_t before = tracks_.size();
+    Say(step);
+    computed = tracks_.size() > before;
+    while (Now() == step) script_.Poll(node_);
+  }
+  EXPECT_TRUE(computed);
+}
+
 TEST_F(RealtimeHorizonTest, ARunWhoseSpeedIsNoneIsRefused) {
   for (const double speed : {1e-300, 0.0005, 1e300}) script_.SayRun(run_t::GO, -1, speed);
   script_.Poll(node_);

@@ -83,6 +83,7 @@ TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
 }
 
 TEST_F(RealtimeRuleTest, ComputesInOrderEveryStepThatIsThereWhenItWasHeldUp) {
+  script_.SayRun(run_t::GO, 3, kSpeed);  // so far is the run
   for (std::int64_t step = 0; step < 4; ++step) Say<ego_t, radar_t, lidar_t>(step);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(0, 1, 2, 3));
@@ -297,6 +298,41 @@ TEST_F(RecordRuleTest, AsksForWhatIsMissingWhileThereIsHopeAndThenGoesOnWithoutI
   EXPECT_EQ(AskedFor(ChannelOf<radar_t>().name), 4);
   EXPECT_EQ(AskedFor(ChannelOf<truth_t>().name), 0) << "it is there";
   EXPECT_EQ(Status(recorder_).header.step, 1);
+}
+
+TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
+  Go();
+  const auto late = [this] {
+    const status_t& status = Status(recorder_);
+    const auto radar = std::ranges::find(status.input, ChannelOf<radar_t>().name);
+    return status.input_late.at(static_cast<std::size_t>(radar - status.input.begin()));
+  };
+  // GIVEN a hole that is repaired after the next step has come
+  const auto say_all_but_radar = [this](std::int64_t step) {
+    ForEachStepChannel([&]<class M>(std::size_t) {
+      if constexpr (!std::is_same_v<M, radar_t>) Say<M>(step);
+    });
+  };
+  say_all_but_radar(0);
+  say_all_but_radar(1);
+  Say<radar_t>(1);
+  script_.PollUpTo(recorder_);
+  Say<radar_t>(0);
+  script_.PollUpTo(recorder_);
+  EXPECT_EQ(late(), 0) << "it is in the log";
+  // WHEN another message of that step comes
+  auto other = Script::Of<radar_t>(0);
+  other.range_m = 17;
+  script_.Say(other);
+  EXPECT_EQ(late(), 0) << "the one of the log is there";
+  // WHEN one comes twice that was given up before
+  say_all_but_radar(2);
+  say_all_but_radar(3);
+  Say<radar_t>(3);
+  for (int k = 0; k < 20; ++k) script_.PollUpTo(recorder_, At(1.6) + k * milliseconds(21));
+  Say<radar_t>(2);
+  Say<radar_t>(2);
+  EXPECT_EQ(late(), 1);
 }
 
 TEST_F(RecordRuleTest, WritesAtOnceWhatIsComplete) {

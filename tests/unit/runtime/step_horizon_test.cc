@@ -7,6 +7,7 @@ namespace {
 
 constexpr Duration kPeriod = milliseconds(100);
 constexpr std::int64_t kSlack = 2;
+constexpr std::int64_t kRemembered = 64;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }
 
@@ -18,7 +19,7 @@ class StepHorizonTest : public testing::Test {
       horizon_.Heard(step, At(100 * step + late_ms));
     }
   }
-  StepHorizon horizon_{kPeriod, kSlack};
+  StepHorizon horizon_{kPeriod, kSlack, kRemembered* kPeriod};
 };
 
 TEST_F(StepHorizonTest, GoesOnWithTheWallClock) {
@@ -55,11 +56,18 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // Not at once, because this could be the only punctual message among many late ones.
-  Hear(10, StepHorizon::kRemembered - 1, 5);
-  EXPECT_GT(horizon_.Newest(At(27'000)), 290);
-  Hear(10 + StepHorizon::kRemembered, StepHorizon::kRemembered + 20, 5);
-  EXPECT_EQ(horizon_.Newest(At(60'000)), 599 + kSlack);
+  // Not at once: that could be the one message in time among many that are late.
+  Hear(10, kRemembered - 4, 5);
+  EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
+  Hear(10 + kRemembered, kRemembered + 20, 5);
+  EXPECT_EQ(horizon_.Newest(At(20'000)), 199 + kSlack);
+}
+
+TEST_F(StepHorizonTest, RemembersWhatWasInTimeHoweverMuchIsSentAgain) {
+  Hear(0, 10);
+  // WHEN the recorder gets all that it has asked for at once: 32 steps of nine channels, and again
+  for (int i = 0; i < 2 * 32 * 9; ++i) horizon_.Heard(10 + i % 32, At(6000 + i));
+  EXPECT_EQ(horizon_.Newest(At(7000)), 70 + kSlack);
 }
 
 TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
