@@ -1,5 +1,5 @@
 // The table of every role and every channel of Fogline. The wiring of the nodes, the recorder, the
-// digest, the monitors, the tests and the README's tables use it.
+// digest, the monitors, the tests, and the tables of README.md and docs/architecture.md use it.
 #pragma once
 
 #include <array>
