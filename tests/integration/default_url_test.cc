@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-
 #include "services/recorder/event_log.h"
 #include "tests/integration/meeting.h"
+#include "tests/integration/pages.h"
 
 namespace fogline::test {
 namespace {
@@ -133,25 +132,17 @@ TEST(WaitTest, OfARoleThatTheRunnerStartsIsSilent) {
   EXPECT_THAT(role.err, testing::StartsWith("fogline-driver: error: waited 0.2 s for a run on "));
 }
 
-/// The lines of README.md that a person copies to record a run with lcm-logger.
-std::string ReadmeLinesOfLogger() {
-  std::ifstream in(SourceDirectory() / "README.md");
-  std::string block;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("    ")) {
-      block += line.substr(4) + "\n";
-    } else if (block.find("lcm-logger ") != std::string::npos) {
-      return block;
-    } else {
-      block.clear();
-    }
+/// The lines of docs/network.md that a person copies to record a run with lcm-logger.
+std::string LinesOfLogger() {
+  for (const Block& block : BlocksOf(Content(SourceDirectory() / "docs/network.md"))) {
+    if (block.text.find("lcm-logger ") != std::string::npos) return block.text;
   }
   return "";
 }
 
-TEST(ReadmeLinesTest, RecordARunWithLcmLoggerByTheLinesThatItShows) {
+TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
   // GIVEN these lines, with a port that no other test has, and a run of three seconds
-  std::string lines = ReadmeLinesOfLogger();
+  std::string lines = LinesOfLogger();
   const std::string port = "udpm://239.255.76.67:7700?ttl=0";
   ASSERT_THAT(lines, HasSubstr(port));
   lines.replace(lines.find(port), port.size(), FreshMulticastUrl());
