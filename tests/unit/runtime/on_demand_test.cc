@@ -192,6 +192,7 @@ class OnDemandInRealtimeTest : public OnDemandTest {
   OnDemandInRealtimeTest() { script_.SayRun(run_t::GO, -1, kSpeed); }
 
   void Compute(std::int64_t step) {
+    script_.SayRun(run_t::GO, step, kSpeed);  // the progress of the run
     SayTruth(step);
     script_.Poll(node_);
   }
