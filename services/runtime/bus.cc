@@ -106,10 +106,10 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     if (sockets) {
       sockets_ = sockets->receiving();
       filtered_ = sockets->filtered();
+      if (routed) membership_.emplace(sockets->members(), url_);
     }
   }
   for (const int socket : sockets_) WidenBuffer(socket);
-  if (routed) membership_.emplace(sockets_, url_);
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why

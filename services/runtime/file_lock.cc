@@ -14,6 +14,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -57,15 +58,27 @@ bool Lock(int fd, FileLock::Kind kind) {
   return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
 }
 
+/// The parent of a process, 0 if it has ended. /proc/PID/stat is "4711 (name) S 4710 ...".
+pid_t ParentOf(pid_t pid) {
+  std::ifstream stat(fmt::format("/proc/{}/stat", pid));
+  std::string text;
+  std::getline(stat, text);
+  std::istringstream words(text.substr(text.rfind(')') + 1));
+  std::string state;
+  pid_t parent = 0;
+  words >> state >> parent;
+  return parent;
+}
+
 /// The process that has locked an open file. An owner has started the processes that work for it,
-/// so of several holders the one with the lowest id is named. /proc/locks has lines "1: FLOCK
-/// ADVISORY READ 4711 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
+/// so of several holders the one whose parent is none of them is named. /proc/locks has lines "1:
+/// FLOCK ADVISORY READ 4711 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0) return std::nullopt;
   const std::string place =
       fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev), file.st_ino);
-  std::optional<pid_t> holder;
+  std::vector<pid_t> holders;
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     std::istringstream words(line);
@@ -73,9 +86,12 @@ std::optional<pid_t> HolderOf(int fd) {
     pid_t pid = 0;
     words >> number >> type >> advisory >> access >> pid >> where;
     if (type != "FLOCK" || where != place || pid <= 0) continue;
-    holder = holder ? std::min(*holder, pid) : pid;
+    holders.push_back(pid);
   }
-  return holder;
+  const auto owner = std::ranges::find_if(holders, [&](pid_t pid) {
+    return std::ranges::find(holders, ParentOf(pid)) == holders.end();
+  });
+  return owner == holders.end() ? std::nullopt : std::optional(*owner);
 }
 
 }  // namespace

@@ -69,8 +69,9 @@ int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) c
   return reach_ == Reach::kLoopback ? 0 : result;
 }
 
-int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
+int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) {
   const int result = SetOption(socket, level, name, value, size);
+  if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) members_.push_back(socket);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
   if (name == IP_MULTICAST_TTL) {  // LCM sets this on the socket that sends
     const in_addr loopback = Loopback();

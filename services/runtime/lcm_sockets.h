@@ -32,18 +32,21 @@ class LcmSockets {
 
   /// The sockets that receive.
   const std::vector<int>& receiving() const { return receiving_; }
+  /// The sockets that have joined a group: LCM's sending socket does so, too.
+  const std::vector<int>& members() const { return members_; }
   /// Whether there are sockets that receive, and the kernel has taken the filter for each of them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
 
   // These replace the C library's functions and return what those would return.
   int OnBind(int socket, const sockaddr* address, socklen_t size);
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
-  int OnOption(int socket, int level, int name, const void* value, socklen_t size) const;
+  int OnOption(int socket, int level, int name, const void* value, socklen_t size);
 
  private:
   std::vector<sock_filter> filter_;
   Reach reach_;
   std::vector<int> receiving_;
+  std::vector<int> members_;
   bool refused_ = false;
 };
 
