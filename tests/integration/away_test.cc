@@ -94,7 +94,7 @@ TEST_P(AwayTest, CostsNoRunThatWaitsForLonger) {
   ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
   const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
   GetParam().begin(both);
-  std::this_thread::sleep_for(kAway);  // the absence itself
+  std::this_thread::sleep_for(kAway);  // longer than a role waits: what is tested
   GetParam().end(both);
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());

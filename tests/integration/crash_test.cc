@@ -133,7 +133,7 @@ TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
   WatchedRun watched({"--stall-timeout", "1"}, 3000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
-  std::this_thread::sleep_for(milliseconds(1500));  // the pause itself: nothing tells of its end
+  std::this_thread::sleep_for(milliseconds(1500));  // longer than a role may be silent
   // WHEN it goes on, THEN the run does, too
   kill(watched.run().pid(), SIGCONT);
   const auto result = watched.ExpectSameResult();

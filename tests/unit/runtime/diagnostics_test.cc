@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(To, DiagnosticsTest, testing::Values(Pipe, Sockets),
 /// @return the status of the process that says it, as waitpid() tells it
 int StatusInBackground(const char* terminal) {
   setsid();
-  const int own = open(terminal, O_RDWR);  // the first one: it belongs to the session
+  const int own = open(terminal, O_RDWR);  // controls this process and its children: setsid(2)
   termios settings{};
   tcgetattr(own, &settings);
   settings.c_lflag |= TOSTOP;
@@ -186,14 +186,14 @@ TEST(DiagnosticsTerminalTest, AProcessInTheBackgroundIsNotStopped) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
-  const pid_t session = fork();
-  if (session == 0) {
+  const pid_t leader = fork();
+  if (leader == 0) {
     alarm(30);
     const int status = StatusInBackground(ptsname(terminal));
     _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
   }
   int status = 0;
-  waitpid(session, &status, 0);
+  waitpid(leader, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 7);
   EXPECT_THAT(Read(terminal), HasSubstr("a line"));
   close(terminal);
