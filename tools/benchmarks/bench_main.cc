@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -26,16 +27,32 @@ struct Arguments {
   std::vector<std::string> only;
 };
 
-std::vector<Comparison> Wanted(const Arguments& arguments) {
-  const Effort effort = arguments.quick ? Effort::kQuick : Effort::kFull;
-  std::vector<Comparison> wanted;
+std::vector<Comparison> AllComparisons(Effort effort) {
+  std::vector<Comparison> all;
   for (const auto& family : {PeerComparisons, LockstepComparisons, DataComparisons}) {
-    for (Comparison& comparison : family(effort)) {
-      const auto& only = arguments.only;
-      if (!only.empty() && std::ranges::find(only, comparison.name) == only.end()) continue;
-      wanted.push_back(std::move(comparison));
-    }
+    std::ranges::move(family(effort), std::back_inserter(all));
   }
+  return all;
+}
+
+/// "" if a comparison has this name, or else why not.
+std::string WhyNoComparison(const std::string& name) {
+  const std::vector<Comparison> all = AllComparisons(Effort::kQuick);
+  if (std::ranges::find(all, name, &Comparison::name) != all.end()) return "";
+  std::string names;
+  for (const Comparison& comparison : all) {
+    names += (names.empty() ? "" : ", ") + comparison.name;
+  }
+  return fmt::format("\"{}\" is none of {}", name, names);
+}
+
+std::vector<Comparison> Wanted(const Arguments& arguments) {
+  std::vector<Comparison> wanted = AllComparisons(arguments.quick ? Effort::kQuick : Effort::kFull);
+  const auto& only = arguments.only;
+  if (only.empty()) return wanted;
+  std::erase_if(wanted, [&](const Comparison& comparison) {
+    return std::ranges::find(only, comparison.name) == only.end();
+  });
   return wanted;
 }
 
@@ -67,6 +84,7 @@ int Main(int argc, char** argv) {
   app.add_option("--only", arguments.only,
                  "octave, sumo, udpm, udpm-messages, udpm-graph, key, memq, log, cores, memory "
                  "(repeatable)")
+      ->check(WhyNoComparison)
       ->allow_extra_args(false);
   app.add_flag("--json", arguments.json, "Print as JSON");
   app.add_flag("--markdown", arguments.markdown, "Print a Markdown table");
@@ -89,7 +107,7 @@ int main(int argc, char** argv) {
   try {
     return fogline::Main(argc, argv);
   } catch (const std::exception& error) {
-    Complain(fmt::format("fogline-bench: error: {}", error.what()));
+    fogline::Complain(fmt::format("fogline-bench: error: {}", error.what()));
     return fogline::kFailed;
   }
 }

@@ -27,7 +27,6 @@ namespace fogline {
 namespace {
 
 constexpr int kPathHops = 5;
-constexpr double kMicrosPerSecond = 1e6;
 
 constexpr int StepMessages() {
   int count = 0;

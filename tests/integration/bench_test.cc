@@ -1,0 +1,45 @@
+// The benchmarks measure: they start what they compare, and print figures. Whether a goal is met
+// depends on the machine, so it is not tested.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+TEST(BenchTest, MeasuresBothSidesOfAComparison) {
+  const Outcome outcome = RunCommand(
+      {Program("fogline-bench"), "--quick", "--only", "memq", "--rounds", "1", "--json"});
+  ASSERT_THAT(outcome.code, AnyOf(0, 1)) << outcome.err;  // 1: the goal is missed
+  const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_EQ(comparisons[0]["name"], "memq");
+  for (const char* side : {"ours_measured", "reference_measured", "ratio"}) {
+    EXPECT_GT(comparisons[0][side]["median"].get<double>(), 0) << side << ": " << outcome.out;
+  }
+}
+
+TEST(BenchTest, MeasuresTheStepFunctionOfEachRole) {
+  const Outcome outcome =
+      RunCommand({Program("fogline-bench-steps"), "--benchmark_list_tests=true"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* role : {"World", "Radar", "Lidar", "Fusion", "Acc", "Driver", "Arbitrator"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(role));
+  }
+}
+
+TEST(BenchTest, RefusesAComparisonThatItDoesNotKnow) {
+  const Outcome outcome = RunCommand({Program("fogline-bench"), "--only", "carrier-pigeon"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("carrier-pigeon"));
+}
+
+}  // namespace
+}  // namespace fogline::test
