@@ -175,17 +175,24 @@ class BurstRun {
       result.trouble = "did not begin: " + run.Err();
       return result;
     }
-    for (const Burst& burst : plan_.bursts) result.back.push_back(Suffer(burst));
+    for (const Burst& burst : plan_.bursts) {
+      result.back.push_back(Suffer(burst));
+      if (IsAlive(run.pid())) continue;
+      result.trouble = "ended before its last burst was over: " + run.Err();
+      return result;
+    }
     Judge(run, result);
     return result;
   }
 
  private:
   static constexpr double kRest_s = 2;  // seconds without bursts, at both ends of the run
+  // For the commands that begin and end a burst on each machine, beside other runs.
+  static constexpr double kCommands_s = 1;
 
   std::vector<std::string> Command() const {
     double run_s = 2 * kRest_s;
-    for (const Burst& burst : plan_.bursts) run_s += burst.length_s + plan_.clean_s;
+    for (const Burst& burst : plan_.bursts) run_s += burst.length_s + plan_.clean_s + kCommands_s;
     return {Program("fogline"),
             "run",
             "scenario/paper.json",
