@@ -1,10 +1,10 @@
 #include "services/recorder/event_log.h"
 
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -131,10 +131,9 @@ bool EventLogWriter::WriteOut() {
 }
 
 void EventLogWriter::CountWritten(Bytes bytes) {
-  if (bytes.empty()) return;  // for a null buffer zlib returns the initial value
+  if (bytes.empty()) return;  // for a null buffer the library returns the initial value
   written_.bytes += std::ssize(bytes);
-  written_.checksum =
-      static_cast<std::uint32_t>(crc32_z(written_.checksum, bytes.data(), bytes.size()));
+  written_.checksum = libdeflate_crc32(written_.checksum, bytes.data(), bytes.size());
 }
 
 void EventLogWriter::FailToWrite() const {

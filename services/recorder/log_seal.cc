@@ -1,8 +1,8 @@
 #include "services/recorder/log_seal.h"
 
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -34,7 +34,7 @@ std::int64_t CheckOf(log_seal_t seal) {
 }
 
 std::uint32_t ChecksumOf(std::uint32_t before, Bytes bytes) {
-  return static_cast<std::uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
+  return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "tools/sweep/row_sums.h"
 
-#include <boost/crc.hpp>
+#include <libdeflate.h>
 
 #include <fmt/core.h>
 
@@ -16,9 +16,7 @@ std::filesystem::path SumsFile(const std::filesystem::path& csv) {
 }
 
 std::string SumLine(std::string_view row) {
-  boost::crc_32_type sum;
-  sum.process_bytes(row.data(), row.size());
-  return fmt::format("{:08x}\n", sum.checksum());
+  return fmt::format("{:08x}\n", libdeflate_crc32(0, row.data(), row.size()));
 }
 
 bool IsSums(const std::filesystem::path& file) {
