@@ -15,6 +15,7 @@
 #include "tools/fogline/experiment.h"
 #include "tools/fogline/help.h"
 #include "tools/fogline/kept_log.h"
+#include "tools/fogline/log_keeper.h"
 #include "tools/fogline/resumed_log.h"
 #include "tools/fogline/run_outcome.h"
 #include "tools/fogline/transport_arguments.h"
@@ -171,7 +172,8 @@ int RunAnew(RunArguments& arguments) {
                            .resumed = std::nullopt});
 }
 
-/// Continues the run of a log to its end. If the log has the whole run, nothing is computed again.
+/// Continues the run of a log to its end. If the log has the whole run, no step is added; the log
+/// is verified and sealed if it has no seal.
 int Resume(RunArguments& arguments) {
   ExperimentOptions& options = arguments.options;
   const auto key = KeyOf(options.traffic);
@@ -195,8 +197,14 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  if (options.verify.value_or(false)) {
-    outcome.result.verification = VerifyRun(options.log, run, OtherBuildsIn(run));
+  // Its runner ended after the last step and before it sealed the log.
+  const bool to_seal = !run.seal;
+  auto& verification = outcome.result.verification;
+  if (options.verify.value_or(to_seal)) {
+    verification = VerifyRun(options.log, run, OtherBuildsIn(run));
+  }
+  if (to_seal && (!verification || verification->Holds())) {
+    LogKeeper(options.log).Seal(run, {}, {}, key ? &*key : nullptr);
   }
   return Print(arguments, outcome);
 }
