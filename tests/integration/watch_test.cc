@@ -88,8 +88,9 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
     if (channel.pace != Pace::kStep) continue;
     SCOPED_TRACE(channel.name);
     const json& row = Find(seen["channels"], "channel", std::string(channel.name));
-    // The tolerance covers a message more or less at either end, and a busy machine.
-    EXPECT_NEAR(row["rate_hz"].get<double>(), 10, 1.5);
+    // A run that a busy machine has held up makes up for it, so that it is quicker for a while.
+    EXPECT_GT(row["rate_hz"], 5.0);
+    EXPECT_LT(row["rate_hz"], 20.0);
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["undecodable"], 0);
     EXPECT_GT(row["bandwidth_bytes_per_s"], 10.0 * kHeaderEnd * 0.8);
