@@ -1,14 +1,24 @@
-# fogline_add_service(NAME): builds the algorithm services/NAME/*.cc as library fogline_NAME, and
-# NAME_main.cc as program fogline-NAME. Every service folder has this shape.
-function(fogline_add_service name)
-  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cc")
-  list(FILTER sources EXCLUDE REGEX "_main\\.cc$")
+# fogline_add_library(NAME [SUBFOLDER...]): builds *.cc of this folder and of these subfolders as the
+# static library fogline_NAME. The caller states what it links.
+function(fogline_add_library name)
+  set(sources)
+  foreach(folder IN ITEMS . LISTS ARGN)
+    file(GLOB files CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cc")
+    list(FILTER files EXCLUDE REGEX "_main\\.cc$")
+    list(APPEND sources ${files})
+  endforeach()
   add_library(fogline_${name} STATIC ${sources})
   target_include_directories(fogline_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
-  list(TRANSFORM ARGN REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>" OUTPUT_VARIABLE libraries)
-  target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario ${libraries})
-  add_executable(fogline-${name} ${name}/${name}_main.cc)
+endfunction()
+
+# fogline_add_role(NAME): builds *.cc of this folder as the library fogline_NAME, a role's algorithm, and
+# NAME_main.cc as the program fogline-NAME. Every role's folder has this shape.
+function(fogline_add_role name)
+  fogline_add_library(${name})
+  target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario)
+  add_executable(fogline-${name} ${name}_main.cc)
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
+  set_property(GLOBAL APPEND PROPERTY FOGLINE_ROLES ${name})
 endfunction()
 
 # fogline_add_tests(NAME LIBS...): builds every NAME/**/*_test.cc into one program; each TEST is one test of

@@ -12,12 +12,13 @@ install(TARGETS ${programs} RUNTIME DESTINATION bin)
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
 
 # fogline_scenario needs the policies, the conflict measures and their dependencies: a scenario names them.
-foreach(part IN ITEMS lcmtypes scenario runtime policies conflict driver_models driver)
+foreach(part IN ITEMS common lcmtypes scenario runtime policies conflict driver_models minimal_risk)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
   install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib)
 endforeach()
 install(EXPORT fogline-targets NAMESPACE fogline:: DESTINATION lib/cmake/fogline)
-install(FILES services/graph.h DESTINATION include/services)
+install(FILES services/algorithm.h services/graph.h services/input_state.h DESTINATION include/services)
+install(DIRECTORY common DESTINATION include FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY scenario/ DESTINATION include/scenario
   FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE)

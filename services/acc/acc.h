@@ -4,7 +4,7 @@
 #include "fogline/accel_command_t.hpp"
 #include "fogline/ego_t.hpp"
 #include "fogline/track_t.hpp"
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/acc/acc_controller.h"
 
 namespace fogline {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 
 namespace fogline {
 namespace {

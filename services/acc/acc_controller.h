@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "scenario/control.h"
-#include "scenario/vehicle.h"
+#include "scenario/sections/control.h"
+#include "scenario/sections/vehicle.h"
 #include "services/acc/acc_program.h"
 #include "services/acc/qp.h"
 

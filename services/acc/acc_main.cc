@@ -1,6 +1,6 @@
 // The automation agent as a process: answers HOST_EGO and TRACK with ACC_COMMAND. It does not know
 // whether its command is used; the arbitrator decides that.
 #include "services/acc/acc.h"
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) { return fogline::RunService<fogline::Acc>(argc, argv); }

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "scenario/control.h"
+#include "scenario/sections/control.h"
 
 namespace fogline {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "scenario/control.h"
+#include "scenario/sections/control.h"
 #include "services/acc/acc_model.h"
 
 namespace fogline {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/policies/policies.h"
+#include "services/decision/policies/policies.h"
 
 namespace fogline {
 
@@ -19,11 +19,11 @@ Arbitrator::Arbitrator(const Scenario& scenario)
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
-bool Arbitrator::Demands(const Scenario& scenario) {
+bool Arbitrator::UsesOptionalInput(const Scenario& scenario) {
   return RowOf(scenario.arbitrator.policy).needs_surroundings;
 }
 
-void Arbitrator::Hear(const truth_t& truth) {
+void Arbitrator::SetOptionalInput(const truth_t& truth) {
   surroundings_.visibility_m = truth.fog_visibility_m;
   surroundings_.followed = truth.num_followers > 0;
   if (!surroundings_.followed) return;
@@ -44,9 +44,10 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.header = ego.header;
   out_.conflict_m = meter_.conflict();
   out_.doc = meter_.DocOf(out_.conflict_m);
-  const Wish wish = rule_ == Rule::kThreshold ? Compare(out_.doc, threshold_)
-                    : rule_ == Rule::kNever   ? StayAutomated(threshold_)
-                                              : OwnWish(ego, track, automation, driver);
+  const EngagementRequest wish = rule_ == Rule::kThreshold ? Compare(out_.doc, threshold_)
+                                 : rule_ == Rule::kNever
+                                     ? StayAutomated(threshold_)
+                                     : OwnRequest(ego, track, automation, driver);
   out_.threshold = wish.threshold;
   const double wanted = steady_.Step(wish, out_.doc);
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
@@ -67,8 +68,9 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   return out_;
 }
 
-Wish Arbitrator::OwnWish(const ego_t& ego, const track_t& track, const accel_command_t& automation,
-                         const driver_command_t& driver) {
+EngagementRequest Arbitrator::OwnRequest(const ego_t& ego, const track_t& track,
+                                         const accel_command_t& automation,
+                                         const driver_command_t& driver) {
   return policy_->Decide({.doc = out_.doc,
                           .threshold = threshold_,
                           .lambda_human = out_.lambda_human,

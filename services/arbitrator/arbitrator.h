@@ -2,8 +2,8 @@
 // the two offers alone; the arbitrator does not judge them.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
-//     DoC, situation -> policy -> wish                            services/policies
-//     wish -> SteadyWish -> wanted authority                      steady_wish.h
+//     DoC, situation -> policy -> wish                            services/decision/policies
+//     wish -> RequestDebouncer -> wanted authority                      request_debouncer.h
 //     wanted -> TakeOver, if the driver must be asked -> granted  take_over.h
 //     granted, offers -> Transfer -> authority, command           transfer.h
 #pragma once
@@ -11,13 +11,13 @@
 #include <memory>
 #include <optional>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/arbitrator/conflict_meter.h"
-#include "services/arbitrator/steady_wish.h"
-#include "services/arbitrator/take_over.h"
+#include "services/arbitrator/request_debouncer.h"
 #include "services/arbitrator/transfer.h"
+#include "services/decision/policies/policy.h"
+#include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
-#include "services/policies/policy.h"
 
 namespace fogline {
 
@@ -29,12 +29,12 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings: Hear() is then called before every
-  /// Step().
-  static bool Demands(const Scenario& scenario);
+  /// Whether the scenario's policy uses the surroundings: SetOptionalInput() is then called before
+  /// every Step().
+  static bool UsesOptionalInput(const Scenario& scenario);
   /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
   /// meter would give.
-  void Hear(const truth_t& truth);
+  void SetOptionalInput(const truth_t& truth);
 
   /// The host's command for the step that begins here. Call it once per step, in the order of
   /// steps. The result is valid until the next call.
@@ -73,8 +73,8 @@ class Arbitrator {
 
  private:
   /// The wish of a policy with its own rule, for the conflict in out_.
-  Wish OwnWish(const ego_t& ego, const track_t& track, const accel_command_t& automation,
-               const driver_command_t& driver);
+  EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
+                               const accel_command_t& automation, const driver_command_t& driver);
   /// Handles the wish for the human if he must be asked. @return false if the host is in a
   /// manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
@@ -85,7 +85,7 @@ class Arbitrator {
   Rule rule_;
   bool shares_;
   std::unique_ptr<EngagementPolicy> policy_;  // none for a simple rule
-  SteadyWish steady_;
+  RequestDebouncer steady_;
   Transfer transfer_;
   Surroundings surroundings_;
   std::optional<TakeOver> take_over_;  // only of a driver who must be asked

@@ -2,7 +2,7 @@
 // and more to HOST_COMMAND). Only HOST_COMMAND tells the world how the host moves.
 #include "services/arbitrator/arbitrator.h"
 #include "services/arbitrator/failsafe_arbitrator.h"
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) {
   return fogline::RunService<fogline::Arbitrator, fogline::FailsafeArbitrator>(argc, argv);

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 
 namespace fogline {
 

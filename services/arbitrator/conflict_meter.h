@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <memory>
 
-#include "scenario/scenario.h"
-#include "services/conflict/conflict_measure.h"
-#include "services/conflict/doc.h"
+#include "scenario/sections/scenario.h"
+#include "services/decision/conflict/conflict_measure.h"
+#include "services/decision/conflict/one_step/doc.h"
+#include "services/decision/policies/evidence.h"
 #include "services/graph.h"
-#include "services/policies/evidence.h"
 
 namespace fogline {
 
-/// DoC = 1/(1 + exp(-slope (x - centre))). x is z (services/conflict/doc.h), as in the paper, or
-/// the score of another row of services/conflict/measures.cc, as the scenario's measure says. With
-/// measure_scale probability the DoC is the score itself.
+/// DoC = 1/(1 + exp(-slope (x - centre))). x is z (services/decision/conflict/one_step/doc.h), as
+/// in the paper, or the score of another row of services/decision/conflict/conflict_measures.cc, as
+/// the scenario's measure says. With measure_scale probability the DoC is the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is probability but the measure's score is not a probability

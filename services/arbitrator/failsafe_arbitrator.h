@@ -5,14 +5,14 @@
 
 #include <optional>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/arbitrator/arbitrator.h"
 #include "services/arbitrator/failsafe_table.h"
 #include "services/arbitrator/sensor_pairs.h"
 #include "services/graph.h"
-#include "services/minimal_risk/minimal_risk.h"
-#include "services/minimal_risk/modes.h"
-#include "services/runtime/input_state.h"
+#include "services/input_state.h"
+#include "services/models/minimal_risk/minimal_risk.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline {
 
@@ -31,9 +31,11 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// As in Arbitrator. If Hear() is not called, the last values stay in force.
-  static bool Demands(const Scenario& scenario) { return Arbitrator::Demands(scenario); }
-  void Hear(const truth_t& truth) { arbitrator_.Hear(truth); }
+  /// As in Arbitrator. If SetOptionalInput() is not called, the last values stay in force.
+  static bool UsesOptionalInput(const Scenario& scenario) {
+    return Arbitrator::UsesOptionalInput(scenario);
+  }
+  void SetOptionalInput(const truth_t& truth) { arbitrator_.SetOptionalInput(truth); }
 
   /// The host's command for the step of `header`. Call it once per decision; steps may be left out.
   /// The result is valid until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "services/runtime/input_state.h"
+#include "services/input_state.h"
 
 namespace fogline {
 

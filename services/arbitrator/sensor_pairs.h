@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scenario/realtime.h"
+#include "scenario/sections/realtime.h"
 #include "services/graph.h"
-#include "services/runtime/input_state.h"
+#include "services/input_state.h"
 
 namespace fogline {
 

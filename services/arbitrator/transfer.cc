@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "services/arbitrator/steps.h"
-#include "services/policies/policy.h"
+#include "common/whole_steps.h"
+#include "services/decision/policies/policy.h"
 
 namespace fogline {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "scenario/engagement.h"
+#include "scenario/sections/engagement.h"
 
 namespace fogline {
 

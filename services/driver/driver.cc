@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/minimal_risk/modes.h"
+#include "common/errors.h"
+#include "common/text.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline {
 namespace {
@@ -49,7 +49,7 @@ Driver::Driver(const Scenario& scenario)
 // In most modes other than AUTOMATION he drives or has been asked to drive, also while the car
 // stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
 // no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
-void Driver::Hear(const arbitration_t& host) {
+void Driver::SetOptionalInput(const arbitration_t& host) {
   const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
   task_ = monitors ? DriverTask::kMonitors : DriverTask::kDrives;
 }

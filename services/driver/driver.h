@@ -5,28 +5,28 @@
 #include <cstdint>
 #include <optional>
 
-#include "scenario/scenario.h"
-#include "services/driver_models/awareness.h"
-#include "services/driver_models/fog_sight.h"
-#include "services/driver_models/following.h"
-#include "services/driver_models/human_driver.h"
+#include "scenario/sections/scenario.h"
 #include "services/graph.h"
+#include "services/models/driver/awareness.h"
+#include "services/models/driver/fog_sight.h"
+#include "services/models/driver/following.h"
+#include "services/models/driver/human_driver.h"
 
 namespace fogline {
 
 /// By default the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground truth.
 /// He perceives it perfectly and without delay, in fog as in clear air; his readiness is the
 /// scenario's. Each switch of scenario section `human` replaces a part of this by a more realistic
-/// model (services/driver_models).
+/// model (services/models/driver).
 class Driver {
  public:
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps
   explicit Driver(const Scenario& scenario);
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
-  static bool Demands(const Scenario& scenario) { return scenario.human.loses_awareness; }
+  static bool UsesOptionalInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
   /// The command of the step that ends with the next Step(): it says who drove.
-  void Hear(const arbitration_t& host);
+  void SetOptionalInput(const arbitration_t& host);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
   /// memory only if he misjudges or loses awareness. The result is valid until the next call.

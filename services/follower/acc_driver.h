@@ -1,7 +1,7 @@
 // A following car with the ACC of Sourav & Cheng 2024.
 #pragma once
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/acc/acc_controller.h"
 #include "services/follower/car_driver.h"
 

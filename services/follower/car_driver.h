@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "services/driver_models/situation.h"
+#include "services/models/driver/situation.h"
 
 namespace fogline {
 

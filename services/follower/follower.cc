@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "services/follower/acc_driver.h"
-#include "services/follower/cast.h"
+#include "services/follower/driver_assignment.h"
 #include "services/follower/person.h"
 
 namespace fogline {
@@ -30,7 +30,7 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
 /// The driver of this car: `before`, restarted, if both are an ACC; otherwise a new one.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {
-  const Part part = PartOf(scenario, car);
+  const DriverAssignment part = AssignmentOf(scenario, car);
   if (!part.has_acc) return MakePerson(scenario, car, part.style);
   if (auto* acc = dynamic_cast<AccDriver*>(before.get())) {
     acc->Restart(scenario);

@@ -7,7 +7,7 @@
 
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/follower/car_driver.h"
 
 namespace fogline {

@@ -1,6 +1,6 @@
 // The following cars as a process: answers TRUTH with FOLLOWER_COMMAND. They are traffic, not a
 // part of the host's automation.
 #include "services/follower/follower.h"
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) { return fogline::RunService<fogline::Follower>(argc, argv); }

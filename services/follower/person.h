@@ -3,21 +3,21 @@
 
 #include <optional>
 
-#include "scenario/traffic.h"
-#include "services/driver_models/fog_sight.h"
-#include "services/driver_models/human_driver.h"
+#include "scenario/sections/traffic.h"
 #include "services/follower/car_driver.h"
-#include "services/follower_models/safety_response.h"
-#include "services/follower_models/style.h"
+#include "services/models/driver/fog_sight.h"
+#include "services/models/driver/human_driver.h"
+#include "services/models/follower/safety_response.h"
+#include "services/models/follower/style.h"
 
 namespace fogline {
 
-/// The IDM with the parameters of his style (services/follower_models/style.h), inside the Human
-/// Driver Model with its errors and reaction time (services/driver_models/human_driver.h). With a
+/// The IDM with the parameters of his style (services/models/follower/style.h), inside the Human
+/// Driver Model with its errors and reaction time (services/models/driver/human_driver.h). With a
 /// safety model he applies the smaller of its acceleration and his own. The safety model has no
-/// errors, and its own reaction time (services/follower_models/safety_response.h). With sight fog
+/// errors, and its own reaction time (services/models/follower/safety_response.h). With sight fog
 /// both models receive only what he sees in fog, as the host's driver
-/// (services/driver_models/fog_sight.h).
+/// (services/models/driver/fog_sight.h).
 class Person final : public CarDriver {
  public:
   /// @param sight nullopt if he sees perfectly

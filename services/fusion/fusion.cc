@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 
+#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/policies.h"
 #include "services/fusion/line_of_sight.h"
-#include "services/policies/evidence.h"
-#include "services/policies/policies.h"
 
 namespace fogline {
 namespace {
@@ -47,7 +47,7 @@ Fusion::Fusion(const Scenario& scenario)
   selects_ = gating_ || policy_ != nullptr;
 }
 
-bool Fusion::Demands(const Scenario& scenario) {
+bool Fusion::UsesOptionalInput(const Scenario& scenario) {
   return RowOf(scenario.arbitrator.policy).needs_true_gap;
 }
 
@@ -102,7 +102,7 @@ bool Fusion::StartFromLidar(const lidar_t& lidar) {
   return started_ = true;
 }
 
-Trust Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
+SensorSelection Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
   Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
   if (started_) {
     const LineOfSight sight(ekf_.state()[0], radar_offset_m_);
@@ -111,7 +111,7 @@ Trust Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
         .range_m = sight.range_m(),
         .std_m = std::sqrt(ekf_.InnovationVariance(sight.RangeJacobian(), /*noise_variance=*/0))};
   }
-  return policy_->TrustIn({.evidence = evidence, .true_gap_m = true_gap_m_});
+  return policy_->SelectSensors({.evidence = evidence, .true_gap_m = true_gap_m_});
 }
 
 void Fusion::CorrectByRadar(const radar_t& radar) {

@@ -8,11 +8,11 @@
 #include <memory>
 #include <optional>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
+#include "services/decision/policies/policy.h"
 #include "services/fusion/ekf.h"
 #include "services/fusion/gate.h"
 #include "services/graph.h"
-#include "services/policies/policy.h"
 
 namespace fogline {
 
@@ -26,17 +26,18 @@ namespace fogline {
 /// standard deviations that the sensors state (range_std_m and the like): a sensor does not know
 /// when fog deceives it.
 ///
-/// A policy that selects sensors (services/policies) first judges each step's values against the
-/// prediction. The values of a sensor that it does not trust are compared with the prediction, but
-/// correct nothing.
+/// A policy that selects sensors (services/decision/policies) first judges each step's values
+/// against the prediction. The values of a sensor that it does not trust are compared with the
+/// prediction, but correct nothing.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth: Hear() is then called before every Step().
-  static bool Demands(const Scenario& scenario);
+  /// Whether the scenario's policy needs the truth: SetOptionalInput() is then called before every
+  /// Step().
+  static bool UsesOptionalInput(const Scenario& scenario);
   /// Takes only the gap from the truth, for the policy alone.
-  void Hear(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
+  void SetOptionalInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Call it once per step, in the order of steps, beginning with the
   /// first. `ego` has the host's acceleration during the step that ended here. The result is valid
@@ -60,7 +61,7 @@ class Fusion {
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
   /// The policy's trust in the sensors in this step. @pre the filter has predicted
-  Trust Judge(const radar_t& radar, const lidar_t& lidar);
+  SensorSelection Judge(const radar_t& radar, const lidar_t& lidar);
   void CorrectByRadar(const radar_t& radar);
   void CorrectByLidar(const lidar_t& lidar);
   void Correct(Value value, const Comparison& comparison);
@@ -79,7 +80,7 @@ class Fusion {
   double initial_acceleration_variance_;
   std::unique_ptr<EngagementPolicy> policy_;  // none if the policy does not select sensors
   bool selects_ = false;                      // whether gate or policy may refuse a value
-  Trust trust_;
+  SensorSelection trust_;
   std::optional<double> true_gap_m_;
   bool started_ = false;
   track_t out_{};

@@ -1,6 +1,6 @@
 // The process that fuses radar and LiDAR into a track of the car ahead (RADAR, LIDAR, HOST_EGO to
 // TRACK). It does not know whether there is fog.
 #include "services/fusion/fusion.h"
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) { return fogline::RunService<fogline::Fusion>(argc, argv); }

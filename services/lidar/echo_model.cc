@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "services/world/visibility.h"
+#include "services/models/driver/visibility.h"
 
 namespace fogline {
 

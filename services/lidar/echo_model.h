@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "scenario/sensing.h"
+#include "scenario/sections/sensing.h"
 #include "services/lidar/fog_beam.h"
 
 namespace fogline {

@@ -13,7 +13,7 @@
 // L / 2.
 #pragma once
 
-#include "scenario/sensing.h"
+#include "scenario/sections/sensing.h"
 
 namespace fogline {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "services/world/visibility.h"
+#include "services/models/driver/visibility.h"
 
 namespace fogline {
 

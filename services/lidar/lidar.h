@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
+#include "common/random.h"
 #include "fogline/lidar_t.hpp"
 #include "fogline/truth_t.hpp"
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "services/lidar/echo_model.h"
-#include "services/runtime/random.h"
 
 namespace fogline {
 

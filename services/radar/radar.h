@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
+#include "common/random.h"
 #include "fogline/radar_t.hpp"
 #include "fogline/truth_t.hpp"
-#include "scenario/scenario.h"
-#include "services/runtime/random.h"
+#include "scenario/sections/scenario.h"
 
 namespace fogline {
 

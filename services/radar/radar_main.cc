@@ -1,7 +1,7 @@
 // The process `radar`: measures the preceding car once per step. It does not receive the LiDAR's
-// values, and uses the truth only to add errors to it. services/runtime/service.h connects it to
-// its channels.
+// values, and uses the truth only to add errors to it. services/runtime/process/service.h connects
+// it to its channels.
 #include "services/radar/radar.h"
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) { return fogline::RunService<fogline::Radar>(argc, argv); }

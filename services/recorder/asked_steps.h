@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "services/runtime/step_ring.h"
+#include "services/runtime/wire/step_ring.h"
 
 namespace fogline {
 

@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "services/recorder/step_order.h"
+#include "services/log/step_order.h"
 
 namespace fogline {
 namespace {

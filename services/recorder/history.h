@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "services/recorder/remains.h"
-#include "services/runtime/step_ring.h"
+#include "services/log/remains.h"
+#include "services/runtime/wire/step_ring.h"
 
 namespace fogline {
 

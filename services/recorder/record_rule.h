@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-#include "services/runtime/realtime_rule.h"
+#include "services/runtime/realtime/realtime_rule.h"
 
 namespace fogline {
 

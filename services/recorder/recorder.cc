@@ -5,9 +5,9 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "services/recorder/record_rule.h"
-#include "services/runtime/lockstep_rule.h"
+#include "services/runtime/lockstep/lockstep_rule.h"
 
 namespace fogline {
 namespace {
@@ -50,7 +50,7 @@ Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::file
     : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
   // In memory no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
-  budget_ = AnswerBudget(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  budget_ = RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 

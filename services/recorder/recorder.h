@@ -8,10 +8,10 @@
 
 #include <filesystem>
 
+#include "services/log/event_log.h"
 #include "services/recorder/asked_steps.h"
-#include "services/recorder/event_log.h"
 #include "services/recorder/history.h"
-#include "services/runtime/node.h"
+#include "services/runtime/lockstep/node.h"
 
 namespace fogline {
 

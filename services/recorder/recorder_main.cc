@@ -7,9 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "services/recorder/log_of_run.h"
-#include "services/runtime/file_lock.h"
-#include "services/runtime/service.h"
+#include "common/file_lock.h"
+#include "services/log/log_of_run.h"
+#include "services/runtime/process/service.h"
 
 namespace {
 

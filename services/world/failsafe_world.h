@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "services/runtime/input_state.h"
+#include "services/input_state.h"
 #include "services/world/vehicle_fallback.h"
 #include "services/world/world.h"
 

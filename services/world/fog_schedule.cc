@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "services/graph.h"
-#include "services/world/visibility.h"
+#include "services/models/driver/visibility.h"
 
 namespace fogline {
 double FogLevel(FogProfile profile, double x) {

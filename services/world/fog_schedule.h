@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scenario/road.h"
+#include "scenario/sections/road.h"
 
 namespace fogline {
 

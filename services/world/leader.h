@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scenario/road.h"
+#include "scenario/sections/road.h"
 
 namespace fogline {
 

@@ -10,10 +10,10 @@
 #include "fogline/arbitration_t.hpp"
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
-#include "scenario/scenario.h"
-#include "services/minimal_risk/minimal_risk.h"
-#include "services/minimal_risk/modes.h"
-#include "services/runtime/input_state.h"
+#include "scenario/sections/scenario.h"
+#include "services/input_state.h"
+#include "services/models/minimal_risk/minimal_risk.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline {
 

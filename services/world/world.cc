@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "services/graph.h"
 
 namespace fogline {

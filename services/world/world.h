@@ -12,20 +12,20 @@
 #include "fogline/ego_t.hpp"
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
-#include "scenario/scenario.h"
-#include "services/vehicle/longitudinal_vehicle.h"
+#include "scenario/sections/scenario.h"
+#include "services/models/vehicle/longitudinal_vehicle.h"
+#include "services/models/vehicle/motion.h"
 #include "services/world/fog_schedule.h"
 #include "services/world/leader.h"
-#include "services/world/motion.h"
 
 namespace fogline {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
 /// speed of its profile. Each other car is a point mass, which has exactly the commanded
-/// acceleration, or a vehicle that follows the command as far as it can (services/vehicle). The
-/// acceleration of every car is constant within a step (services/world/motion.h). Cars that have
-/// collided do not push each other: unless the run ends, they follow their commands through one
-/// another, and the gap between them is negative.
+/// acceleration, or a vehicle that follows the command as far as it can (services/models/vehicle).
+/// The acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
+/// that have collided do not push each other: unless the run ends, they follow their commands
+/// through one another, and the gap between them is negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;

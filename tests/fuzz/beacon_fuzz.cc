@@ -1,9 +1,9 @@
 // How a program that looks for runs reads beacons from unknown senders. Input: datagrams.
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/announcements.h"
-#include "services/runtime/lcm_url.h"
+#include "common/text.h"
+#include "services/runtime/discovery/announcements.h"
+#include "services/runtime/transport/lcm_url.h"
 #include "tests/fuzz/samples.h"
 #include "tools/watch/announced.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "services/runtime/build_id.h"
+#include "services/runtime/wire/build_id.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace fogline::fuzz {

@@ -1,7 +1,7 @@
 // The reader of event logs. Input: the file.
 #include <algorithm>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "scenario/wording.h"
+#include "common/text.h"
 
 namespace fogline::fuzz {
 namespace {

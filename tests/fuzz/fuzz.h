@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/runtime/wire.h"
+#include "services/runtime/wire/wire.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

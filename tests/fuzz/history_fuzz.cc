@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
+#include "services/log/run_log.h"
+#include "services/log/step_order.h"
 #include "services/recorder/history.h"
-#include "services/recorder/run_log.h"
-#include "services/recorder/step_order.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {

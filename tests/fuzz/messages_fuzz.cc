@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "services/runtime/arrival.h"
+#include "services/runtime/wire/arrival.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {

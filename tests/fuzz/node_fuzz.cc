@@ -7,7 +7,7 @@
 
 #include "services/driver/driver.h"
 #include "services/recorder/recorder.h"
-#include "services/runtime/step_node.h"
+#include "services/runtime/process/step_node.h"
 #include "services/world/failsafe_world.h"
 #include "services/world/world.h"
 #include "tests/fuzz/samples.h"

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 
-#include "scenario/loader.h"
-#include "services/recorder/run_log.h"
-#include "services/runtime/seal.h"
+#include "common/errors.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/message_signer.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {
@@ -120,7 +120,7 @@ std::vector<Input> Seeds() {
 
   // The log of signed traffic as lcm-logger writes it.
   const MemoryFile sealed;
-  Seal seal(SealKey({}), {});
+  MessageSigner seal(SigningKey({}), {});
   {
     EventLogWriter writer(sealed.path());
     for (const Event& event : events) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "services/graph.h"
-#include "services/recorder/event_log.h"
-#include "services/runtime/scenario_parts.h"
+#include "services/log/event_log.h"
+#include "services/runtime/wire/scenario_parts.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace fogline::fuzz {

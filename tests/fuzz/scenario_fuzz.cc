@@ -3,13 +3,13 @@
 #include <string>
 #include <string_view>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace fogline::fuzz {
 namespace {
 
-void DemandPlausible(const Mistake& mistake, std::string_view text) {
+void DemandPlausible(const Diagnostic& mistake, std::string_view text) {
   const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
   Demand(mistake.line >= 1 && mistake.line <= lines, "the line is in the text");
   Demand(mistake.column >= 1, "columns count from 1");
@@ -28,7 +28,7 @@ void DemandScenarioOrMistakes(std::string_view text) {
     Took();
   } catch (const ScenarioError& error) {
     Demand(!error.mistakes().empty(), "who refuses says why");
-    for (const Mistake& mistake : error.mistakes()) DemandPlausible(mistake, text);
+    for (const Diagnostic& mistake : error.mistakes()) DemandPlausible(mistake, text);
     Demand(Printable(error.what()), "no control character reaches the terminal");
   }
 }

@@ -3,34 +3,34 @@
 #include <algorithm>
 #include <array>
 
-#include "services/runtime/seal.h"
+#include "services/runtime/wire/message_signer.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {
 namespace {
 
-SealKey Key(std::uint8_t byte) {
-  SealKey::Secret secret{};
+SigningKey Key(std::uint8_t byte) {
+  SigningKey::Secret secret{};
   secret.fill(byte);
-  return SealKey(secret);
+  return SigningKey(secret);
 }
 
-bool IsGood(const Seal& seal, std::string_view channel, Bytes message) {
-  return seal.Open(channel, message).verdict == Seal::Verdict::kGood;
+bool IsGood(const MessageSigner& seal, std::string_view channel, Bytes message) {
+  return seal.Open(channel, message).verdict == MessageSigner::Verdict::kGood;
 }
 
 /// A message with a good verdict was signed with the key, by a role that may publish it.
-void DemandUnforgeable(const Seal& seal, const ChannelInfo& channel, Bytes message) {
-  const Seal::Opened opened = seal.Open(channel.name, message);
-  Demand((opened.verdict == Seal::Verdict::kNotSigned) == !LooksSealed(message),
+void DemandUnforgeable(const MessageSigner& seal, const ChannelInfo& channel, Bytes message) {
+  const MessageSigner::Opened opened = seal.Open(channel.name, message);
+  Demand((opened.verdict == MessageSigner::Verdict::kNotSigned) == !LooksSigned(message),
          "what looks signed is good or badly signed");
-  if (opened.verdict != Seal::Verdict::kGood) {
+  if (opened.verdict != MessageSigner::Verdict::kGood) {
     Demand(opened.payload.empty(), "what is not good is not given to anybody");
     return;
   }
   bool signed_by_somebody = false;
   for (int role = 0; role <= static_cast<int>(Role::kRunner); ++role) {
-    Seal somebody(Key(1), static_cast<Role>(role));
+    MessageSigner somebody(Key(1), static_cast<Role>(role));
     signed_by_somebody |= std::ranges::equal(somebody.Sign(channel.name, opened.payload), message);
   }
   Demand(signed_by_somebody, "what is good was signed");
@@ -38,16 +38,18 @@ void DemandUnforgeable(const Seal& seal, const ChannelInfo& channel, Bytes messa
 }
 
 /// A signed message is good only with its own channel, its own key and its own bytes.
-void DemandBinding(Seal& seal, std::size_t place, Cutter& cutter, Bytes payload) {
+void DemandBinding(MessageSigner& seal, std::size_t place, Cutter& cutter, Bytes payload) {
   const ChannelInfo& channel = kChannels[place];
   const Bytes sent = seal.Sign(channel.name, payload);
   Input message(sent.begin(), sent.end());
-  const Seal::Opened opened = seal.Open(channel.name, message);
-  Demand(opened.verdict == Seal::Verdict::kGood && std::ranges::equal(opened.payload, payload),
+  const MessageSigner::Opened opened = seal.Open(channel.name, message);
+  Demand(opened.verdict == MessageSigner::Verdict::kGood &&
+             std::ranges::equal(opened.payload, payload),
          "what is signed is good, and is what it was");
   Demand(!IsGood(seal, kChannels[(place + 1) % kNumChannels].name, message),
          "it is not good for another channel");
-  Demand(!IsGood(Seal(Key(2), {}), channel.name, message), "it is not good for another key");
+  Demand(!IsGood(MessageSigner(Key(2), {}), channel.name, message),
+         "it is not good for another key");
   std::size_t at = cutter.Byte();
   at = at << 8 | cutter.Byte();
   const auto change = static_cast<std::uint8_t>(std::max<int>(1, cutter.Byte()));
@@ -58,7 +60,7 @@ void DemandBinding(Seal& seal, std::size_t place, Cutter& cutter, Bytes payload)
 void DemandNoOthersMessages(std::size_t place, std::uint8_t role, Bytes payload) {
   const ChannelInfo& channel = kChannels[place];
   const auto sender = static_cast<Role>(role % (static_cast<int>(Role::kRunner) + 1));
-  Seal seal(Key(1), sender);
+  MessageSigner seal(Key(1), sender);
   const Bytes sent = seal.Sign(channel.name, payload);
   if (channel.pace != Pace::kStep) return;
   Demand(IsGood(seal, channel.name, sent) == (sender == channel.from || sender == Role::kRecorder),
@@ -69,7 +71,7 @@ void DemandNoOthersMessages(std::size_t place, std::uint8_t role, Bytes payload)
 
 std::vector<Input> Seeds() {
   std::vector<Input> seeds;
-  Seal seal(Key(1), {});
+  MessageSigner seal(Key(1), {});
   const auto add = [&](std::size_t channel, const Input& message) {
     Input seed{static_cast<std::uint8_t>(channel), 1, 0, 40, 1};
     seed.insert(seed.end(), message.begin(), message.end());
@@ -95,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t channel = head.Byte() % kNumChannels;
   const std::uint8_t role = head.Byte();
   const Bytes message{data + kHead, size - kHead};
-  Seal seal(fuzz::Key(1), {});
+  MessageSigner seal(fuzz::Key(1), {});
   fuzz::DemandUnforgeable(seal, kChannels[channel], message);
   fuzz::DemandBinding(seal, channel, head, message);
   fuzz::DemandNoOthersMessages(channel, role, message);

@@ -2,7 +2,7 @@
 // odd for RESEND, and a datagram.
 #include <algorithm>
 
-#include "services/runtime/conductor.h"
+#include "services/runtime/coordination/run_coordinator.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {
@@ -11,38 +11,38 @@ namespace {
 constexpr std::size_t kMaxDatagrams = 64;
 constexpr Duration kLongAfter = milliseconds(60'000);
 
-void DemandPrintable(const Conductor& conductor) {
-  Demand(Printable(conductor.error()), "an error can be printed");
-  Demand((conductor.phase() == Conductor::Phase::kFailed) == !conductor.error().empty(),
+void DemandPrintable(const RunCoordinator& coordinator) {
+  Demand(Printable(coordinator.error()), "an error can be printed");
+  Demand((coordinator.phase() == RunCoordinator::Phase::kFailed) == !coordinator.error().empty(),
          "who fails says why");
-  Demand(Printable(conductor.NotReady()), "who is not ready can be printed");
-  const Strangers& strangers = conductor.strangers();
-  Demand(strangers.known().size() <= Strangers::kMax, "strangers fill no memory");
-  const std::string text = strangers.Text();
+  Demand(Printable(coordinator.NotReady()), "who is not ready can be printed");
+  const ForeignPeers& foreign_peers = coordinator.foreign_peers();
+  Demand(foreign_peers.known().size() <= ForeignPeers::kMax, "strangers fill no memory");
+  const std::string text = foreign_peers.Text();
   Demand(Printable(text), "strangers can be printed");
-  Demand(static_cast<std::size_t>(std::ranges::count(text, '\n')) <= Strangers::kMax,
+  Demand(static_cast<std::size_t>(std::ranges::count(text, '\n')) <= ForeignPeers::kMax,
          "a stranger takes one line");
-  static_cast<void>(conductor.Refused());
+  static_cast<void>(coordinator.Refused());
 }
 
 void DemandSoundRunner(Bytes input) {
   Bus bus("memq://");
-  Conductor conductor(bus, {.run_id = kRunId, .scenario_text = std::string(kScenarioText)});
+  RunCoordinator coordinator(bus, {.run_id = kRunId, .scenario_text = std::string(kScenarioText)});
   Cutter cutter(input);
   for (std::size_t i = 0; i < kMaxDatagrams && !cutter.empty(); ++i) {
     const bool resend = cutter.Byte() % 2 == 1;
     const auto& channel = resend ? ChannelOf<resend_t>() : ChannelOf<status_t>();
     bus.Publish(channel.name, cutter.Datagram());
     bus.Drain();
-    conductor.Poll(Clock::now());
+    coordinator.Poll(Clock::now());
   }
-  const bool heard = std::ranges::any_of(kRoles, [&conductor](const RoleInfo& info) {
-    return conductor.member(info.role).status.has_value();
+  const bool heard = std::ranges::any_of(kRoles, [&coordinator](const RoleInfo& info) {
+    return coordinator.member(info.role).status.has_value();
   });
-  if (heard || !conductor.strangers().known().empty()) Took();
-  DemandPrintable(conductor);
-  conductor.Poll(Clock::now() + kLongAfter);  // nothing has moved: the runner must blame a role
-  DemandPrintable(conductor);
+  if (heard || !coordinator.foreign_peers().known().empty()) Took();
+  DemandPrintable(coordinator);
+  coordinator.Poll(Clock::now() + kLongAfter);  // nothing has moved: the runner must blame a role
+  DemandPrintable(coordinator);
 }
 
 void Add(const status_t& status, Input& seed) {
@@ -63,11 +63,11 @@ std::vector<Input> Seeds() {
   all_ready.push_back(1);
   AddDatagram(Encoded(Sample<resend_t>(0)), all_ready);
 
-  Input strangers;
+  Input foreign_peers;
   for (int i = 0; i < 3; ++i) {
     status.header.run_id = kRunId + 1 + i;
     status.host = "lab\x1b[2J";
-    Add(status, strangers);
+    Add(status, foreign_peers);
   }
   Input failed;
   status = Sample<status_t>(1);
@@ -81,7 +81,7 @@ std::vector<Input> Seeds() {
   status.instance = 1;
   status.host = "\xff\n";
   Add(status, twice);
-  return {all_ready, strangers, failed, twice};
+  return {all_ready, foreign_peers, failed, twice};
 }
 
 }  // namespace fogline::fuzz

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "services/runtime/tcpq_frame.h"
+#include "services/runtime/wire/tcpq_frame.h"
 #include "tests/fuzz/samples.h"
 
 namespace fogline::fuzz {

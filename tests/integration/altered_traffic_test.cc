@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

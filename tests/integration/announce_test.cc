@@ -11,11 +11,11 @@
 #include <functional>
 #include <thread>
 
-#include "services/recorder/event_log.h"
-#include "services/recorder/log_seal.h"
-#include "services/runtime/announcements.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/this_process.h"
+#include "common/process/this_process.h"
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/discovery/announcements.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/integration/meeting.h"
 #include "tests/support/network_test.h"
 

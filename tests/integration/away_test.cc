@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "services/runtime/clock.h"
-#include "services/runtime/runner_watch.h"
+#include "common/clock.h"
+#include "services/runtime/lockstep/runner_watch.h"
 #include "tests/support/children.h"
 #include "tests/support/network_test.h"
 

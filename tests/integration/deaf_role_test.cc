@@ -3,7 +3,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "services/recorder/event_log.h"
+#include "services/log/event_log.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {

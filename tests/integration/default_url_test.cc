@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/recorder/event_log.h"
+#include "services/log/event_log.h"
 #include "tests/integration/meeting.h"
 #include "tests/integration/pages.h"
 

@@ -18,8 +18,8 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/clock.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <set>
 
-#include "services/runtime/bus.h"
-#include "services/runtime/multicast_route.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/multicast_route.h"
 #include "tests/integration/find_in_json.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"

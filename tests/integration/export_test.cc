@@ -20,8 +20,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/recorder/run_log.h"
-#include "services/runtime/wire.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
 #include "tests/support/verbs.h"
 

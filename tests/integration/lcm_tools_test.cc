@@ -11,10 +11,10 @@
 #include <sstream>
 
 #include "services/driver/driver.h"
-#include "services/recorder/event_log.h"
-#include "services/recorder/log_seal.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/step_node.h"
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/process/step_node.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -195,8 +195,8 @@ void RemoveSignatures(Traffic& traffic) {
     const auto found = traffic.find(channel.name);
     if (found == traffic.end()) continue;
     for (Payload& payload : found->second) {
-      ASSERT_TRUE(LooksSealed(payload)) << channel.name;
-      payload.resize(payload.size() - kSealBytes);
+      ASSERT_TRUE(LooksSigned(payload)) << channel.name;
+      payload.resize(payload.size() - kSignatureBytes);
     }
   }
 }
@@ -205,7 +205,7 @@ void RemoveSignatures(Traffic& traffic) {
 /// the receiver accepts
 std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   Bus bus(FreshMulticastUrl());
-  bus.Secure(Seal(SealKey::Load(key), Role::kFusion));
+  bus.Secure(MessageSigner(SigningKey::Load(key), Role::kFusion));
   std::size_t truths = 0;
   bus.Subscribe(
       "TRUTH", [&truths](Arrival& arrival) { truths += arrival.As<truth_t>() != nullptr ? 1 : 0; });
@@ -228,7 +228,7 @@ class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
       : bus_(url), logger_(logger), spy_(spy) {
-    if (!key.empty()) bus_.Secure(Seal(SealKey::Load(key), Role::kDriver));
+    if (!key.empty()) bus_.Secure(MessageSigner(SigningKey::Load(key), Role::kDriver));
     bus_.Subscribe("TRUTH", [this](Bytes truth) { begun_ = ReadInt64(truth, kStepOffset) + 1; });
     node_.emplace(bus_, std::nullopt);
   }
@@ -289,7 +289,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
                                    "--log",
                                    own};
   if (!key.empty()) {
-    SealKey::Create(key);
+    SigningKey::Create(key);
     command.insert(command.end(), {"--key", key});
   }
   Background run(command);

@@ -11,10 +11,10 @@
 #include <fstream>
 #include <functional>
 
-#include "services/recorder/event_log.h"
-#include "services/recorder/log_seal.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/seal.h"
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/message_signer.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -246,8 +246,8 @@ TEST_F(LogIntegrityTest, TheFileOfASealedLogIsComparedByDigest) {
 TEST_F(LogIntegrityTest, ALogIsSignedWithTheKeyOfItsRun) {
   const std::string key = folder_.File("key");
   const std::string other = folder_.File("other_key");
-  SealKey::Create(key);
-  SealKey::Create(other);
+  SigningKey::Create(key);
+  SigningKey::Create(other);
   for (const char* transport : {"direct", "memq", "udpm"}) {
     SCOPED_TRACE(transport);
     const std::string log = folder_.File(std::string(transport) + ".lcm");
@@ -305,7 +305,7 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
 
 TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInRealTime) {
   const std::string key = folder_.File("key");
-  SealKey::Create(key);
+  SigningKey::Create(key);
   const std::string lockstep = DirectLog("lockstep.lcm", {"--key", key});
   ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--speed",
                         "10", "--quiet", "--set", "/steps=50", "--key", key, "--log", log_})
@@ -325,8 +325,8 @@ TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARun
 TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
   const std::string key = folder_.File("key");
   const std::string other = folder_.File("other_key");
-  SealKey::Create(key);
-  SealKey::Create(other);
+  SigningKey::Create(key);
+  SigningKey::Create(other);
   // GIVEN the signed log of a run that was interrupted
   Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "memq", "--pace",
                   "10", "--key", key, "--log", log_});

@@ -14,7 +14,7 @@
 
 #include <fmt/core.h>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {

@@ -9,8 +9,8 @@
 #include <map>
 #include <thread>
 
+#include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/clock.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {

@@ -9,11 +9,11 @@
 #include <set>
 #include <thread>
 
-#include "services/recorder/event_log.h"
-#include "services/runtime/clock.h"
-#include "services/runtime/multicast_route.h"
-#include "services/runtime/runner_watch.h"
-#include "services/runtime/wire.h"
+#include "common/clock.h"
+#include "services/log/event_log.h"
+#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {

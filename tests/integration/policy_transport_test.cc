@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "tests/integration/transports.h"
 
 namespace fogline::test {

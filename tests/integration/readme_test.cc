@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/integration/pages.h"
 #include "tests/support/command.h"
 

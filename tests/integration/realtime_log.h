@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "services/recorder/event_log.h"
-#include "services/runtime/wire.h"
+#include "services/log/event_log.h"
+#include "services/runtime/wire/wire.h"
 
 namespace fogline::test {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/integration/realtime_log.h"
 #include "tests/support/command.h"
 

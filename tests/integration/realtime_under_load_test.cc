@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "services/recorder/event_log.h"
-#include "services/runtime/wire.h"
+#include "services/log/event_log.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/runtime/tcpq_frame.h"
+#include "services/runtime/wire/tcpq_frame.h"
 #include "tests/integration/relay_fixture.h"
 
 namespace fogline::test {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/bus.h"
-#include "services/runtime/tcpq_client.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/tcpq_client.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

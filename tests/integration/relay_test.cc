@@ -14,8 +14,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/recorder/event_log.h"
-#include "services/recorder/log_seal.h"
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
 #include "tests/integration/relay_fixture.h"
 
 namespace fogline::test {

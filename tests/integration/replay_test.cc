@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/recorder/log_seal.h"
-#include "services/runtime/wire.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -10,9 +10,9 @@
 #include <iterator>
 #include <random>
 
-#include "services/recorder/event_log.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/scenario_parts.h"
+#include "services/log/event_log.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/scenario_parts.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -70,7 +70,7 @@ class ResumeTest : public testing::Test {
     // differ. With a key, the last event has a signature.
     const bool is_signed = std::ranges::find(more, "--key") != more.end();
     EXPECT_EQ(std::filesystem::file_size(log_),
-              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? kSealBytes : 0));
+              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? kSignatureBytes : 0));
     return result;
   }
   /// Kills the runner, not its roles, as soon as there are so many bytes in the log.

@@ -11,7 +11,7 @@
 #include <set>
 #include <thread>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -87,7 +87,7 @@ Message Copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 class SignedTrafficTest : public testing::Test {
  protected:
   SignedTrafficTest() {
-    for (const std::string& file : {key_, other_key_}) SealKey::Create(file);
+    for (const std::string& file : {key_, other_key_}) SigningKey::Create(file);
   }
 
   std::vector<std::string> Run(const std::vector<std::string>& more) {
@@ -132,13 +132,13 @@ TEST_F(SignedTrafficTest,
   ASSERT_GT(recorded.size(), 300U);
   const std::int64_t earlier_id = Intruder::RunIdOf(recorded.front().second);
   // WHEN an intruder answers every message of a run with forgeries, a STOP among them
-  Seal wrong_key(SealKey::Load(other_key_), std::nullopt);
-  Seal wrong_sender(SealKey::Load(key_), Role::kLidar);
+  MessageSigner wrong_key(SigningKey::Load(other_key_), std::nullopt);
+  MessageSigner wrong_sender(SigningKey::Load(key_), Role::kLidar);
   std::size_t next = 0;
   Background run(Run({"--key", key_, "--set", "/steps=60", "--pace", "3"}));
   intruder.AccompanyUntilTheEnd(run, {earlier_id},
                                 [&](const std::string& channel, const Message& message) {
-                                  const Message payload = Copy(WithoutSeal(message));
+                                  const Message payload = Copy(WithoutSignature(message));
                                   Message forged = Forged(payload);
                                   if (channel == "RUN") forged[kHeaderEnd] = run_t::STOP;
                                   Message altered = message;
@@ -271,7 +271,7 @@ TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
   Intruder intruder(url_);
   bool signed_steps = false;
   intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
-    signed_steps = signed_steps || (channel == "TRUTH" && LooksSealed(message));
+    signed_steps = signed_steps || (channel == "TRUTH" && LooksSigned(message));
   });
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=20"));
   EXPECT_TRUE(signed_steps);

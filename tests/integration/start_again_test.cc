@@ -13,8 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/clock.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"

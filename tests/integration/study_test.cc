@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/conflict/measures.h"
+#include "services/decision/conflict/conflict_measures.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -10,9 +10,9 @@
 #include <regex>
 #include <sstream>
 
-#include "services/recorder/run_log.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/scenario_parts.h"
+#include "services/log/run_log.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/scenario_parts.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

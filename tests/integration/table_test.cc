@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -14,7 +14,7 @@
 #include <memory>
 #include <set>
 
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/integration/find_in_json.h"
 #include "tests/support/command.h"
 

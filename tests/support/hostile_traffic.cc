@@ -26,7 +26,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include "services/runtime/wire.h"
+#include "services/runtime/wire/wire.h"
 
 namespace fogline::test {
 namespace {

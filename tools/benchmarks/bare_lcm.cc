@@ -17,10 +17,10 @@
 #include <fmt/core.h>
 
 #include "services/graph.h"
-#include "services/runtime/bus.h"
+#include "services/runtime/transport/bus.h"
 #include "tools/benchmarks/program.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 // Bytes of a typical per-step message (RADAR has 73, TRUTH 180). The first eight bytes are the
@@ -193,4 +193,4 @@ double BareLogReadSeconds(const std::filesystem::path& log) {
   });
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::benchmarks {
 
 /// A process that publishes one message on each of its outputs as soon as the newest messages on
 /// all its inputs belong to the same step.
@@ -31,4 +31,4 @@ double BareMemqStepSeconds(int hops, int steps);
 /// Seconds in which LCM's own reader reads all events of a log.
 double BareLogReadSeconds(const std::filesystem::path& log);
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

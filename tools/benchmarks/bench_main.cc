@@ -10,11 +10,11 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include "services/runtime/diagnostics.h"
+#include "common/process/console.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/present.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 enum ExitCode : int { kAllMet = 0, kMissed = 1, kBadUsage = 2, kFailed = 3 };
@@ -101,13 +101,13 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::benchmarks
 
 int main(int argc, char** argv) {
   try {
-    return fogline::Main(argc, argv);
+    return fogline::benchmarks::Main(argc, argv);
   } catch (const std::exception& error) {
     fogline::Complain(fmt::format("fogline-bench: error: {}", error.what()));
-    return fogline::kFailed;
+    return fogline::benchmarks::kFailed;
   }
 }

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 /// Linear interpolation between the two nearest values.
@@ -57,4 +57,4 @@ Finding Compare(const Comparison& comparison, int rounds) {
           .note = ""};
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::benchmarks {
 
 /// The side of its goal on which a ratio has to lie.
 enum class Bound { kAtMost, kAtLeast };
@@ -54,4 +54,4 @@ struct Finding {
 /// Measures. The side that goes first changes from round to round.
 Finding Compare(const Comparison& comparison, int rounds);
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

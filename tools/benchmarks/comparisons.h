@@ -5,7 +5,7 @@
 
 #include "tools/benchmarks/comparison.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 
 /// How long the measurements take.
 enum class Effort { kQuick, kFull };
@@ -19,4 +19,4 @@ std::vector<Comparison> PeerComparisons(Effort effort);
 /// Sweeps and logs: cores, memory, reading speed.
 std::vector<Comparison> DataComparisons(Effort effort);
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

@@ -5,7 +5,7 @@
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 // A step has nine messages: this is a million messages and eight.
@@ -85,4 +85,4 @@ std::vector<Comparison> DataComparisons(Effort effort) {
   };
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

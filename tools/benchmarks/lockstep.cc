@@ -23,7 +23,7 @@
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 constexpr int kPathHops = 5;
@@ -127,4 +127,4 @@ std::vector<Comparison> LockstepComparisons(Effort effort) {
   };
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

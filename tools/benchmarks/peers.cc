@@ -6,13 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenario/loader.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/measures/measures.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/run_metrics.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 constexpr double kCars = 3;
@@ -100,4 +100,4 @@ std::vector<Comparison> PeerComparisons(Effort effort) {
   };
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

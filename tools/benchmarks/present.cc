@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 std::string CpuModel() {
@@ -130,4 +130,4 @@ std::string ToJson(const std::vector<Finding>& findings, const Occasion& occasio
   return json.dump(2) + "\n";
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

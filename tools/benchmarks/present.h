@@ -6,7 +6,7 @@
 
 #include "tools/benchmarks/comparison.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 
 /// Place and time of a measurement.
 struct Occasion {
@@ -22,4 +22,4 @@ std::string ToText(const std::vector<Finding>& findings, const Occasion& occasio
 std::string ToMarkdown(const std::vector<Finding>& findings, const Occasion& occasion);
 std::string ToJson(const std::vector<Finding>& findings, const Occasion& occasion);
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

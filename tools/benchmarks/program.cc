@@ -15,7 +15,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 constexpr int kCannotStart = 127;
@@ -100,4 +100,4 @@ ProgramResult RunProgram(const std::vector<std::string>& command) {
           .peak_memory_mb = kKiB * static_cast<double>(usage.ru_maxrss) * 1e-6};
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

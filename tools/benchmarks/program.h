@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::benchmarks {
 
 /// A program of this build, such as "fogline".
 std::string ProgramPath(const std::string& name);
@@ -33,4 +33,4 @@ double SecondsOf(Work&& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
-}  // namespace fogline
+}  // namespace fogline::benchmarks

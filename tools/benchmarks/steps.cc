@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "scenario/loader.h"
-#include "services/closed_loop/closed_loop.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
 
-namespace fogline {
+namespace fogline::benchmarks {
 namespace {
 
 /// Copies of the messages of a step.
@@ -176,6 +176,6 @@ void ClosedLoopConstruction(benchmark::State& state) {
 BENCHMARK(ClosedLoopConstruction);
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::benchmarks
 
 BENCHMARK_MAIN();

@@ -8,7 +8,7 @@
 
 #include <nlopt.hpp>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 
 namespace fogline {
 namespace {

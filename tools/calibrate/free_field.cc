@@ -8,9 +8,10 @@
 
 #include <fmt/core.h>
 
-#include "scenario/catalogue.h"
-#include "scenario/loader.h"
-#include "scenario/wording.h"
+#include "common/errors.h"
+#include "common/text.h"
+#include "scenario/io/catalogue.h"
+#include "scenario/sections/field_text.h"
 
 namespace fogline {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scenario/assignment.h"
-#include "scenario/scenario.h"
+#include "scenario/io/assignment.h"
+#include "scenario/sections/scenario.h"
 
 namespace fogline {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
+#include "common/errors.h"
+#include "common/text.h"
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "tools/calibrate/free_field.h"
 #include "tools/calibrate/target.h"
+#include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
-#include "tools/sweep/statistics.h"
 
 namespace fogline {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/core.h>
 
-#include "scenario/json.h"
-#include "scenario/wording.h"
+#include "common/text.h"
+#include "scenario/io/json.h"
 
 namespace fogline {
 namespace {
@@ -75,14 +75,14 @@ std::string Wrapped(std::string_view pointer, std::string_view json) {
 }
 
 bool IsJson(std::string_view text) {
-  MistakeList ignored;
+  DiagnosticList ignored;
   return ParseJson(text, 0, ignored).has_value();
 }
 
 }  // namespace
 
 std::string WithValue(std::string_view text, std::string_view pointer, std::string_view json) {
-  MistakeList mistakes;
+  DiagnosticList mistakes;
   const std::optional<JsonValue> root = ParseJson(text, 0, mistakes);
   if (!root) throw std::invalid_argument("WithValue: not JSON");
   const JsonValue* at = &*root;

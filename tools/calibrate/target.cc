@@ -9,11 +9,11 @@
 
 #include <fmt/core.h>
 
-#include "scenario/file.h"
-#include "scenario/json.h"
-#include "scenario/loader.h"
-#include "scenario/mistakes.h"
-#include "scenario/wording.h"
+#include "common/file.h"
+#include "common/text.h"
+#include "scenario/io/diagnostic_list.h"
+#include "scenario/io/json.h"
+#include "scenario/io/loader.h"
 
 namespace fogline {
 namespace {
@@ -28,7 +28,7 @@ std::optional<double> AsNumber(const JsonValue& value) {
 /// becomes NaN.
 class RowReader {
  public:
-  RowReader(const JsonObject& object, std::string pointer, MistakeList& mistakes)
+  RowReader(const JsonObject& object, std::string pointer, DiagnosticList& mistakes)
       : object_(object), pointer_(std::move(pointer)), mistakes_(mistakes) {}
 
   void Number(std::string_view name, double& field, const NumberSpec& spec) {
@@ -53,7 +53,7 @@ class RowReader {
 
   const JsonObject& object_;
   std::string pointer_;
-  MistakeList& mistakes_;
+  DiagnosticList& mistakes_;
 };
 
 std::optional<double> Present(double value) {
@@ -61,7 +61,7 @@ std::optional<double> Present(double value) {
 }
 
 std::optional<TargetRow> ReadRow(const JsonValue& value, const std::string& pointer,
-                                 MistakeList& mistakes) {
+                                 DiagnosticList& mistakes) {
   const auto* object = value.As<JsonObject>();
   const JsonMember* threshold = object ? FindMember(*object, "threshold") : nullptr;
   if (threshold == nullptr || !AsNumber(threshold->value)) {
@@ -76,7 +76,7 @@ std::optional<TargetRow> ReadRow(const JsonValue& value, const std::string& poin
       .threshold = row.threshold, .si_pct = Present(row.si_pct), .rhe_pct = Present(row.rhe_pct)};
 }
 
-std::vector<TargetRow> ReadRows(const JsonValue& root, MistakeList& mistakes) {
+std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& mistakes) {
   const auto* object = root.As<JsonObject>();
   const JsonMember* rows = object != nullptr ? FindMember(*object, "rows") : nullptr;
   const auto* items = rows != nullptr ? rows->value.As<JsonArray>() : nullptr;
@@ -95,12 +95,12 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, MistakeList& mistakes) {
 
 /// Throws all mistakes, each with its place as in a scenario, but without the hints about fields of
 /// scenarios.
-[[noreturn]] void Throw(MistakeList& mistakes, const std::vector<Source>& sources) {
+[[noreturn]] void Throw(DiagnosticList& mistakes, const std::vector<Source>& sources) {
   std::string text;
   try {
     mistakes.Throw(sources);
   } catch (const ScenarioError& error) {
-    for (const Mistake& mistake : error.mistakes()) {
+    for (const Diagnostic& mistake : error.mistakes()) {
       text += fmt::format("{}{}:{}:{}: error: {}{}{}", text.empty() ? "" : "\n", mistake.file,
                           mistake.line, mistake.column, mistake.pointer,
                           mistake.pointer.empty() ? "" : ": ", mistake.message);
@@ -116,7 +116,7 @@ std::vector<TargetRow> ReadTarget(const std::filesystem::path& file) {
   if (!read.error.empty()) {
     throw InputError(fmt::format("{}: error: --target: {}", PathText(file), read.error));
   }
-  MistakeList mistakes;
+  DiagnosticList mistakes;
   std::vector<TargetRow> target;
   if (const auto root = ParseJson(read.text, 0, mistakes)) target = ReadRows(*root, mistakes);
   if (!mistakes.empty()) Throw(mistakes, {{.name = file.string(), .text = read.text}});

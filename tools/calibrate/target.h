@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 
 namespace fogline {
 

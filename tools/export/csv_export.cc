@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "common/atomic_file.h"
+#include "common/process/interrupt.h"
 #include "services/graph.h"
-#include "services/runtime/interrupt.h"
-#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -52,7 +52,7 @@ void AppendRow(const ChannelTable& table, std::size_t row, std::string& text) {
   text += '\n';
 }
 
-void WriteChannel(const ChannelTable& table, WholeFile& file) {
+void WriteChannel(const ChannelTable& table, AtomicFile& file) {
   std::string text = HeaderLine(table);
   for (std::size_t row = 0; row < table.messages; ++row) {
     AppendRow(table, row, text);
@@ -101,16 +101,16 @@ bool IsCsvExport(const std::filesystem::path& file) {
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   // The files get their names only when all of them are complete, so that no folder has files of
   // two logs.
-  std::deque<WholeFile> files;
+  std::deque<AtomicFile> files;
   for (const ChannelTable& table : tables.channels) {
     WriteChannel(table, files.emplace_back(FileOf(table.name, folder)));
   }
   files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
-  for (WholeFile& file : files) file.Close();
+  for (AtomicFile& file : files) file.Close();
   if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
   // The scenario first: where it stands, all channels do.
   for (auto file = files.rbegin(); file != files.rend(); ++file) file->RemoveOld();
-  for (WholeFile& file : files) file.Finish();
+  for (AtomicFile& file : files) file.Finish();
 }
 
 }  // namespace fogline

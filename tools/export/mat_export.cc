@@ -16,10 +16,10 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/runtime/interrupt.h"
-#include "tools/sweep/whole_file.h"
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
 
 namespace fogline {
 namespace {
@@ -161,7 +161,7 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
         "log as CSV",
         PathText(path), table.name));
   }
-  WholeFile file(path);
+  AtomicFile file(path);
   std::unique_ptr<mat_t, Free> mat(Mat_CreateVer(file.part().c_str(), kHeader, MAT_FT_MAT5));
   if (mat == nullptr) Fail(path);
   const auto write = [&](const Variable& variable) {

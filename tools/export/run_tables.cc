@@ -7,11 +7,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/recorder/run_log.h"
-#include "services/runtime/interrupt.h"
-#include "services/runtime/wire.h"
+#include "common/errors.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/wire.h"
 
 namespace fogline {
 namespace {

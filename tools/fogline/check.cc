@@ -7,13 +7,13 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/experiment.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "scenario/io/loader.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
+#include "tools/runner/experiment.h"
 
 namespace fogline {
 namespace {
@@ -27,7 +27,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json ToJson(const Mistake& mistake) {
+nlohmann::ordered_json ToJson(const Diagnostic& mistake) {
   return {{"file", mistake.file},       {"line", mistake.line}, {"column", mistake.column},
           {"pointer", mistake.pointer}, {"rule", mistake.rule}, {"message", mistake.message}};
 }
@@ -46,7 +46,7 @@ int CheckFiles(const CheckOptions& options) {
       }
     } catch (const ScenarioError& error) {
       code = kBadInput;
-      for (const Mistake& mistake : error.mistakes()) mistakes.push_back(ToJson(mistake));
+      for (const Diagnostic& mistake : error.mistakes()) mistakes.push_back(ToJson(mistake));
       if (!options.json) Complain(error.what());
     }
   }

@@ -11,17 +11,17 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/csv.h"
-#include "scenario/csv_series.h"
-#include "scenario/file.h"
-#include "scenario/json.h"
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
-#include "tools/sweep/whole_file.h"
+#include "common/atomic_file.h"
+#include "common/csv.h"
+#include "common/csv_series.h"
+#include "common/file.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "scenario/io/json.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {
@@ -266,7 +266,7 @@ int RunCompare(const CompareArguments& arguments) {
   const Comparison comparison = Compare(run, recording, has_out ? &out : nullptr);
   if (has_out) {
     WatchInterrupts();  // an interrupt leaves no partial file
-    WholeFile file(arguments.out);
+    AtomicFile file(arguments.out);
     file.Write(out.str());
     file.Finish();
   }

@@ -5,12 +5,12 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/difference.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
+#include "tools/replay/difference.h"
 
 namespace fogline {
 namespace {

@@ -9,14 +9,14 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/recorder/run_log.h"
-#include "services/runtime/build_id.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/seal.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/build_id.h"
+#include "services/runtime/wire/message_signer.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {
@@ -33,8 +33,8 @@ struct Signature {
 };
 
 /// @param key with which a log must be signed; nullptr: any key or none
-Signature SignatureOf(const RunLog& run, const SealKey* key) {
-  const bool is_signed = run.seal && LooksSealed(run.seal->event);
+Signature SignatureOf(const RunLog& run, const SigningKey* key) {
+  const bool is_signed = run.seal && LooksSigned(run.seal->event);
   if (key == nullptr) return {is_signed ? "not checked" : "none", ""};
   if (!run.seal) return {"none", "not sealed, so nothing is signed"};
   switch (VerifySeal(*run.seal, *key)) {
@@ -79,8 +79,8 @@ bool IsUnprovenCopy(const RunLog& run) { return run.realtime && SealState(run) =
 int RunDigest(const DigestArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool sound = true;
-  std::optional<SealKey> key;
-  if (!arguments.key.empty()) key = SealKey::Load(arguments.key);
+  std::optional<SigningKey> key;
+  if (!arguments.key.empty()) key = SigningKey::Load(arguments.key);
   const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     RunLogReader reader(log, RunLogReader::Compared::kFile);
     while (reader.Next() != nullptr) {

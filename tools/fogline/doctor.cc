@@ -7,17 +7,17 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/doctor/findings.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/errors.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
+#include "tools/doctor/doctor_findings.h"
 
 namespace fogline {
 namespace {
 
-using Level = Finding::Level;
+using Level = doctor::Finding::Level;
 
 constexpr const char* kExplanation =
     R"(Each finding is a line: ok, warning (it works, but slower or without some convenience) or problem
@@ -41,7 +41,7 @@ struct DoctorArguments {
 };
 
 /// Runs an examination. If it throws, that is a finding too.
-void Attempt(const char* check, Findings& findings, const std::function<void()>& examine) {
+void Attempt(const char* check, doctor::Findings& findings, const std::function<void()>& examine) {
   try {
     examine();
   } catch (const InputError&) {
@@ -51,24 +51,24 @@ void Attempt(const char* check, Findings& findings, const std::function<void()>&
   }
 }
 
-Findings Examine(const std::string& url) {
+doctor::Findings Examine(const std::string& url) {
   const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  Findings findings;
-  Attempt("network", findings, [&] { ExamineNetwork(url, findings); });
+  doctor::Findings findings;
+  Attempt("network", findings, [&] { doctor::ExamineNetwork(url, findings); });
   const bool works = std::ranges::none_of(
-      findings, [](const Finding& finding) { return finding.level == Level::kProblem; });
-  if (works) Attempt("other_runs", findings, [&] { ExamineTraffic(url, findings); });
-  Attempt("processes", findings, [&] { ExamineProcesses(findings); });
-  Attempt("programs", findings, [&] { ExaminePrograms(programs, findings); });
-  Attempt("tools", findings, [&] { ExamineTools(programs, findings); });
-  Attempt("machine", findings, [&] { ExamineMachine(findings); });
+      findings, [](const doctor::Finding& finding) { return finding.level == Level::kProblem; });
+  if (works) Attempt("other_runs", findings, [&] { doctor::ExamineTraffic(url, findings); });
+  Attempt("processes", findings, [&] { doctor::ExamineProcesses(findings); });
+  Attempt("programs", findings, [&] { doctor::ExaminePrograms(programs, findings); });
+  Attempt("tools", findings, [&] { doctor::ExamineTools(programs, findings); });
+  Attempt("machine", findings, [&] { doctor::ExamineMachine(findings); });
   return findings;
 }
 
-void PrintAsJson(const std::string& url, const Findings& findings) {
+void PrintAsJson(const std::string& url, const doctor::Findings& findings) {
   nlohmann::ordered_json json{
       {"lcm_url", url}, {"problems", 0}, {"warnings", 0}, {"findings", nlohmann::json::array()}};
-  for (const Finding& finding : findings) {
+  for (const doctor::Finding& finding : findings) {
     if (finding.level == Level::kProblem) json["problems"] = json["problems"].get<int>() + 1;
     if (finding.level == Level::kWarning) json["warnings"] = json["warnings"].get<int>() + 1;
     json["findings"].push_back({{"check", finding.check},
@@ -79,8 +79,8 @@ void PrintAsJson(const std::string& url, const Findings& findings) {
   PrintJson(json);
 }
 
-void PrintAsText(const Findings& findings) {
-  for (const Finding& finding : findings) {
+void PrintAsText(const doctor::Findings& findings) {
+  for (const doctor::Finding& finding : findings) {
     // Users can choose names of processes too, so they are escaped.
     fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), EscapeControls(finding.what),
                finding.remedy.empty() ? "" : "  -> ", EscapeControls(finding.remedy));
@@ -89,26 +89,14 @@ void PrintAsText(const Findings& findings) {
 
 int Doctor(const DoctorArguments& arguments) {
   const std::string url = arguments.network.Url();
-  const Findings findings = Examine(url);
+  const doctor::Findings findings = Examine(url);
   arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(
-      findings, [](const Finding& finding) { return finding.level == Level::kProblem; });
+      findings, [](const doctor::Finding& finding) { return finding.level == Level::kProblem; });
   return problem ? kCheckFailed : kDone;
 }
 
 }  // namespace
-
-std::string_view NameOf(Finding::Level level) {
-  switch (level) {
-    case Level::kOk:
-      return "ok";
-    case Level::kWarning:
-      return "warning";
-    case Level::kProblem:
-      return "problem";
-  }
-  return "?";
-}
 
 void AddDoctor(CLI::App& app, Action& action) {
   CLI::App* verb =

@@ -8,13 +8,13 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/arbitrator/take_over_log.h"
-#include "services/recorder/run_log.h"
-#include "services/runtime/diagnostics.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "services/decision/take_over/take_over_log.h"
+#include "services/log/run_log.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {

@@ -6,16 +6,15 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
+#include "common/atomic_file.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
-#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {

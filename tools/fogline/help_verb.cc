@@ -4,10 +4,10 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/refusal.h"
-#include "tools/fogline/verbs.h"
+#include "common/errors.h"
+#include "tools/cli/help.h"
+#include "tools/cli/refusal.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/seal.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "services/runtime/wire/message_signer.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {
@@ -18,7 +18,7 @@ struct KeygenArguments {
 };
 
 int Keygen(const KeygenArguments& arguments) {
-  SealKey::Create(arguments.file);
+  SigningKey::Create(arguments.file);
   if (arguments.json) PrintJson(nlohmann::ordered_json{{"file", arguments.file}});
   return kDone;
 }

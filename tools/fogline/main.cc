@@ -1,7 +1,7 @@
 // fogline: the main program for users. Every verb is in a file of its own.
-#include "tools/fogline/own_program.h"
-#include "tools/fogline/verb_main.h"
-#include "tools/fogline/verbs.h"
+#include "tools/cli/own_program.h"
+#include "tools/cli/verb_program.h"
+#include "tools/cli/verbs.h"
 
 int main(int argc, char** argv) {
   using namespace fogline;

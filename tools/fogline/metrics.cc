@@ -5,12 +5,12 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/pairing.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/pairing.h"
+#include "tools/cli/verbs.h"
 #include "tools/report/measure_text.h"
 
 namespace fogline {
@@ -41,13 +41,14 @@ int RunMetrics(const MetricsArguments& arguments) {
       rows.push_back(std::move(row));
       continue;
     }
-    const std::string collision = CollisionText(run.result.measures);
+    const std::string collision = report::CollisionText(run.result.measures);
     fmt::print("{}: {}, seed {}{}{}\n", PathText(run.result.log),
                EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
                collision);
     if (run.result.realtime) fmt::print("{}", RealtimeText(*run.result.realtime));
     if (improvements[i]) {
-      fmt::print("  {:<32}{:>12} %\n", "si_pct", MeasureText("si_pct", *improvements[i], "%"));
+      fmt::print("  {:<32}{:>12} %\n", "si_pct",
+                 report::MeasureText("si_pct", *improvements[i], "%"));
     }
     fmt::print("{}", MeasuresText(run.result));
   }

@@ -19,15 +19,15 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/pairing.h"
-#include "tools/fogline/threshold_rows.h"
-#include "tools/fogline/verbs.h"
-#include "tools/sweep/whole_file.h"
+#include "common/atomic_file.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/pairing.h"
+#include "tools/cli/threshold_rows.h"
+#include "tools/cli/verbs.h"
 
 namespace fogline {
 namespace {
@@ -52,15 +52,16 @@ struct ReportArguments {
 struct FigureOption {
   const char* name;
   const char* help;
-  FigureFormat format;
+  report::FigureFormat format;
   std::filesystem::path ReportArguments::*folder;
 };
 
 constexpr std::array kFigureOptions{
-    FigureOption{"--png", "Folder for the figures as PNG files (needs gnuplot)", FigureFormat::kPng,
-                 &ReportArguments::png},
-    FigureOption{"--svg", "The same as SVG files", FigureFormat::kSvg, &ReportArguments::svg},
-    FigureOption{"--pdf", "The same as PDF files, 8 inches wide", FigureFormat::kPdf,
+    FigureOption{"--png", "Folder for the figures as PNG files (needs gnuplot)",
+                 report::FigureFormat::kPng, &ReportArguments::png},
+    FigureOption{"--svg", "The same as SVG files", report::FigureFormat::kSvg,
+                 &ReportArguments::svg},
+    FigureOption{"--pdf", "The same as PDF files, 8 inches wide", report::FigureFormat::kPdf,
                  &ReportArguments::pdf},
 };
 
@@ -116,8 +117,8 @@ std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
   return names;
 }
 
-std::vector<ReportMeasure> MeasuresOf(const RunMeasures& measures) {
-  std::vector<ReportMeasure> out;
+std::vector<report::ReportMeasure> MeasuresOf(const RunMeasures& measures) {
+  std::vector<report::ReportMeasure> out;
   VisitMeasures(measures, [&out]<class V>(std::string_view name, const V& value,
                                           std::string_view unit, std::string_view description) {
     double number = std::numeric_limits<double>::quiet_NaN();
@@ -132,18 +133,18 @@ std::vector<ReportMeasure> MeasuresOf(const RunMeasures& measures) {
 }
 
 /// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
-std::optional<ReportTable> TableOf(std::span<const LoggedRun> runs,
-                                   std::span<const std::optional<double>> improvements) {
+std::optional<report::ReportTable> TableOf(std::span<const LoggedRun> runs,
+                                           std::span<const std::optional<double>> improvements) {
   const bool one_seed = HaveOneSeed(runs);
-  ReportTable table;
+  report::ReportTable table;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!improvements[i]) continue;
     const Scenario& scenario = runs[i].scenario;
-    ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
-                         .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
-                         .si_pct = *improvements[i],
-                         .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
-                             std::numeric_limits<double>::quiet_NaN())};
+    report::ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
+                                 .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
+                                 .si_pct = *improvements[i],
+                                 .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
+                                     std::numeric_limits<double>::quiet_NaN())};
     for (const PublishedRow& published : scenario.published) {
       if (published.threshold != row.threshold) continue;
       row.published_si_pct = published.si_pct;
@@ -173,7 +174,8 @@ std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
 }
 
 /// Moves the samples out of `run`.
-ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<double>& si_pct) {
+report::ReportRun PageOf(LoggedRun& run, const std::string& name,
+                         const std::optional<double>& si_pct) {
   return {.name = name,
           .log = LogNameOf(run),
           .shortage = run.complete ? "" : run.note,
@@ -187,7 +189,7 @@ ReportRun PageOf(LoggedRun& run, const std::string& name, const std::optional<do
           .si_pct = si_pct};
 }
 
-ReportCurves ComputeCurves(const ReportArguments& arguments) {
+report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
   RequireThreshold(scenario, arguments.curves);
   CheckPossible(scenario, arguments.curves);
@@ -195,11 +197,11 @@ ReportCurves ComputeCurves(const ReportArguments& arguments) {
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
   const SeedRange seeds = ReadSeeds(arguments.seeds);
-  ReportCurves curves{.scenario_title = scenario.title,
-                      .first_seed = seeds.first,
-                      .last_seed = seeds.last,
-                      .points = {},
-                      .published = scenario.published};
+  report::ReportCurves curves{.scenario_title = scenario.title,
+                              .first_seed = seeds.first,
+                              .last_seed = seeds.last,
+                              .points = {},
+                              .published = scenario.published};
   for (const ThresholdRow& row : RowsOnAllCores(scenario, thresholds, seeds)) {
     curves.points.push_back({row.threshold, row.si_pct.Result(), row.rhe_pct.Result()});
   }
@@ -236,23 +238,23 @@ int RunReport(const ReportArguments& arguments) {
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
   const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
-  const std::optional<ReportTable> table = TableOf(runs, improvements);
-  std::vector<ReportRun> pages;
+  const std::optional<report::ReportTable> table = TableOf(runs, improvements);
+  std::vector<report::ReportRun> pages;
   const std::vector<std::string> names = NamesOf(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     pages.push_back(PageOf(runs[i], names[i], improvements[i]));
   }
-  std::optional<ReportCurves> curves;
+  std::optional<report::ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
   WatchInterrupts();  // an interrupt leaves no partial file
-  WholeFile file(arguments.output);
-  file.Write(MakeReport(pages, table, curves));
+  AtomicFile file(arguments.output);
+  file.Write(report::MakeReport(pages, table, curves));
   file.Finish();
   for (const FigureOption& option : kFigureOptions) {
     const std::filesystem::path& folder = arguments.*option.folder;
     if (folder.empty()) continue;
-    WriteFigures(folder, option.format, pages);
-    if (curves) WriteCurveFigures(folder, option.format, *curves);
+    report::WriteFigures(folder, option.format, pages);
+    if (curves) report::WriteCurveFigures(folder, option.format, *curves);
   }
   if (arguments.json) {
     PrintJson(ToJson(arguments, runs));

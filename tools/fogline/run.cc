@@ -6,20 +6,20 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "services/runtime/scenario_parts.h"
-#include "services/runtime/step_ring.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/experiment.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/kept_log.h"
-#include "tools/fogline/log_keeper.h"
-#include "tools/fogline/resumed_log.h"
-#include "tools/fogline/run_outcome.h"
-#include "tools/fogline/transport_arguments.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "services/runtime/wire/scenario_parts.h"
+#include "services/runtime/wire/step_ring.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/run_outcome.h"
+#include "tools/cli/transport_arguments.h"
+#include "tools/cli/verbs.h"
+#include "tools/runner/experiment.h"
+#include "tools/runner/kept_log.h"
+#include "tools/runner/log_keeper.h"
+#include "tools/runner/resumed_log.h"
 
 namespace fogline {
 namespace {

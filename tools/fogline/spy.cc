@@ -14,14 +14,14 @@
 
 #include <fmt/core.h>
 
-#include "scenario/wording.h"
-#include "services/runtime/beacon.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/spy_parts.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "services/runtime/discovery/beacon.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
+#include "tools/spy/spy_parts.h"
 #include "tools/watch/traffic_statistics.h"
 
 namespace fogline {

@@ -5,17 +5,17 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/progress.h"
-#include "tools/fogline/verbs.h"
-#include "tools/sweep/csv.h"
+#include "common/atomic_file.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/process/progress.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/merge.h"
-#include "tools/sweep/whole_file.h"
+#include "tools/sweep/sweep_csv.h"
 
 namespace fogline {
 namespace {

@@ -9,18 +9,18 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/wording.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/external_roles.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/pairing.h"
-#include "tools/fogline/progress.h"
-#include "tools/fogline/threshold_rows.h"
-#include "tools/fogline/transport_arguments.h"
-#include "tools/fogline/verbs.h"
-#include "tools/sweep/whole_file.h"
+#include "common/atomic_file.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/process/progress.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/pairing.h"
+#include "tools/cli/threshold_rows.h"
+#include "tools/cli/transport_arguments.h"
+#include "tools/cli/verbs.h"
+#include "tools/processes/external_roles.h"
 
 namespace fogline {
 namespace {

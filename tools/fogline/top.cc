@@ -12,13 +12,13 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/beacon.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/interrupt.h"
-#include "services/runtime/lcm_url.h"
-#include "tools/fogline/arguments.h"
-#include "tools/fogline/help.h"
-#include "tools/fogline/verbs.h"
+#include "common/process/interrupt.h"
+#include "services/runtime/discovery/beacon.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/verbs.h"
 #include "tools/watch/announced.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "services/runtime/clock.h"
-#include "services/runtime/diagnostics.h"
+#include "common/clock.h"
+#include "common/process/console.h"
 
 namespace fogline {
 

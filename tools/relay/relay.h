@@ -15,8 +15,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "services/runtime/clock.h"
-#include "services/runtime/tcpq_frame.h"
+#include "common/clock.h"
+#include "services/runtime/wire/tcpq_frame.h"
 #include "tools/relay/line_budget.h"
 
 namespace fogline {

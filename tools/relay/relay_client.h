@@ -12,7 +12,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "services/runtime/tcpq_frame.h"
+#include "services/runtime/wire/tcpq_frame.h"
 #include "tools/relay/subscriptions.h"
 
 namespace fogline {

@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
 
-#include "scenario/loader.h"
-#include "services/runtime/diagnostics.h"
-#include "services/runtime/interrupt.h"
-#include "services/runtime/tcpq_url.h"
+#include "common/errors.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "tools/relay/relay.h"
 
 namespace fogline {

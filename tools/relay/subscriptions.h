@@ -10,7 +10,7 @@
 
 #include <boost/regex.hpp>
 
-#include "services/runtime/clock.h"
+#include "common/clock.h"
 
 namespace fogline {
 

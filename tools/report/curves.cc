@@ -11,9 +11,9 @@
 
 #include "tools/report/html.h"
 #include "tools/report/tables.h"
-#include "tools/sweep/pareto.h"
+#include "tools/stats/pareto.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 using nlohmann::json;
@@ -203,4 +203,4 @@ std::string CurvesData(const ReportCurves& curves) {
   return data.dump();
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -8,7 +8,7 @@
 
 #include "tools/report/report.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// A point in the plane of mean RHE and mean SI. Thresholds with equal values of both share one
 /// point.
@@ -38,4 +38,4 @@ std::string CurvesContent(const ReportCurves& curves);
 /// JSON text with the data that the page's script draws.
 std::string CurvesData(const ReportCurves& curves);
 
-}  // namespace fogline
+}  // namespace fogline::report

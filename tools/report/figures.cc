@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 constexpr std::array kSpeeds{
@@ -126,4 +126,4 @@ std::vector<Window> HumanWindows(std::span<const Sample> samples) {
   return WindowsWhere(samples, [](const Sample& sample) { return sample.lambda_human > 0; });
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "services/measures/sample.h"
+#include "services/metrics/sample.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// One quantity over time, taken from the samples of a run; NaN where there is no value.
 struct Column {
@@ -129,4 +129,4 @@ std::vector<Window> FogWindows(std::span<const Sample> samples);
 /// Time spans in which the human drives, that is, has any authority, as in measures.h.
 std::vector<Window> HumanWindows(std::span<const Sample> samples);
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -7,7 +7,7 @@
 
 #include "tools/report/measure_text.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 constexpr std::string_view kNone = "–";
@@ -105,4 +105,4 @@ std::string MeasureElement(std::string_view name, double value, std::string_view
   return fmt::format("<data value=\"{}\">{}</data>", value, EscapeHtml(text));
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

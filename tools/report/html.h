@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fogline {
+namespace fogline::report {
 
 /// `text` as HTML text or attribute value.
 std::string EscapeHtml(std::string_view text);
@@ -28,4 +28,4 @@ std::string DataElement(double value, int decimals);
 /// The same for a measure, formatted by MeasureText().
 std::string MeasureElement(std::string_view name, double value, std::string_view unit);
 
-}  // namespace fogline
+}  // namespace fogline::report

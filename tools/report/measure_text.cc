@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "scenario/wording.h"
+#include "common/text.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 constexpr int kSignificant = 4;
@@ -55,4 +55,4 @@ std::string CollisionText(const RunMeasures& measures) {
                      TimeText(*measures.collision_time_s));
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

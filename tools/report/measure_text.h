@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "services/measures/measures.h"
+#include "services/metrics/run_metrics.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// The longest time to collision that is printed as a number, s. The time grows without bound as
 /// two speeds become equal. At a gap of 36 m, 1000 s correspond to a closing speed of 4 cm/s, which
@@ -28,4 +28,4 @@ std::string MeasureText(std::string_view name, double value, std::string_view un
 /// "the host hit the preceding car at 12.3 s"; "" without a collision.
 std::string CollisionText(const RunMeasures& measures);
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -12,7 +12,7 @@
 #include "tools/report/figures.h"
 #include "tools/report/tables.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 using nlohmann::json;
@@ -144,4 +144,4 @@ std::string PageData(std::span<const ReportRun> runs, const std::optional<Report
          ",\n\"curves\":" + (curves ? CurvesData(*curves) : "null") + "}";
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

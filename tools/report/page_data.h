@@ -7,7 +7,7 @@
 
 #include "tools/report/report.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// JSON text: {"figures": [...], "columns": [[...], ...], "runs": [...], "curves": {...} or null}.
 /// A run refers to its columns by their indices in "columns". Equal columns are stored once, so
@@ -15,4 +15,4 @@ namespace fogline {
 std::string PageData(std::span<const ReportRun> runs,
                      const std::optional<ReportCurves>& curves = std::nullopt);
 
-}  // namespace fogline
+}  // namespace fogline::report

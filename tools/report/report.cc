@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "services/measures/measures.h"
+#include "services/metrics/run_metrics.h"
 #include "tools/report/assets.h"
 #include "tools/report/curves.h"
 #include "tools/report/figures.h"
@@ -16,7 +16,7 @@
 #include "tools/report/story.h"
 #include "tools/report/tables.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 std::string TitleOf(std::span<const ReportRun> runs, const std::optional<ReportCurves>& curves) {
@@ -206,4 +206,4 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
                {"script", fmt::format("{}", fmt::join(scripts, "\n"))}});
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "scenario/scenario.h"
-#include "services/measures/sample.h"
-#include "tools/sweep/statistics.h"
+#include "scenario/sections/scenario.h"
+#include "services/metrics/sample.h"
+#include "tools/stats/statistics.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// A number that rates a run.
 struct ReportMeasure {
@@ -88,4 +88,4 @@ void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
 void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
                        const ReportCurves& curves);
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -10,14 +10,14 @@
 
 #include <fmt/format.h>
 
-#include "scenario/loader.h"
-#include "services/measures/detection.h"
-#include "services/measures/measures.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/detection.h"
+#include "services/metrics/run_metrics.h"
 #include "tools/report/figures.h"
 #include "tools/report/measure_text.h"
 #include "tools/report/tables.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 constexpr std::size_t kMostSituations = 3;  // that get a sentence each
@@ -300,4 +300,4 @@ std::string StoryOf(std::span<const ReportRun> runs) {
   return story;
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

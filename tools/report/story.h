@@ -7,11 +7,11 @@
 
 #include "tools/report/report.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// Plain text, "" without runs. Runs that differ only in their arbitrator belong to one situation
 /// and share a sentence. More than three situations are summarised in one sentence. Every number
 /// comes from the samples, except the safety improvement, which is the run's `si_pct`.
 std::string StoryOf(std::span<const ReportRun> runs);
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -9,7 +9,7 @@
 #include "tools/report/assets.h"
 #include "tools/report/html.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 using nlohmann::json;
@@ -152,4 +152,4 @@ std::string MakeStudyText(const std::string& command, std::span<const StudySecti
   return text;
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::report {
 
 /// One quantity of a figure. NaN marks a missing value; an interval may be missing too.
 struct StudySeries {
@@ -59,4 +59,4 @@ std::string MakeStudyPage(const std::string& command, std::span<const StudySecti
 /// The same in Markdown without figures, for places that do not show HTML.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 
-}  // namespace fogline
+}  // namespace fogline::report

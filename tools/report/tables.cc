@@ -14,7 +14,7 @@
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
 
-namespace fogline {
+namespace fogline::report {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -247,4 +247,4 @@ std::string DifferenceTable(std::span<const ReportRun> runs) {
   return table;
 }
 
-}  // namespace fogline
+}  // namespace fogline::report

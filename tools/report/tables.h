@@ -8,7 +8,7 @@
 #include "tools/report/curves.h"
 #include "tools/report/report.h"
 
-namespace fogline {
+namespace fogline::report {
 
 /// The reproduced table next to the published one.
 std::string ThresholdTable(const ReportTable& table);
@@ -29,4 +29,4 @@ std::string RunName(std::span<const ReportRun> runs, std::size_t index);
 /// A badge for a run whose log is not complete, with the end of the log; "" for a complete log.
 std::string BadgeOf(const ReportRun& run);
 
-}  // namespace fogline
+}  // namespace fogline::report

@@ -2,7 +2,7 @@
 //
 //   LD_PRELOAD=.../libfogline_hear_loopback.so java ...
 //
-// Fogline sends that traffic over loopback (services/runtime/lcm_sockets.h). On Linux a socket hears a
+// Fogline sends that traffic over loopback (services/runtime/transport/lcm_sockets.h). On Linux a socket hears a
 // multicast group on every interface where any process has joined it, unless the socket has IP_MULTICAST_ALL
 // switched off (see ip(7)). Java switches it off for each of its sockets, and LCM's Java library has no way
 // to name an interface. So this library ignores Java's call.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/sweep/statistics.h"
+#include "tools/stats/statistics.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -60,4 +60,4 @@ Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replic
   return estimate;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "services/runtime/random.h"
+#include "common/random.h"
 #include "tools/study/estimate.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// Number of replicates for an interval. With it the ends are known to a tenth of its width or
 /// better.
@@ -37,4 +37,4 @@ double WeightedMean(std::span<const double> values, std::span<const double> weig
 /// has no value.
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates);
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "tools/study/findings.h"
+#include "tools/study/study_findings.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
@@ -179,4 +179,4 @@ std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t 
   return findings;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -10,7 +10,7 @@
 
 #include "tools/study/comparison.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// Verdict on a variant against another one in a case: the first of these that applies.
 enum class CaseVerdict {
@@ -48,4 +48,4 @@ std::string VerdictFinding(const Comparison& comparison, std::size_t variant, st
 /// then a sentence for each case, with the difference of its SI from that of the reference case.
 std::vector<std::string> CaseFindings(const Comparison& comparison, std::size_t variant);
 
-}  // namespace fogline
+}  // namespace fogline::study

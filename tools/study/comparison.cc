@@ -8,14 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "scenario/loader.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/measures/measures.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/run_metrics.h"
 #include "tools/report/measure_text.h"
+#include "tools/stats/in_order.h"
 #include "tools/study/paired_worker.h"
-#include "tools/sweep/in_order.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 std::vector<ComparedMeasure> AllMeasures() {
@@ -196,10 +195,10 @@ std::string Comparison::Csv(std::size_t reference) const {
   return csv;
 }
 
-StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::string title,
-                                 bool cases_on_axis) const {
+report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string id,
+                                         std::string title, bool cases_on_axis) const {
   const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
-  StudyFigure figure{
+  report::StudyFigure figure{
       .id = std::move(id),
       .title = std::move(title),
       .caption = fmt::format("Mean over {} seeds with its 95 % confidence interval. {}.", seeds_,
@@ -207,7 +206,7 @@ StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::
       .x_label = "",
       .y_label = info.unit.empty() ? NameForReaders(measure)
                                    : fmt::format("{} ({})", NameForReaders(measure), info.unit),
-      .log_y = IsTimeToCollision(measure)};
+      .log_y = report::IsTimeToCollision(measure)};
   // No car brakes harder than this (MADR, Cunto & Saccomanno 2008). A larger value amounts to a
   // collision.
   if (measure.ends_with("drac_mps2")) figure.most = MeasuresSection{}.madr_most_mps2;
@@ -217,7 +216,7 @@ StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::
     figure.categories.push_back(cases_on_axis ? cases_[p].name : variants_[p].name);
   }
   for (std::size_t s = 0; s < series; ++s) {
-    StudySeries& one = figure.series.emplace_back();
+    report::StudySeries& one = figure.series.emplace_back();
     one.name = cases_on_axis ? variants_[s].name : cases_[s].name;
     for (std::size_t p = 0; p < places; ++p) {
       const Cell cell = cases_on_axis ? Cell{p, s} : Cell{s, p};
@@ -236,9 +235,11 @@ StudyFigure Comparison::FigureOf(std::string_view measure, std::string id, std::
   return figure;
 }
 
-StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
-                               std::span<const std::string_view> measures) const {
-  StudyTable table{.caption = std::move(caption), .columns = {name_cases ? "case" : "variant"}};
+report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows,
+                                       bool name_cases,
+                                       std::span<const std::string_view> measures) const {
+  report::StudyTable table{.caption = std::move(caption),
+                           .columns = {name_cases ? "case" : "variant"}};
   for (const std::string_view measure : measures) {
     const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
     table.columns.push_back(info.unit.empty() ? info.name
@@ -254,8 +255,8 @@ StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows, 
   return table;
 }
 
-StudyTable Comparison::TableOfCase(std::size_t test_case,
-                                   std::span<const std::string_view> measures) const {
+report::StudyTable Comparison::TableOfCase(std::size_t test_case,
+                                           std::span<const std::string_view> measures) const {
   std::vector<Cell> rows;
   for (std::size_t v = 0; v < variants_.size(); ++v) rows.push_back({test_case, v});
   return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
@@ -263,8 +264,8 @@ StudyTable Comparison::TableOfCase(std::size_t test_case,
                  rows, false, measures);
 }
 
-StudyTable Comparison::TableOfVariant(std::size_t variant,
-                                      std::span<const std::string_view> measures) const {
+report::StudyTable Comparison::TableOfVariant(std::size_t variant,
+                                              std::span<const std::string_view> measures) const {
   std::vector<Cell> rows;
   for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({c, variant});
   return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
@@ -300,4 +301,4 @@ std::string NameForReaders(std::string_view measure) {
   return std::string(measure);
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

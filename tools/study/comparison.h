@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "scenario/scenario.h"
-#include "services/measures/event_share.h"
+#include "scenario/sections/scenario.h"
+#include "services/metrics/event_share.h"
 #include "tools/report/study_page.h"
 #include "tools/study/estimate.h"
 #include "tools/study/study.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// A scenario file with overrides.
 struct StudyCase {
@@ -89,18 +89,20 @@ class Comparison {
   std::string Csv(std::size_t reference) const;
   /// Points with intervals: either the variants are on the x axis and each case is a series, or the
   /// other way round.
-  StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
-                       bool cases_on_axis = false) const;
+  report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
+                               bool cases_on_axis = false) const;
   /// One row for each variant (or, if there is a single variant, for each case) with means and
   /// intervals.
-  StudyTable TableOfCase(std::size_t test_case, std::span<const std::string_view> measures) const;
-  StudyTable TableOfVariant(std::size_t variant, std::span<const std::string_view> measures) const;
+  report::StudyTable TableOfCase(std::size_t test_case,
+                                 std::span<const std::string_view> measures) const;
+  report::StudyTable TableOfVariant(std::size_t variant,
+                                    std::span<const std::string_view> measures) const;
 
  private:
   /// All values of a cell, measure by measure.
   std::span<const double> AllOf(Cell cell) const;
-  StudyTable TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
-                     std::span<const std::string_view> measures) const;
+  report::StudyTable TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
+                             std::span<const std::string_view> measures) const;
 
   std::vector<StudyCase> cases_;
   std::vector<StudyVariant> variants_;
@@ -111,4 +113,4 @@ class Comparison {
 /// The name of a measure in findings and figures, such as "safety improvement (SI)".
 std::string NameForReaders(std::string_view measure);
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -8,10 +8,10 @@
 #include "tools/report/measure_text.h"
 #include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
-#include "tools/study/findings.h"
 #include "tools/study/study.h"
+#include "tools/study/study_findings.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 constexpr std::array kVisibilities_m{200.0, 120.0, 80.0, 60.0, 45.0, 35.0, 25.0};
@@ -58,20 +58,21 @@ constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
 
 /// A measure as a function of the visibility: without traded control, and with each of the two
 /// drivers.
-StudyFigure OverVisibility(const Comparison& comparison, std::string_view measure, std::string id,
-                           std::string title) {
-  StudyFigure figure{.id = std::move(id),
-                     .title = std::move(title),
-                     .caption = "Means over the seeds with their 95 % confidence intervals.",
-                     .x_label = "Visibility (m)",
-                     .y_label = NameForReaders(measure),
-                     .log_x = true,
-                     .log_y = IsTimeToCollision(measure)};
+report::StudyFigure OverVisibility(const Comparison& comparison, std::string_view measure,
+                                   std::string id, std::string title) {
+  report::StudyFigure figure{
+      .id = std::move(id),
+      .title = std::move(title),
+      .caption = "Means over the seeds with their 95 % confidence intervals.",
+      .x_label = "Visibility (m)",
+      .y_label = NameForReaders(measure),
+      .log_x = true,
+      .log_y = report::IsTimeToCollision(measure)};
   const std::size_t first = Kinds().size();
   for (const auto& [name, driver, variant] :
        {std::tuple("without traded control", 0U, 0U), std::tuple("paper's driver", 0U, 1U),
         std::tuple("human", 1U, 1U)}) {
-    StudySeries& series = figure.series.emplace_back();
+    report::StudySeries& series = figure.series.emplace_back();
     series.name = name;
     for (std::size_t i = kVisibilities_m.size(); i-- > 0;) {
       const Cell cell{first + 2 * i + driver, variant};
@@ -137,7 +138,7 @@ StudyResult RunDriverStudy(const StudyContext& context) {
       {{"none", {"/arbitrator/policy=none"}}, {"traded", {"/arbitrator/policy=traded"}}});
   StudyResult result;
   result.runs = comparison.runs();
-  StudySection& section = result.section;
+  report::StudySection& section = result.section;
   section.findings = CaseFindings(comparison, 1);
   section.findings.resize(1 + kinds);  // one finding is for the densities
   section.findings.push_back(FindingOfDensity(comparison));
@@ -161,4 +162,4 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

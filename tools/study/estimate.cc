@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "tools/report/html.h"
-#include "tools/sweep/statistics.h"
+#include "tools/stats/statistics.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -68,7 +68,7 @@ Verdict VerdictOf(const Estimate& difference) {
   return Verdict::kUndecided;
 }
 
-std::string Text(double value, int decimals) { return Decimal(value, decimals); }
+std::string Text(double value, int decimals) { return report::Decimal(value, decimals); }
 
 std::string Text(const Estimate& estimate, int decimals) {
   std::string text = Text(estimate.mean, decimals);
@@ -100,4 +100,4 @@ std::string CsvText(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

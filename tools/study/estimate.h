@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "services/measures/event_share.h"
+#include "services/metrics/event_share.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// Mean over n runs with its 95 % confidence interval (Student's t). NaN if n is too small: the
 /// mean needs 1, the interval 2. A time to a collision that never happens is infinite. Such runs
@@ -53,4 +53,4 @@ std::string Text(double value, int decimals);
 /// A number in a CSV file; empty for NaN and infinity.
 std::string CsvText(double value);
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -4,9 +4,9 @@
 #include <limits>
 #include <type_traits>
 
-#include "services/measures/measures.h"
+#include "services/metrics/run_metrics.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 /// If a pair of cars existed and never closed in, its smallest time to collision is infinite
@@ -69,4 +69,4 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
   return runs;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "scenario/scenario.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/measures/sample.h"
+#include "scenario/sections/scenario.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/sample.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// The measures of a run in the order of ComparedMeasures(); NaN for a missing measure.
 using RunValues = std::vector<double>;
@@ -32,4 +32,4 @@ class PairedWorker {
   std::vector<Sample> baseline_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::study

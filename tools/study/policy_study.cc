@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "services/policies/policies.h"
+#include "services/decision/policies/policies.h"
 #include "tools/study/comparison.h"
-#include "tools/study/findings.h"
 #include "tools/study/study.h"
+#include "tools/study/study_findings.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 /// Every policy of the table.
@@ -98,7 +98,7 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
   const Comparison comparison(context, Cases(), Variants());
   StudyResult result;
   result.runs = comparison.runs();
-  StudySection& section = result.section;
+  report::StudySection& section = result.section;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     section.findings.push_back(FindingOf(comparison, c));
     section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));
@@ -124,4 +124,4 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 #include "tools/study/study.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 // One row for each study.
@@ -66,4 +66,4 @@ void StudyContext::Show(std::int64_t done, std::int64_t total) const {
   if (progress && !progress(done, total)) throw StudyStopped();
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

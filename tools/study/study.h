@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 #include "tools/report/study_page.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::study {
 
 /// Thrown by a study whose progress callback returned false.
 class StudyStopped : public std::runtime_error {
@@ -44,7 +44,7 @@ struct StudyFile {
 
 /// Result of a study. It does not depend on the number of threads, the clock or the machine.
 struct StudyResult {
-  StudySection section;
+  report::StudySection section;
   std::vector<StudyFile> files;
   std::int64_t runs = 0;
 };
@@ -74,4 +74,4 @@ StudyResult RunDriverStudy(const StudyContext& context);
 StudyResult RunFollowersStudy(const StudyContext& context);
 StudyResult RunVehicleStudy(const StudyContext& context);
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "tools/study/comparison.h"
-#include "tools/study/findings.h"
 #include "tools/study/study.h"
+#include "tools/study/study_findings.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 /// Limit of ISO 15622 above 20 m/s, and the limit of comfort: m/s3.
@@ -133,7 +133,7 @@ StudyResult RunTransferStudy(const StudyContext& context) {
       Variants());
   StudyResult result;
   result.runs = comparison.runs();
-  StudySection& section = result.section;
+  report::StudySection& section = result.section;
   section.findings.push_back(FindingOfStep(comparison));
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     section.findings.push_back(FindingOf(comparison, c));
@@ -155,4 +155,4 @@ StudyResult RunTransferStudy(const StudyContext& context) {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

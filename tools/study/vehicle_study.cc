@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "services/vehicle/parameters.h"
+#include "services/models/vehicle/vehicle_parameters.h"
 #include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
 
-namespace fogline {
+namespace fogline::study {
 namespace {
 
 std::vector<std::string> Cars(std::string_view car, std::string_view surface) {
@@ -134,7 +134,7 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
         {"/arbitrator/policy=traded", "/arbitrator/transfer/profile=jerk_limited"}}});
   StudyResult result;
   result.runs = comparison.runs();
-  StudySection& section = result.section;
+  report::StudySection& section = result.section;
   section.findings = CaseFindings(comparison, kTraded);
   section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kNone));
   section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kTraded));
@@ -153,4 +153,4 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::study

@@ -3,11 +3,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "scenario/file.h"
-#include "scenario/json.h"
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "tools/sweep/whole_file.h"
+#include "common/atomic_file.h"
+#include "common/file.h"
+#include "common/text.h"
+#include "scenario/io/json.h"
+#include "scenario/io/loader.h"
 
 namespace fogline {
 namespace {
@@ -68,7 +68,7 @@ void WriteDescription(const std::filesystem::path& csv, const Description& descr
   const Json json{{"sweep", Json::parse(description.sweep)},
                   {"shard", {description.shard.index, description.shard.count}},
                   {"shard_rows", description.rows}};
-  WholeFile file(DescriptionFile(csv));
+  AtomicFile file(DescriptionFile(csv));
   file.Write(json.dump(1) + "\n");
   file.Finish();
 }

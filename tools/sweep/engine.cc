@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
-#include "tools/sweep/in_order.h"
+#include "common/errors.h"
+#include "tools/stats/in_order.h"
 
 namespace fogline {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "services/closed_loop/closed_loop.h"
-#include "services/measures/measures.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/run_metrics.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline {

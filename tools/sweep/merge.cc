@@ -9,14 +9,14 @@
 
 #include <fmt/core.h>
 
-#include "scenario/file.h"
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/runtime/interrupt.h"
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/file.h"
+#include "common/process/interrupt.h"
+#include "common/text.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"
 #include "tools/sweep/side_files.h"
-#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 namespace {
@@ -73,7 +73,7 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
 }
 
 /// Copies the rows of a shard, with the header if it is the first one.
-void Copy(const ShardFile& shard, std::string& header, WholeFile& out, WholeFile* sums) {
+void Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);
   std::string line;
@@ -123,8 +123,8 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
 
   const bool replaceable = IsReplaceable(merged);
   if (replaceable) RequireFolderOf(merged, "--out");
-  WholeFile out(merged);
-  std::optional<WholeFile> sums;
+  AtomicFile out(merged);
+  std::optional<AtomicFile> sums;
   if (replaceable) sums.emplace(SumsFile(merged));
   std::string header;
   for (const auto& [index, shard] : ordered) Copy(shard, header, out, sums ? &*sums : nullptr);

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 
 namespace fogline {
 namespace {
@@ -66,7 +66,7 @@ void CheckSetting(const std::string& argument, const std::string& base, const st
   try {
     ParseScenario(base, "scenario", {fmt::format("{}={}", pointer, value)});
   } catch (const ScenarioError& error) {
-    const Mistake& mistake = error.mistakes().front();
+    const Diagnostic& mistake = error.mistakes().front();
     throw InputError(fmt::format("error: {}: {}{}", argument,
                                  mistake.pointer == pointer ? "" : mistake.pointer + ": ",
                                  mistake.message));

@@ -1,8 +1,8 @@
 #include "tools/sweep/side_files.h"
 
+#include "common/atomic_file.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"
-#include "tools/sweep/whole_file.h"
 
 namespace fogline {
 

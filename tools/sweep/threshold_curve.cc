@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
-#include "services/policies/policies.h"
+#include "common/errors.h"
+#include "common/text.h"
+#include "services/decision/policies/policies.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline {

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "scenario/scenario.h"
-#include "services/measures/measures.h"
+#include "scenario/sections/scenario.h"
+#include "services/metrics/run_metrics.h"
+#include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
-#include "tools/sweep/statistics.h"
 
 namespace fogline {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/runtime/announcements.h"
+#include "services/runtime/discovery/announcements.h"
 #include "tools/watch/traffic_text.h"
 
 namespace fogline {

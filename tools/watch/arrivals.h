@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "services/runtime/clock.h"
+#include "common/clock.h"
 
 namespace fogline {
 

@@ -5,8 +5,8 @@
 #include <bitset>
 #include <cstdint>
 
-#include "services/runtime/clock.h"
-#include "services/runtime/step_ring.h"
+#include "common/clock.h"
+#include "services/runtime/wire/step_ring.h"
 
 namespace fogline {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "services/runtime/announcements.h"
-#include "services/runtime/seal.h"
+#include "services/runtime/discovery/announcements.h"
+#include "services/runtime/wire/message_signer.h"
 
 namespace fogline {
 namespace {
@@ -58,7 +58,7 @@ bool IsHousekeeping(std::string_view channel) {
 }
 
 void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
-  if (LooksSealed(bytes)) bytes = WithoutSeal(bytes);  // shown, but not verified
+  if (LooksSigned(bytes)) bytes = WithoutSignature(bytes);  // shown, but not verified
   const std::size_t index = ChannelNamed(channel);
   if (index < kNumChannels && bytes.size() >= kHeaderEnd) {
     const std::int64_t run_id = ReadInt64(bytes, kRunIdOffset);

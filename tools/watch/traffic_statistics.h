@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/clock.h"
-#include "services/runtime/refusals.h"
-#include "services/runtime/wire.h"
+#include "services/runtime/wire/refusals.h"
+#include "services/runtime/wire/wire.h"
 #include "tools/watch/arrivals.h"
 #include "tools/watch/step_sequence.h"
 

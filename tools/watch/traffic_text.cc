@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "scenario/wording.h"
+#include "common/text.h"
 
 namespace fogline {
 namespace {

@@ -7,9 +7,9 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/conflict/measures.h"
-#include "services/policies/policies.h"
+#include "scenario/io/loader.h"
+#include "services/decision/conflict/conflict_measures.h"
+#include "services/decision/policies/policies.h"
 #include "tools/study/study.h"
 
 namespace fogline {
@@ -18,8 +18,8 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-StudyResult Make(std::string_view name) {
-  const Study* study = FindStudy(name);
+study::StudyResult Make(std::string_view name) {
+  const study::Study* study = study::FindStudy(name);
   return study->run({.scenarios = std::string(FOGLINE_SOURCE_DIR) + "/scenario",
                      .seeds = {1, 2},
                      .jobs = 2,
@@ -49,7 +49,7 @@ std::map<std::string, int> Column(const std::string& csv, const std::string& nam
 TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
   ASSERT_TRUE(FindPolicy("cautious"));
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"cautious\""));
-  const StudyResult result = Make("policy");
+  const study::StudyResult result = Make("policy");
   const std::map<std::string, int> variants = Column(result.files[0].content, "variant");
   EXPECT_EQ(variants.size(), Policies().size());
   ASSERT_TRUE(variants.contains("cautious"));
@@ -66,7 +66,7 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
 TEST(ExtensionTest, AnotherMeasureOfTheTableIsInTheScenarioAndInTheConflictStudy) {
   ASSERT_NE(FindConflictMeasure("relative"), nullptr);
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"relative\""));
-  const StudyResult result = Make("conflict");
+  const study::StudyResult result = Make("conflict");
   const std::map<std::string, int> measures = Column(result.files[0].content, "measure");
   EXPECT_EQ(measures.size(), ConflictMeasures().size());
   ASSERT_TRUE(measures.contains("relative"));

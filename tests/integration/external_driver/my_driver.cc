@@ -1,7 +1,7 @@
 // A driver of your own: the linear car-following model, with the gains of Helly (1959). The
 // argument and the result of Step() make it the role "driver" (services/graph.h). RunService does
 // the rest.
-#include "services/runtime/service.h"
+#include "services/runtime/process/service.h"
 
 class MyDriver {
  public:

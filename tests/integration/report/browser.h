@@ -94,7 +94,8 @@ class BrowserTest : public ::testing::Test {
     report.insert(report.find("<meta"), kWatch);
     report.insert(report.rfind("</body>"), fmt::format(kProbe, script));
     const std::string file = folder_.File("page.html");
-    std::ofstream(file) << fmt::format(kFrame, window.width, window.height, EscapeHtml(report));
+    std::ofstream(file) << fmt::format(kFrame, window.width, window.height,
+                                       report::EscapeHtml(report));
     const test::Outcome outcome = test::RunCommand(
         {FOGLINE_CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
          "--no-first-run", "--disable-background-networking", "--disable-component-update",

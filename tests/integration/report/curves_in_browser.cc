@@ -27,8 +27,8 @@ TEST_F(CurvesInBrowserTest, DrawsTheCurvesWithRunsAndWithout) {
     found.values = [...document.querySelectorAll("#curves .legend td")].map((cell) => cell.textContent);
     found.reading = document.querySelector("#front .reading").textContent;)";
   const json both =
-      Show(MakeReport(ExampleRuns(50), ExampleTable(), ExampleCurves()), kDesktop, look);
-  const json alone = Show(MakeReport({}, {}, ExampleCurves()), kDesktop, look);
+      Show(report::MakeReport(ExampleRuns(50), ExampleTable(), ExampleCurves()), kDesktop, look);
+  const json alone = Show(report::MakeReport({}, {}, ExampleCurves()), kDesktop, look);
   for (const json& found : {both, alone}) {
     EXPECT_THAT(found["problems"], SizeIs(0)) << found;
     EXPECT_EQ(found["drawn"], json::parse("[true, true]"));
@@ -40,7 +40,7 @@ TEST_F(CurvesInBrowserTest, DrawsTheCurvesWithRunsAndWithout) {
 }
 
 TEST_F(CurvesInBrowserTest, PointsAtTheSameThresholdInBothFigures) {
-  const json found = Show(MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
+  const json found = Show(report::MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
     const [{chart: byThreshold}, {chart: front}] = curvePage.charts;
     mouse("mousemove", byThreshold.over, byThreshold.valToPos(0.7, "x"));
     await settled();
@@ -60,7 +60,7 @@ TEST_F(CurvesInBrowserTest, PointsAtTheSameThresholdInBothFigures) {
 }
 
 TEST_F(CurvesInBrowserTest, LooksCloserAtCurvesByDraggingAndBack) {
-  const json found = Show(MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
+  const json found = Show(report::MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
     const {chart} = curvePage.charts[1];
     const span = () => [chart.scales.x.min, chart.scales.x.max];
     found.before = span();
@@ -86,7 +86,7 @@ TEST_F(CurvesInBrowserTest, LooksCloserAtCurvesByDraggingAndBack) {
 }
 
 TEST_F(CurvesInBrowserTest, HidesAMeasureWithItsBandsAndShowsItAgain) {
-  const json found = Show(MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
+  const json found = Show(report::MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
     const counts = () => [curvePage.charts[0].chart.series.length, curvePage.charts[0].chart.bands.length];
     found.before = counts();
     click("#thresholds .legend button");
@@ -104,7 +104,8 @@ TEST_F(CurvesInBrowserTest, HidesAMeasureWithItsBandsAndShowsItAgain) {
 }
 
 TEST_F(CurvesInBrowserTest, FitsCurvesOnAPhone) {
-  const json found = Show(MakeReport(ExampleRuns(50), ExampleTable(), ExampleCurves()), kPhone, R"(
+  const json found =
+      Show(report::MakeReport(ExampleRuns(50), ExampleTable(), ExampleCurves()), kPhone, R"(
     document.querySelectorAll("details").forEach((element) => { element.open = true; });
     await settled();
     found.width = document.documentElement.scrollWidth;
@@ -117,7 +118,7 @@ TEST_F(CurvesInBrowserTest, FitsCurvesOnAPhone) {
 }
 
 TEST_F(CurvesInBrowserTest, DrawsTheCurvesInTheColoursOfDarkAndPaper) {
-  const json found = Show(MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
+  const json found = Show(report::MakeReport({}, {}, ExampleCurves()), kDesktop, R"(
     const colour = () => curvePage.charts[0].chart.series.at(-2).stroke();
     found.colours = [colour()];
     dispatchEvent(new Event("beforeprint"));
@@ -130,13 +131,13 @@ TEST_F(CurvesInBrowserTest, DrawsTheCurvesInTheColoursOfDarkAndPaper) {
 }
 
 TEST_F(CurvesInBrowserTest, ShowsCurvesOfOneThresholdOrWithoutSiWithoutAnError) {
-  ReportCurves curves = ExampleCurves();
+  report::ReportCurves curves = ExampleCurves();
   curves.published.clear();
-  for (ReportCurves::Point& point : curves.points) point.si_pct = {};
-  const json no_si = Show(MakeReport({}, {}, curves), kDesktop, "");
+  for (report::ReportCurves::Point& point : curves.points) point.si_pct = {};
+  const json no_si = Show(report::MakeReport({}, {}, curves), kDesktop, "");
   EXPECT_THAT(no_si["problems"], SizeIs(0)) << no_si;
   curves.points = {ExampleCurves().points[49]};
-  const json one = Show(MakeReport({}, {}, curves), kDesktop, "");
+  const json one = Show(report::MakeReport({}, {}, curves), kDesktop, "");
   EXPECT_THAT(one["problems"], SizeIs(0)) << one;
 }
 

@@ -24,9 +24,9 @@ using ::testing::SizeIs;
 
 class ReportInBrowserTest : public BrowserTest {
  protected:
-  json Show(std::span<const ReportRun> runs, ViewSize window, std::string_view script,
+  json Show(std::span<const report::ReportRun> runs, ViewSize window, std::string_view script,
             Scheme scheme = Scheme::kLight) {
-    return BrowserTest::Show(MakeReport(runs, ExampleTable()), window, script, scheme);
+    return BrowserTest::Show(report::MakeReport(runs, ExampleTable()), window, script, scheme);
   }
 };
 
@@ -37,7 +37,7 @@ TEST_F(ReportInBrowserTest, DrawsEveryFigureAndLoadsNothing) {
     found.names = [...document.querySelectorAll("[role=img]")].map((e) => e.ariaLabel);)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
   EXPECT_EQ(found["loaded"], 0);
-  EXPECT_THAT(found["drawn"], SizeIs(4 * Figures().size()));
+  EXPECT_THAT(found["drawn"], SizeIs(4 * report::Figures().size()));
   EXPECT_THAT(found["drawn"], Each(true));
   EXPECT_THAT(found["values"], Each(::testing::Ne("")));
   EXPECT_THAT(found["names"][0].get<std::string>(),
@@ -50,7 +50,7 @@ TEST_F(ReportInBrowserTest, GivesEachRunAPanelSideBySideAtFirst) {
     const spans = page.charts.slice(0, 4).map(({scales: {y: {min, max}}}) => [min, max].join());
     found.spans = new Set(spans).size;)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
-  EXPECT_THAT(found["drawn"], SizeIs(4 * Figures().size()));
+  EXPECT_THAT(found["drawn"], SizeIs(4 * report::Figures().size()));
   EXPECT_THAT(found["drawn"], Each(true));
   EXPECT_EQ(found["spans"], 1) << "panels of a figure are compared, so they share their axis";
 }
@@ -99,8 +99,8 @@ TEST_F(ReportInBrowserTest, DrawsNoisyFiguresInAStripForEachRunWhereTheOthersAre
 }
 
 TEST_F(ReportInBrowserTest, DrawsTwentyFourRunsInDifferentLines) {
-  const std::vector<ReportRun> runs(24, ExampleRun({.threshold = 0.5, .steps = 20}));
-  std::vector<ReportRun> different = runs;
+  const std::vector<report::ReportRun> runs(24, ExampleRun({.threshold = 0.5, .steps = 20}));
+  std::vector<report::ReportRun> different = runs;
   for (std::size_t i = 0; i < different.size(); ++i) {
     for (Sample& sample : different[i].samples) sample.host_speed_mps += static_cast<double>(i);
   }
@@ -155,7 +155,7 @@ TEST_F(ReportInBrowserTest, PointsAtTheSameTimeInEveryFigure) {
 }
 
 TEST_F(ReportInBrowserTest, ShowsTheValuesOfTheTimeOfTheSlider) {
-  std::vector<ReportRun> runs = ExampleRuns();
+  std::vector<report::ReportRun> runs = ExampleRuns();
   runs[1].samples[123].host_speed_mps = -12.3456;
   const json found = Show(runs, kDesktop, R"(
     page.slider.value = 12.3;
@@ -237,8 +237,8 @@ TEST_F(ReportInBrowserTest, FitsAPhoneInEveryView) {
 }
 
 TEST_F(ReportInBrowserTest, FitsAPhoneWithLongNames) {
-  std::vector<ReportRun> runs = ExampleRuns(50);
-  for (ReportRun& run : runs) {
+  std::vector<report::ReportRun> runs = ExampleRuns(50);
+  for (report::ReportRun& run : runs) {
     run.name = run.scenario_title = std::string(200, 'x');
     run.measures = {{std::string(200, 'y'), 1.5, "m", std::string(200, 'z')}};
   }
@@ -273,10 +273,10 @@ TEST_F(ReportInBrowserTest, IsDarkWhereTheReaderLikesItDarkAndWhiteOnPaper) {
 }
 
 TEST_F(ReportInBrowserTest, TakesTextOfARunForTextOnly) {
-  std::vector<ReportRun> runs = ExampleRuns(20);
+  std::vector<report::ReportRun> runs = ExampleRuns(20);
   const std::string evil =
       "</script><script>window.taken = true</script>\"><img src=x onerror='taken=1'>";
-  for (ReportRun& run : runs) run.name = run.scenario_title = run.digest = evil;
+  for (report::ReportRun& run : runs) run.name = run.scenario_title = run.digest = evil;
   const json found = Show(runs, kDesktop, R"(
     found.taken = window.taken === true;
     found.name = document.querySelector(".run .name").textContent;)");
@@ -286,7 +286,7 @@ TEST_F(ReportInBrowserTest, TakesTextOfARunForTextOnly) {
 }
 
 TEST_F(ReportInBrowserTest, ComparesRunsOfDifferentLengthAndStep) {
-  std::vector<ReportRun> runs = ExampleRuns(100);
+  std::vector<report::ReportRun> runs = ExampleRuns(100);
   runs[0].samples.resize(40);
   for (Sample& sample : runs[1].samples) sample.time_s *= 2.5;
   const json found = Show(runs, kDesktop, R"(
@@ -305,7 +305,7 @@ TEST_F(ReportInBrowserTest, ComparesRunsOfDifferentLengthAndStep) {
 
 TEST_F(ReportInBrowserTest, ShowsRunsWithoutFollowerOrStepsWithoutAnError) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::vector<ReportRun> runs = ExampleRuns(60);
+  std::vector<report::ReportRun> runs = ExampleRuns(60);
   runs[0].samples.clear();
   for (Sample& sample : runs[1].samples) {
     sample.follower_gap_m = sample.follower_safe_distance_m = sample.follower_speed_mps = kNone;

@@ -20,15 +20,16 @@ using ::testing::Ge;
 using ::testing::SizeIs;
 
 /// All studies over a few seeds, as `fogline study all` makes them; made once.
-const std::vector<StudySection>& Sections() {
-  static const std::vector<StudySection> kSections = [] {
-    std::vector<StudySection> sections;
-    for (const Study& study : Studies()) {
-      StudyResult result = study.run({.scenarios = std::string(FOGLINE_SOURCE_DIR) + "/scenario",
-                                      .seeds = {1, 8},
-                                      .jobs = 2,
-                                      .progress = {}});
-      StudySection& section = sections.emplace_back(std::move(result.section));
+const std::vector<report::StudySection>& Sections() {
+  static const std::vector<report::StudySection> kSections = [] {
+    std::vector<report::StudySection> sections;
+    for (const study::Study& study : study::Studies()) {
+      study::StudyResult result =
+          study.run({.scenarios = std::string(FOGLINE_SOURCE_DIR) + "/scenario",
+                     .seeds = {1, 8},
+                     .jobs = 2,
+                     .progress = {}});
+      report::StudySection& section = sections.emplace_back(std::move(result.section));
       section.name = study.name;
       section.title = study.title;
       section.question = study.question;
@@ -40,14 +41,14 @@ const std::vector<StudySection>& Sections() {
 
 std::size_t CountFigures() {
   std::size_t count = 0;
-  for (const StudySection& section : Sections()) count += section.figures.size();
+  for (const report::StudySection& section : Sections()) count += section.figures.size();
   return count;
 }
 
 class StudyInBrowserTest : public BrowserTest {
  protected:
   json Show(ViewSize window, std::string_view script, Scheme scheme = Scheme::kLight) {
-    return BrowserTest::Show(MakeStudyPage("fogline study all", Sections()), window, script,
+    return BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), window, script,
                              scheme);
   }
 };
@@ -65,7 +66,7 @@ TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
   EXPECT_EQ(found["loaded"], 0);
   std::vector<std::string> names;
   std::vector<std::string> links;
-  for (const Study& study : Studies()) {
+  for (const study::Study& study : study::Studies()) {
     names.emplace_back(study.name);
     links.push_back('#' + names.back());
   }

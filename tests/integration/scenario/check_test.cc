@@ -10,7 +10,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 #include "tests/support/command.h"
 
 namespace fogline {
@@ -77,7 +77,7 @@ TEST(BadScenariosTest, AreThereForEveryRule) {
     try {
       LoadScenario(SourceDirectory() / "scenario/bad" / (name + ".json"));
     } catch (const ScenarioError& error) {
-      for (const Mistake& mistake : error.mistakes()) rules.push_back(mistake.rule);
+      for (const Diagnostic& mistake : error.mistakes()) rules.push_back(mistake.rule);
     }
   }
   for (const char* rule : {"syntax", "too-large", "duplicate-key", "unknown-key", "missing-key",

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "services/runtime/random.h"
+#include "common/random.h"
 
 namespace fogline {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-#include "scenario/control.h"
+#include "scenario/sections/control.h"
 #include "services/acc/acc_program.h"
 #include "tests/property/acc/draw.h"
 

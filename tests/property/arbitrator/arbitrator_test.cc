@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/random.h"
+#include "common/random.h"
 
 namespace fogline {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/random.h"
-#include "services/world/motion.h"
+#include "common/random.h"
+#include "services/models/vehicle/motion.h"
 
 namespace fogline {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "services/closed_loop/closed_loop.h"
-#include "services/driver_models/idm.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/models/driver/idm.h"
 #include "tests/property/acc/draw.h"
 
 namespace fogline::test {

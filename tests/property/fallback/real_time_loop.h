@@ -17,7 +17,7 @@
 #include "services/fusion/fusion.h"
 #include "services/lidar/lidar.h"
 #include "services/radar/radar.h"
-#include "services/runtime/input_health.h"
+#include "services/runtime/realtime/input_health.h"
 #include "services/world/vehicle_fallback.h"
 #include "services/world/world.h"
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 #include "tests/property/fallback/real_time_loop.h"
 
 namespace fogline {

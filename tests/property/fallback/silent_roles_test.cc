@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/closed_loop/closed_loop.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
 #include "tests/property/fallback/real_time_loop.h"
 
 namespace fogline {

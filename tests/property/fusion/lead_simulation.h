@@ -8,9 +8,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "scenario/scenario.h"
+#include "common/random.h"
+#include "scenario/sections/scenario.h"
 #include "services/graph.h"
-#include "services/runtime/random.h"
 
 namespace fogline::testing {
 

@@ -9,7 +9,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "services/lidar/lidar.h"
-#include "services/world/visibility.h"
+#include "services/models/driver/visibility.h"
 #include "tests/support/sensor_errors.h"
 
 namespace fogline {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/catalogue.h"
-#include "scenario/wording.h"
+#include "common/text.h"
+#include "scenario/io/catalogue.h"
 #include "tests/property/scenario/random_scenario.h"
 
 namespace fogline {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenario/scenario.h"
+#include "scenario/sections/scenario.h"
 
 namespace fogline {
 

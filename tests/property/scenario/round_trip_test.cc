@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "scenario/wording.h"
+#include "common/text.h"
+#include "scenario/io/loader.h"
 #include "tests/property/scenario/random_scenario.h"
 
 namespace fogline {

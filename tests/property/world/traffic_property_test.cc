@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/vehicle/parameters.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/models/vehicle/vehicle_parameters.h"
 #include "tests/property/acc/draw.h"
 #include "tests/unit/world/commands.h"
 

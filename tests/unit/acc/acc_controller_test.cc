@@ -6,7 +6,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "tests/unit/acc/two_cars.h"
 
 namespace fogline {

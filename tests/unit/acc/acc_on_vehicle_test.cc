@@ -1,11 +1,11 @@
-// The ACC in a car with an engine, brakes and their delays (services/vehicle).
+// The ACC in a car with an engine, brakes and their delays (services/models/vehicle).
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "services/acc/acc_controller.h"
-#include "services/vehicle/longitudinal_vehicle.h"
+#include "services/models/vehicle/longitudinal_vehicle.h"
 
 namespace fogline {
 namespace {

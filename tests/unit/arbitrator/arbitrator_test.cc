@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/policies/policies.h"
+#include "services/decision/policies/policies.h"
 
 namespace fogline {
 namespace {
@@ -228,7 +228,8 @@ TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
 
 TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   for (const PolicyRow& row : Policies()) {
-    EXPECT_EQ(Arbitrator::Demands(WithPolicy(row.name)), row.needs_surroundings) << row.name;
+    EXPECT_EQ(Arbitrator::UsesOptionalInput(WithPolicy(row.name)), row.needs_surroundings)
+        << row.name;
   }
   // GIVEN dense fog and a follower that closes in
   truth_t truth{};
@@ -242,7 +243,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
   // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
-  arbitrator.Hear(truth);
+  arbitrator.SetOptionalInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/conflict/lidar_modes.h"
-#include "services/conflict/measures.h"
+#include "common/errors.h"
+#include "services/decision/conflict/conflict_measures.h"
+#include "services/decision/conflict/over_time/lidar_modes.h"
 
 namespace fogline {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 
 namespace fogline {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 #include "tools/calibrate/calibrate.h"
 
 namespace fogline {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 
 namespace fogline {
 namespace {

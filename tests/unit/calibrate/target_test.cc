@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "tests/support/command.h"
 
 namespace fogline {

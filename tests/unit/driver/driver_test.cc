@@ -8,7 +8,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 
 namespace fogline {
 namespace {
@@ -201,7 +201,7 @@ class AwarenessOfTheDriverTest : public testing::Test {
   }
   /// His readiness in the next step, after he hears this HOST_COMMAND.
   double ReadinessAfter(const arbitration_t& host) {
-    driver_.Hear(host);
+    driver_.SetOptionalInput(host);
     return driver_.Step(TruthOf(step_++)).readiness;
   }
 
@@ -294,12 +294,12 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
 
 TEST(DriverTest, DemandsToKnowWhoDrivesOnlyIfHisAwarenessDependsOnIt) {
   Scenario scenario;
-  EXPECT_FALSE(Driver::Demands(scenario));
+  EXPECT_FALSE(Driver::UsesOptionalInput(scenario));
   scenario.human.misjudges = true;
   scenario.human.sight = Sight::kFog;
-  EXPECT_FALSE(Driver::Demands(scenario));
+  EXPECT_FALSE(Driver::UsesOptionalInput(scenario));
   scenario.human.loses_awareness = true;
-  EXPECT_TRUE(Driver::Demands(scenario));
+  EXPECT_TRUE(Driver::UsesOptionalInput(scenario));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/follower/cast.h"
+#include "common/errors.h"
+#include "services/follower/driver_assignment.h"
 #include "services/follower/follower.h"
 #include "services/follower/person.h"
 
@@ -138,7 +138,7 @@ TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
 }
 
 TEST(CastTest, IsThePapersWithoutASection) {
-  const Part part = PartOf(Scenario(), 0);
+  const DriverAssignment part = AssignmentOf(Scenario(), 0);
   EXPECT_TRUE(part.has_acc);
 }
 
@@ -147,10 +147,10 @@ TEST(CastTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
   scenario.followers.style = FollowerStyle::kCautious;
   scenario.followers.cars = {{FollowerDriver::kAcc, FollowerStyle::kNormal},
                              {FollowerDriver::kHuman, FollowerStyle::kAggressive}};
-  EXPECT_TRUE(PartOf(scenario, 0).has_acc);
-  EXPECT_FALSE(PartOf(scenario, 1).has_acc);
-  EXPECT_EQ(PartOf(scenario, 1).style, Style::kAggressive);
-  EXPECT_EQ(PartOf(scenario, 3).style, Style::kCautious);
+  EXPECT_TRUE(AssignmentOf(scenario, 0).has_acc);
+  EXPECT_FALSE(AssignmentOf(scenario, 1).has_acc);
+  EXPECT_EQ(AssignmentOf(scenario, 1).style, Style::kAggressive);
+  EXPECT_EQ(AssignmentOf(scenario, 3).style, Style::kCautious);
 }
 
 TEST(CastTest, DrawsInProportionToTheShares) {
@@ -163,7 +163,7 @@ TEST(CastTest, DrawsInProportionToTheShares) {
   int aggressive = 0;
   for (scenario.seed = 1; scenario.seed <= kSeeds; ++scenario.seed) {
     for (std::size_t car = 0; car < kMaxFollowers; ++car) {
-      const Part part = PartOf(scenario, car);
+      const DriverAssignment part = AssignmentOf(scenario, car);
       acc += part.has_acc ? 1 : 0;
       aggressive += part.style == Style::kAggressive ? 1 : 0;
     }
@@ -178,7 +178,7 @@ TEST(CastTest, DrawsNobodyWithoutAShare) {
   for (const double share : {0.0, 1.0}) {
     scenario.followers.acc_share = share;
     for (std::size_t car = 0; car < kMaxFollowers; ++car) {
-      EXPECT_EQ(PartOf(scenario, car).has_acc, share == 1.0);
+      EXPECT_EQ(AssignmentOf(scenario, car).has_acc, share == 1.0);
     }
   }
 }

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/policies/policies.h"
+#include "services/decision/policies/policies.h"
 
 namespace fogline {
 namespace {
@@ -310,7 +310,7 @@ TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
 
 TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
   for (const PolicyRow& row : Policies()) {
-    EXPECT_EQ(Fusion::Demands(WithPolicy(row.name)), row.name == "oracle") << row.name;
+    EXPECT_EQ(Fusion::UsesOptionalInput(WithPolicy(row.name)), row.name == "oracle") << row.name;
   }
   Fusion fusion(WithPolicy("oracle"));
   truth_t truth{};
@@ -318,7 +318,7 @@ TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
   for (int k = 0; k < 20; ++k) {
     Messages m = At(k, 31);
     m.lidar.range_m = 29.9;
-    fusion.Hear(truth);
+    fusion.SetOptionalInput(truth);
     const track_t& track = Step(fusion, m);
     EXPECT_EQ(track.state[0], 29.9);
     EXPECT_EQ(track.usage[2], track_t::USED);

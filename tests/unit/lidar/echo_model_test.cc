@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/world/visibility.h"
+#include "services/models/driver/visibility.h"
 
 namespace fogline {
 namespace {

@@ -9,8 +9,8 @@
 #include <map>
 #include <random>
 
-#include "services/recorder/step_order.h"
-#include "services/runtime/this_process.h"
+#include "common/process/this_process.h"
+#include "services/log/step_order.h"
 #include "tests/support/command.h"
 
 namespace fogline {

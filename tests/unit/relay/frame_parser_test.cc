@@ -4,7 +4,7 @@
 #include <numeric>
 #include <random>
 
-#include "services/runtime/tcpq_frame.h"
+#include "services/runtime/wire/tcpq_frame.h"
 
 namespace fogline::tcpq {
 namespace {

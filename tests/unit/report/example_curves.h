@@ -19,12 +19,13 @@ inline Summary ExampleSummary(double mean, double deviation) {
 }
 
 /// Thresholds 0.01 to 0.99. All runs up to 0.2 are equal, and so are all runs from 0.85 on.
-inline ReportCurves ExampleCurves() {
-  ReportCurves curves{.scenario_title = "Traded control in fog",
-                      .first_seed = 1,
-                      .last_seed = 200,
-                      .points = {},
-                      .published = {{0.2, 100.0, 100.0}, {0.5, 80.79, 0.0}, {0.8, 10.23, 0.0}}};
+inline report::ReportCurves ExampleCurves() {
+  report::ReportCurves curves{
+      .scenario_title = "Traded control in fog",
+      .first_seed = 1,
+      .last_seed = 200,
+      .points = {},
+      .published = {{0.2, 100.0, 100.0}, {0.5, 80.79, 0.0}, {0.8, 10.23, 0.0}}};
   for (int i = 1; i <= 99; ++i) {
     const double threshold = i / 100.0;
     const double si = std::clamp((0.85 - threshold) / 0.0063, 0.0, 100.0);

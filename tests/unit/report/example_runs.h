@@ -17,7 +17,7 @@
 
 #include <fmt/format.h>
 
-#include "services/runtime/random.h"
+#include "common/random.h"
 #include "tools/report/report.h"
 
 namespace fogline {
@@ -120,8 +120,8 @@ class ExampleRoad {
   Random lidar_noise_{7, Stream::kLidar};
 };
 
-inline ReportRun ExampleRun(const ExampleSettings& settings) {
-  ReportRun run;
+inline report::ReportRun ExampleRun(const ExampleSettings& settings) {
+  report::ReportRun run;
   run.name = settings.threshold ? fmt::format("threshold {}", *settings.threshold)
                                 : "without traded control";
   run.scenario_title = "Traded control in fog";
@@ -156,8 +156,8 @@ inline ReportRun ExampleRun(const ExampleSettings& settings) {
 }
 
 /// Without traded control, and with thresholds of 0.2, 0.5 and 0.8.
-inline std::vector<ReportRun> ExampleRuns(std::int64_t steps = 500) {
-  std::vector<ReportRun> runs{ExampleRun({.steps = steps})};
+inline std::vector<report::ReportRun> ExampleRuns(std::int64_t steps = 500) {
+  std::vector<report::ReportRun> runs{ExampleRun({.steps = steps})};
   for (const double threshold : {0.2, 0.5, 0.8}) {
     runs.push_back(ExampleRun({.threshold = threshold, .steps = steps}));
   }
@@ -167,7 +167,7 @@ inline std::vector<ReportRun> ExampleRuns(std::int64_t steps = 500) {
   return runs;
 }
 
-inline ReportTable ExampleTable() {
+inline report::ReportTable ExampleTable() {
   return {.rows = {{.threshold = 0.2,
                     .si_pct = 100.0,
                     .rhe_pct = 100.0,

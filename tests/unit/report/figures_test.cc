@@ -23,19 +23,20 @@ Sample At(double time_s, double lambda_human, bool fog) {
 }
 
 TEST(FiguresTest, DrawOnlyColumnsThatExistAndColoursOfThePalette) {
-  for (const Figure& figure : Figures()) {
-    for (const Curve& curve : figure.curves) {
-      EXPECT_NO_THROW(ColumnNamed(curve.column)) << figure.id;
-      EXPECT_LT(static_cast<std::size_t>(curve.colour), kPaletteSize) << curve.label;
+  for (const report::Figure& figure : report::Figures()) {
+    for (const report::Curve& curve : figure.curves) {
+      EXPECT_NO_THROW(report::ColumnNamed(curve.column)) << figure.id;
+      EXPECT_LT(static_cast<std::size_t>(curve.colour), report::kPaletteSize) << curve.label;
     }
   }
 }
 
 TEST(FiguresTest, ShadeBetweenCurvesOfTheirOwn) {
-  for (const Figure& figure : Figures()) {
+  for (const report::Figure& figure : report::Figures()) {
     if (figure.shade.below.empty()) continue;
     for (const std::string_view column : {figure.shade.below, figure.shade.limit}) {
-      EXPECT_NE(std::ranges::find(figure.curves, column, &Curve::column), figure.curves.end())
+      EXPECT_NE(std::ranges::find(figure.curves, column, &report::Curve::column),
+                figure.curves.end())
           << figure.id << ": " << column;
     }
   }
@@ -43,17 +44,17 @@ TEST(FiguresTest, ShadeBetweenCurvesOfTheirOwn) {
 
 TEST(FiguresTest, LeaveNoColumnUndrawn) {
   std::set<std::string_view> drawn{"time_s"};
-  for (const Figure& figure : Figures()) {
-    for (const Curve& curve : figure.curves) drawn.insert(curve.column);
+  for (const report::Figure& figure : report::Figures()) {
+    for (const report::Curve& curve : figure.curves) drawn.insert(curve.column);
   }
-  EXPECT_EQ(drawn.size(), kColumns.size());
+  EXPECT_EQ(drawn.size(), report::kColumns.size());
 }
 
 TEST(FiguresTest, TellTheCurvesOfAFigureApartByColourAndByDash) {
-  for (const Figure& figure : Figures()) {
+  for (const report::Figure& figure : report::Figures()) {
     std::set<int> colours;
-    std::set<Dash> dashes;
-    for (const Curve& curve : figure.curves) {
+    std::set<report::Dash> dashes;
+    for (const report::Curve& curve : figure.curves) {
       EXPECT_TRUE(colours.insert(curve.colour).second) << figure.id << ": " << curve.label;
       EXPECT_TRUE(dashes.insert(curve.dash).second) << figure.id << ": " << curve.label;
     }
@@ -61,38 +62,38 @@ TEST(FiguresTest, TellTheCurvesOfAFigureApartByColourAndByDash) {
 }
 
 TEST(FiguresTest, HaveThePaletteOfThePage) {
-  for (std::size_t i = 0; i < kPaletteSize; ++i) {
-    const std::string rule = fmt::format("--p{}: {};", i, kPalette[i]);
+  for (std::size_t i = 0; i < report::kPaletteSize; ++i) {
+    const std::string rule = fmt::format("--p{}: {};", i, report::kPalette[i]);
     EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
   }
 }
 
 TEST(RunStyleTest, TellsTwentyFourRunsApartByClassesOfThePage) {
   std::set<std::string> styles;
-  for (std::size_t i = 0; i < 24; ++i) EXPECT_TRUE(styles.insert(RunStyle(i)).second) << i;
-  EXPECT_EQ(RunStyle(7), "c7 r0");
-  EXPECT_EQ(RunStyle(8), "c0 r1");
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_TRUE(styles.insert(report::RunStyle(i)).second) << i;
+  EXPECT_EQ(report::RunStyle(7), "c7 r0");
+  EXPECT_EQ(report::RunStyle(8), "c0 r1");
   for (const char* rule : {".c7 {", ".r0 {", ".r1 {", ".r2 {"}) {
     EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
   }
 }
 
 TEST(ColumnNamedTest, RefusesAnUnknownName) {
-  EXPECT_THROW(ColumnNamed("speed"), std::out_of_range);
+  EXPECT_THROW(report::ColumnNamed("speed"), std::out_of_range);
 }
 
 TEST(HostJerkTest, IsTheChangeOfAccelerationPerSecond) {
   std::vector<Sample> samples{At(0.0, 0, false), At(0.1, 0, false), At(0.2, 0, false)};
   samples[1].host_acceleration_mps2 = 0.5;
   samples[2].host_acceleration_mps2 = 0.25;
-  EXPECT_TRUE(std::isnan(HostJerk(samples, 0)));
-  EXPECT_NEAR(HostJerk(samples, 1), 5.0, 1e-12);
-  EXPECT_NEAR(HostJerk(samples, 2), -2.5, 1e-12);
+  EXPECT_TRUE(std::isnan(report::HostJerk(samples, 0)));
+  EXPECT_NEAR(report::HostJerk(samples, 1), 5.0, 1e-12);
+  EXPECT_NEAR(report::HostJerk(samples, 2), -2.5, 1e-12);
 }
 
 TEST(FogWindowsTest, LastUntilTheStepWithoutFog) {
-  const ReportRun run = ExampleRun({.threshold = 0.5});
-  const std::vector<Window> windows = FogWindows(run.samples);
+  const report::ReportRun run = ExampleRun({.threshold = 0.5});
+  const std::vector<report::Window> windows = report::FogWindows(run.samples);
   ASSERT_EQ(windows.size(), 1U);
   EXPECT_DOUBLE_EQ(windows[0].begin_s, 19.0);
   EXPECT_DOUBLE_EQ(windows[0].end_s, 30.0);
@@ -101,7 +102,7 @@ TEST(FogWindowsTest, LastUntilTheStepWithoutFog) {
 TEST(HumanWindowsTest, LastWhileTheHumanHasAnyAuthorityOrUntilTheEnd) {
   const std::vector<Sample> samples{At(0.0, 1.0, false), At(0.1, 0.0, false), At(0.2, 0.01, false),
                                     At(0.3, 0.6, false)};
-  const std::vector<Window> windows = HumanWindows(samples);
+  const std::vector<report::Window> windows = report::HumanWindows(samples);
   ASSERT_EQ(windows.size(), 2U);
   EXPECT_EQ(windows[0].begin_s, 0.0);
   EXPECT_EQ(windows[0].end_s, 0.1);
@@ -109,7 +110,9 @@ TEST(HumanWindowsTest, LastWhileTheHumanHasAnyAuthorityOrUntilTheEnd) {
   EXPECT_EQ(windows[1].end_s, 0.3);
 }
 
-TEST(HumanWindowsTest, AreNoneInARunWithoutSamples) { EXPECT_TRUE(HumanWindows({}).empty()); }
+TEST(HumanWindowsTest, AreNoneInARunWithoutSamples) {
+  EXPECT_TRUE(report::HumanWindows({}).empty());
+}
 
 }  // namespace
 }  // namespace fogline

@@ -6,39 +6,39 @@ namespace fogline {
 namespace {
 
 TEST(MeasureTextTest, HasTheDigitsOfTheUnitAndAtMostFourSignificantOnes) {
-  EXPECT_EQ(MeasureText("min_host_gap_m", 36.43812, "m"), "36.44");
-  EXPECT_EQ(MeasureText("max_compromised_safety_m", 0.038773, "m"), "0.039");
-  EXPECT_EQ(MeasureText("min_host_ttc_s", 681.2345, "s"), "681.2");
-  EXPECT_EQ(MeasureText("human_time_s", 9.399999999999999, "s"), "9.40");
-  EXPECT_EQ(MeasureText("min_host_rss_margin_m", -12345.678, "m"), "-12346");
-  EXPECT_EQ(MeasureText("false_alarms_ph", 92.5449, "1/h"), "92.5");
+  EXPECT_EQ(report::MeasureText("min_host_gap_m", 36.43812, "m"), "36.44");
+  EXPECT_EQ(report::MeasureText("max_compromised_safety_m", 0.038773, "m"), "0.039");
+  EXPECT_EQ(report::MeasureText("min_host_ttc_s", 681.2345, "s"), "681.2");
+  EXPECT_EQ(report::MeasureText("human_time_s", 9.399999999999999, "s"), "9.40");
+  EXPECT_EQ(report::MeasureText("min_host_rss_margin_m", -12345.678, "m"), "-12346");
+  EXPECT_EQ(report::MeasureText("false_alarms_ph", 92.5449, "1/h"), "92.5");
 }
 
 TEST(MeasureTextTest, HasPercentagesAsThePaperPrintsThem) {
-  EXPECT_EQ(MeasureText("si_pct", 100, "%"), "100.00");
-  EXPECT_EQ(MeasureText("si_pct", 80.796, "%"), "80.80");
-  EXPECT_EQ(MeasureText("si_pct", -1234.5678, "%"), "-1234.57");
+  EXPECT_EQ(report::MeasureText("si_pct", 100, "%"), "100.00");
+  EXPECT_EQ(report::MeasureText("si_pct", 80.796, "%"), "80.80");
+  EXPECT_EQ(report::MeasureText("si_pct", -1234.5678, "%"), "-1234.57");
 }
 
 TEST(MeasureTextTest, CountsWithoutDecimals) {
-  EXPECT_EQ(MeasureText("steps", 500, ""), "500");
-  EXPECT_EQ(MeasureText("steps", 123456, ""), "123456");
-  EXPECT_EQ(MeasureText("max_doc", 0.83500, ""), "0.835");
+  EXPECT_EQ(report::MeasureText("steps", 500, ""), "500");
+  EXPECT_EQ(report::MeasureText("steps", 123456, ""), "123456");
+  EXPECT_EQ(report::MeasureText("max_doc", 0.83500, ""), "0.835");
 }
 
 TEST(MeasureTextTest, TellsNothingFromNextToNothing) {
-  EXPECT_EQ(MeasureText("transfers_pmin", 0, "1/min"), "0");
-  EXPECT_EQ(MeasureText("max_compromised_safety_m", -0.0, "m"), "0");
-  EXPECT_EQ(MeasureText("max_compromised_safety_m", 0.000002, "m"), "< 0.001");
-  EXPECT_EQ(MeasureText("min_host_rss_margin_m", -0.000002, "m"), "> -0.001");
-  EXPECT_EQ(MeasureText("max_compromised_safety_m", 0.0005, "m"), "0.001");
+  EXPECT_EQ(report::MeasureText("transfers_pmin", 0, "1/min"), "0");
+  EXPECT_EQ(report::MeasureText("max_compromised_safety_m", -0.0, "m"), "0");
+  EXPECT_EQ(report::MeasureText("max_compromised_safety_m", 0.000002, "m"), "< 0.001");
+  EXPECT_EQ(report::MeasureText("min_host_rss_margin_m", -0.000002, "m"), "> -0.001");
+  EXPECT_EQ(report::MeasureText("max_compromised_safety_m", 0.0005, "m"), "0.001");
 }
 
 TEST(MeasureTextTest, HasNoTimeToCollisionBeyondMeaning) {
-  EXPECT_EQ(MeasureText("min_follower_ttc_s", 30946809.1, "s"), "> 1000");
-  EXPECT_EQ(MeasureText("min_ttc_s", 1000.1, "s"), "> 1000");
-  EXPECT_EQ(MeasureText("min_host_ttc_s", 1000, "s"), "1000");
-  EXPECT_EQ(MeasureText("duration_s", 30946809.1, "s"), "30946809");
+  EXPECT_EQ(report::MeasureText("min_follower_ttc_s", 30946809.1, "s"), "> 1000");
+  EXPECT_EQ(report::MeasureText("min_ttc_s", 1000.1, "s"), "> 1000");
+  EXPECT_EQ(report::MeasureText("min_host_ttc_s", 1000, "s"), "1000");
+  EXPECT_EQ(report::MeasureText("duration_s", 30946809.1, "s"), "30946809");
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-StudySection Hostile() {
+report::StudySection Hostile() {
   const std::string evil = "</script><script>alert(1)</script>|\"&";
-  StudySection section{.name = "evil", .title = evil, .question = evil, .findings = {evil}};
+  report::StudySection section{.name = "evil", .title = evil, .question = evil, .findings = {evil}};
   section.method = evil;
   section.figures = {{.id = "evil-1",
                       .title = evil,
@@ -36,36 +36,37 @@ nlohmann::json DataOf(const std::string& page) {
 }
 
 TEST(StudyPageTest, LetsNoTextBecomeMarkup) {
-  const std::string page = MakeStudyPage("fogline study <evil>", std::array{Hostile()});
+  const std::string page = report::MakeStudyPage("fogline study <evil>", std::array{Hostile()});
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(page, HasSubstr("fogline study &lt;evil&gt;"));
   EXPECT_EQ(DataOf(page)[0]["series"][0]["name"], Hostile().title);
 }
 
 TEST(StudyPageTest, HasValuesThatAreNotThereAsNullAndRoundsTheOthers) {
-  StudySection section = Hostile();
+  report::StudySection section = Hostile();
   section.figures[0].series[0].y = {1.23456789, std::numeric_limits<double>::quiet_NaN()};
-  const nlohmann::json y = DataOf(MakeStudyPage("", std::array{section}))[0]["series"][0]["y"];
+  const nlohmann::json y =
+      DataOf(report::MakeStudyPage("", std::array{section}))[0]["series"][0]["y"];
   EXPECT_EQ(y[0], 1.23457);
   EXPECT_TRUE(y[1].is_null());
 }
 
 TEST(StudyPageTest, SaysOfAnAxisThatItIsLogarithmicOrWhereItEnds) {
-  StudySection section = Hostile();
-  EXPECT_EQ(DataOf(MakeStudyPage("", std::array{section}))[0]["most"], nullptr);
+  report::StudySection section = Hostile();
+  EXPECT_EQ(DataOf(report::MakeStudyPage("", std::array{section}))[0]["most"], nullptr);
   section.figures[0].log_y = true;
-  std::string page = MakeStudyPage("", std::array{section});
+  std::string page = report::MakeStudyPage("", std::array{section});
   EXPECT_THAT(page, HasSubstr("<span class=\"unit\">(logarithmic)</span></p>"));
   EXPECT_EQ(DataOf(page)[0]["logY"], true);
   section.figures[0].log_y = false;
   section.figures[0].most = 12.5;
-  page = MakeStudyPage("", std::array{section});
+  page = report::MakeStudyPage("", std::array{section});
   EXPECT_THAT(page, HasSubstr("(▸ beyond 12.5)</span></p>"));
   EXPECT_EQ(DataOf(page)[0]["most"], 12.5);
 }
 
 TEST(StudyTextTest, KeepsBarsOutOfItsTables) {
-  const std::string text = MakeStudyText("fogline study evil", std::array{Hostile()});
+  const std::string text = report::MakeStudyText("fogline study evil", std::array{Hostile()});
   EXPECT_THAT(text, HasSubstr("Made by `fogline study evil`."));
   EXPECT_THAT(text, HasSubstr("| </script><script>alert(1)</script>\\|\"& |"));
 }

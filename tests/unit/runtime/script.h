@@ -1,15 +1,15 @@
-// A node or a conductor alone on a bus in memory. The test publishes the messages of all other
-// processes and sees the answers.
+// A node or a run coordinator alone on a bus in memory. The test publishes the messages of all
+// other processes and sees the answers.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "scenario/loader.h"
-#include "services/runtime/bus.h"
-#include "services/runtime/node.h"
-#include "services/runtime/scenario_parts.h"
+#include "scenario/io/loader.h"
+#include "services/runtime/lockstep/node.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/scenario_parts.h"
 
 namespace fogline::test {
 

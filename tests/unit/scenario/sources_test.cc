@@ -8,8 +8,8 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "scenario/scenario.h"
+#include "scenario/io/loader.h"
+#include "scenario/sections/scenario.h"
 
 namespace fogline {
 namespace {

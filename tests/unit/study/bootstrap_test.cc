@@ -16,7 +16,7 @@ constexpr Stream kTest{1'000'000};
 
 TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
   constexpr std::size_t kRuns = 7;  // odd, so the last draw of a pair is left over
-  const Resampling resampling(kRuns, kTest);
+  const study::Resampling resampling(kRuns, kTest);
   std::vector<double> sums(kRuns, 0.0);
   std::vector<double> weights;
   constexpr int kDraws = 2000;
@@ -33,8 +33,8 @@ TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
 TEST(ResamplingTest, IsTheSameWhoeverDrawsInWhateverOrder) {
   std::vector<double> first;
   std::vector<double> again;
-  Resampling(100, kTest).Draw(3, first);
-  const Resampling other(100, kTest);
+  study::Resampling(100, kTest).Draw(3, first);
+  const study::Resampling other(100, kTest);
   other.Draw(8, again);
   EXPECT_NE(first, again);
   other.Draw(3, again);
@@ -42,14 +42,14 @@ TEST(ResamplingTest, IsTheSameWhoeverDrawsInWhateverOrder) {
 }
 
 TEST(WeightedMeanTest, IsOfTheValuesThatAreThere) {
-  EXPECT_EQ(WeightedMean(std::array{1.0, kNone, 4.0}, std::array{2.0, 5.0, 1.0}), 2);
-  EXPECT_TRUE(std::isnan(WeightedMean(std::array{1.0, kNone}, std::array{0.0, 2.0})));
+  EXPECT_EQ(study::WeightedMean(std::array{1.0, kNone, 4.0}, std::array{2.0, 5.0, 1.0}), 2);
+  EXPECT_TRUE(std::isnan(study::WeightedMean(std::array{1.0, kNone}, std::array{0.0, 2.0})));
 }
 
 TEST(FromReplicatesTest, TakesThePercentiles) {
   std::vector<double> replicates(1001);
   std::iota(replicates.begin(), replicates.end(), 0.0);
-  const Estimate estimate = FromReplicates(30, 480, replicates);
+  const study::Estimate estimate = study::FromReplicates(30, 480, replicates);
   EXPECT_EQ(estimate.n, 30);
   EXPECT_EQ(estimate.mean, 480);
   EXPECT_NEAR(estimate.low, 25, 1e-9);
@@ -57,9 +57,9 @@ TEST(FromReplicatesTest, TakesThePercentiles) {
 }
 
 TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
-  EXPECT_FALSE(FromReplicates(1, 2, {1, 2, 3}).has_interval());
-  EXPECT_FALSE(FromReplicates(9, 2, {1, kNone, 3}).has_interval());
-  EXPECT_EQ(VerdictOf(FromReplicates(1, 2, {1, 2, 3})), Verdict::kTooFew);
+  EXPECT_FALSE(study::FromReplicates(1, 2, {1, 2, 3}).has_interval());
+  EXPECT_FALSE(study::FromReplicates(9, 2, {1, kNone, 3}).has_interval());
+  EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 
 // The purpose of the interval: it covers the mean of normal values as often as it says.
@@ -75,12 +75,12 @@ TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
       values[i] = random.Normal2(0, static_cast<std::uint32_t>(i))[0];
     }
     std::vector<double> replicates;
-    const Resampling resampling(kRuns, Stream{1'000'001});
+    const study::Resampling resampling(kRuns, Stream{1'000'001});
     for (int k = 0; k < 200; ++k) {
       resampling.Draw(k, weights);
-      replicates.push_back(WeightedMean(values, weights));
+      replicates.push_back(study::WeightedMean(values, weights));
     }
-    const Estimate estimate = FromReplicates(kRuns, 0, std::move(replicates));
+    const study::Estimate estimate = study::FromReplicates(kRuns, 0, std::move(replicates));
     covered += estimate.low <= 0 && 0 <= estimate.high ? 1 : 0;
   }
   // Of 200 experiments at 0.93 (a bootstrap of 40 runs is a little narrow): 186 +- 3.6, three

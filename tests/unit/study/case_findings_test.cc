@@ -8,7 +8,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "tools/study/findings.h"
+#include "tools/study/study_findings.h"
 
 namespace fogline {
 namespace {
@@ -22,9 +22,10 @@ constexpr double kWholeRun = 500;  // steps
 /// A comparison of runs that are equal except for the values that a test sets.
 class Runs {
  public:
-  Runs(std::vector<StudyCase> cases, std::vector<StudyVariant> variants)
+  Runs(std::vector<study::StudyCase> cases, std::vector<study::StudyVariant> variants)
       : cases_(std::move(cases)), variants_(std::move(variants)) {
-    values_.assign(cases_.size() * variants_.size() * ComparedMeasures().size() * kSeeds, 0.0);
+    values_.assign(cases_.size() * variants_.size() * study::ComparedMeasures().size() * kSeeds,
+                   0.0);
     for (std::size_t c = 0; c < cases_.size(); ++c) {
       for (std::size_t v = 0; v < variants_.size(); ++v) {
         Set({c, v}, "steps", [](std::int64_t) { return kWholeRun; });
@@ -33,28 +34,29 @@ class Runs {
   }
 
   template <class ValueOf>
-  void Set(Cell cell, std::string_view measure, ValueOf value_of) {
+  void Set(study::Cell cell, std::string_view measure, ValueOf value_of) {
     const std::size_t place = cell.test_case * variants_.size() + cell.variant;
-    const std::size_t row = place * ComparedMeasures().size() + PlaceOfMeasure(measure);
+    const std::size_t row =
+        place * study::ComparedMeasures().size() + study::PlaceOfMeasure(measure);
     for (std::int64_t i = 0; i < kSeeds; ++i) {
       values_[row * kSeeds + static_cast<std::size_t>(i)] = value_of(i);
     }
   }
   /// Sets the mean compromised safety in fog, a little different for each seed.
-  void Compromise(Cell cell, double mean_m) {
+  void Compromise(study::Cell cell, double mean_m) {
     Set(cell, "mean_compromised_safety_fog_m",
         [&](std::int64_t seed) { return mean_m + 0.001 * static_cast<double>(seed % 3); });
   }
-  void Crash(Cell cell, std::int64_t runs) {
+  void Crash(study::Cell cell, std::int64_t runs) {
     Set(cell, "collided", [&](std::int64_t seed) { return seed < runs ? 1.0 : 0.0; });
     Set(cell, "steps", [&](std::int64_t seed) { return seed < runs ? 100.0 : kWholeRun; });
   }
 
-  Comparison Result() const { return {cases_, variants_, kSeeds, values_}; }
+  study::Comparison Result() const { return {cases_, variants_, kSeeds, values_}; }
 
  private:
-  std::vector<StudyCase> cases_;
-  std::vector<StudyVariant> variants_;
+  std::vector<study::StudyCase> cases_;
+  std::vector<study::StudyVariant> variants_;
   std::vector<double> values_;
 };
 
@@ -68,9 +70,9 @@ TEST(CaseFindingsTest, DoNotCallARunSafeThatCrashesBeforeItsSafetyIsCompromised)
   runs.Compromise({0, 0}, 0.10);
   runs.Compromise({0, 1}, 0.07);  // less, because the run ends early
   runs.Crash({0, 1}, kSeeds);
-  const Comparison comparison = runs.Result();
-  EXPECT_EQ(VerdictOfCase(comparison, 0, 1, 0), CaseVerdict::kCollidesMore);
-  const std::vector<std::string> findings = CaseFindings(comparison, 1);
+  const study::Comparison comparison = runs.Result();
+  EXPECT_EQ(study::VerdictOfCase(comparison, 0, 1, 0), study::CaseVerdict::kCollidesMore);
+  const std::vector<std::string> findings = study::CaseFindings(comparison, 1);
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_THAT(findings[0], HasSubstr("It collides more in: ice (20 of 20 runs instead of 0)."));
   EXPECT_THAT(findings[0], Not(HasSubstr("It reduces it in")));
@@ -83,20 +85,20 @@ TEST(CaseFindingsTest, GiveNoVerdictOnSafetyWhereAFewRunsEndEarly) {
   runs.Compromise({0, 0}, 0.10);
   runs.Compromise({0, 1}, 0.07);
   runs.Crash({0, 1}, 5);  // five pairs differ, all in one direction: no proof yet, p = 2 / 2^5
-  EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kCutShort);
+  EXPECT_EQ(study::VerdictOfCase(runs.Result(), 0, 1, 0), study::CaseVerdict::kCutShort);
   runs.Crash({0, 1}, 6);
-  EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kCollidesMore);
+  EXPECT_EQ(study::VerdictOfCase(runs.Result(), 0, 1, 0), study::CaseVerdict::kCollidesMore);
   runs.Crash({0, 0}, 12);
-  EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kCollidesLess);
+  EXPECT_EQ(study::VerdictOfCase(runs.Result(), 0, 1, 0), study::CaseVerdict::kCollidesLess);
 }
 
 TEST(CaseFindingsTest, JudgeByCompromisedSafetyWhereEveryRunLasts) {
   Runs runs = OneCase();
-  EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kNothing);
+  EXPECT_EQ(study::VerdictOfCase(runs.Result(), 0, 1, 0), study::CaseVerdict::kNothing);
   runs.Compromise({0, 0}, 0.10);
   runs.Set({0, 1}, "mean_compromised_safety_fog_m",
            [](std::int64_t seed) { return 0.07 + 0.001 * static_cast<double>(seed % 5); });
-  EXPECT_EQ(VerdictOfCase(runs.Result(), 0, 1, 0), CaseVerdict::kReduces);
+  EXPECT_EQ(study::VerdictOfCase(runs.Result(), 0, 1, 0), study::CaseVerdict::kReduces);
 }
 
 TEST(CaseFindingsTest, CountACaseOnceThatIsThereTwice) {
@@ -110,7 +112,7 @@ TEST(CaseFindingsTest, CountACaseOnceThatIsThereTwice) {
       return (c == 2 ? 0.08 : 0.07) + 0.001 * static_cast<double>(seed % 5);
     });
   }
-  const std::vector<std::string> findings = CaseFindings(runs.Result(), 1);
+  const std::vector<std::string> findings = study::CaseFindings(runs.Result(), 1);
   EXPECT_THAT(findings[0], HasSubstr("in 2 cases that count"));
   EXPECT_THAT(findings[0], HasSubstr("It reduces it in: a and c."));
   EXPECT_THAT(findings[0], HasSubstr("(in brackets): b (a)."));
@@ -126,17 +128,19 @@ TEST(SameRunsTest, AreRankedOnceWhateverIsMissing) {
              [](std::int64_t) { return std::numeric_limits<double>::quiet_NaN(); });
   }
   runs.Set({0, 3}, "rhe_pct", [](std::int64_t seed) { return seed == 7 ? 1.0 : 0.0; });
-  const Comparison comparison = runs.Result();
-  EXPECT_EQ(Distinct(comparison, 0, AllVariants(comparison)), (std::vector<std::size_t>{0, 1, 3}));
-  EXPECT_THAT(SameRunsText(comparison, 0), HasSubstr("Blend has the same runs as traded"));
-  EXPECT_THAT(RankingText(comparison, 0, "rhe_pct", 1, Better::kLess), Not(HasSubstr("blend")));
+  const study::Comparison comparison = runs.Result();
+  EXPECT_EQ(study::Distinct(comparison, 0, study::AllVariants(comparison)),
+            (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_THAT(study::SameRunsText(comparison, 0), HasSubstr("Blend has the same runs as traded"));
+  EXPECT_THAT(study::RankingText(comparison, 0, "rhe_pct", 1, study::Better::kLess),
+              Not(HasSubstr("blend")));
 }
 
 TEST(AgainstTextTest, SaysHowMuchLessWithoutASign) {
   Runs runs = OneCase();
   runs.Set({0, 0}, "rhe_pct", [](std::int64_t seed) { return seed % 2 == 0 ? 3.9 : 4.1; });
   runs.Set({0, 1}, "rhe_pct", [](std::int64_t) { return 1.0; });
-  EXPECT_EQ(AgainstText(runs.Result(), 0, {0, 1}, 0, "rhe_pct", "points", 0),
+  EXPECT_EQ(study::AgainstText(runs.Result(), 0, {0, 1}, 0, "rhe_pct", "points", 0),
             "less for traded (by 3 [3, 3] points)");
 }
 

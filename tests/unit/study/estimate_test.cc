@@ -14,7 +14,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
   // Mean 2, deviation 1, t of 2 degrees of freedom 4.302653: 2 +- 4.302653/sqrt(3).
-  const Estimate estimate = EstimateOf(std::array{1.0, kNone, 2.0, 3.0});
+  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kNone, 2.0, 3.0});
   EXPECT_EQ(estimate.n, 3);
   EXPECT_EQ(estimate.mean, 2);
   EXPECT_NEAR(estimate.low, 2 - 2.484138, 1e-6);
@@ -22,59 +22,62 @@ TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
 }
 
 TEST(EstimateTest, OfOneValueHasNoInterval) {
-  const Estimate estimate = EstimateOf(std::array{5.0});
+  const study::Estimate estimate = study::EstimateOf(std::array{5.0});
   EXPECT_EQ(estimate.mean, 5);
   EXPECT_TRUE(std::isnan(estimate.low));
-  EXPECT_EQ(VerdictOf(estimate), Verdict::kTooFew);
-  EXPECT_TRUE(std::isnan(EstimateOf({}).mean));
+  EXPECT_EQ(study::VerdictOf(estimate), study::Verdict::kTooFew);
+  EXPECT_TRUE(std::isnan(study::EstimateOf({}).mean));
 }
 
 TEST(EstimateTest, AnInfiniteValueIsNeitherMissingNorPartOfTheMean) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  const Estimate estimate = EstimateOf(std::array{1.0, kInfinite, 3.0, kNone});
+  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kInfinite, 3.0, kNone});
   EXPECT_EQ(estimate.n, 2);
   EXPECT_EQ(estimate.mean, 2);
   EXPECT_EQ(estimate.infinite, 1);
-  EXPECT_EQ(Text(EstimateOf(std::array{5.0, kInfinite}), 1), "5.0, ∞ in 1 of 2 runs");
-  EXPECT_EQ(Text(EstimateOf(std::array{kInfinite, kInfinite}), 1), "∞ in 2 of 2 runs");
+  EXPECT_EQ(study::Text(study::EstimateOf(std::array{5.0, kInfinite}), 1), "5.0, ∞ in 1 of 2 runs");
+  EXPECT_EQ(study::Text(study::EstimateOf(std::array{kInfinite, kInfinite}), 1),
+            "∞ in 2 of 2 runs");
 }
 
 TEST(EstimateTest, IsToldWithAsManyDecimalsAsItsIntervalHas) {
-  Estimate estimate{.n = 9, .mean = 0.0195, .deviation = 0, .low = 0.01942, .high = 0.01958};
-  EXPECT_EQ(Text(estimate), "0.01950 [0.01942, 0.01958]");
+  study::Estimate estimate{.n = 9, .mean = 0.0195, .deviation = 0, .low = 0.01942, .high = 0.01958};
+  EXPECT_EQ(study::Text(estimate), "0.01950 [0.01942, 0.01958]");
   estimate = {.n = 9, .mean = 1191.75, .deviation = 0, .low = 1188.44, .high = 1195.06};
-  EXPECT_EQ(Text(estimate), "1191.75 [1188.44, 1195.06]");
+  EXPECT_EQ(study::Text(estimate), "1191.75 [1188.44, 1195.06]");
   estimate = {.n = 9, .mean = 0, .deviation = 0, .low = 0, .high = 0};
-  EXPECT_EQ(Text(estimate), "0.00 [0.00, 0.00]");
+  EXPECT_EQ(study::Text(estimate), "0.00 [0.00, 0.00]");
 }
 
 TEST(PairedDifferenceTest, OfTwoInfiniteValuesIsNoneAndOfOneIsNotDecidedByTheOthers) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  const Estimate both = PairedDifference(std::array{kInfinite, 3.0}, std::array{kInfinite, 3.0});
+  const study::Estimate both =
+      study::PairedDifference(std::array{kInfinite, 3.0}, std::array{kInfinite, 3.0});
   EXPECT_EQ(both.n, 2);
   EXPECT_EQ(both.mean, 0);
-  const Estimate one = PairedDifference(std::array{kInfinite, 3.0, 3.0}, std::array{2.0, 2.0, 2.0});
+  const study::Estimate one =
+      study::PairedDifference(std::array{kInfinite, 3.0, 3.0}, std::array{2.0, 2.0, 2.0});
   EXPECT_EQ(one.n, 2);
   EXPECT_EQ(one.infinite, 1);
-  EXPECT_EQ(VerdictOf(one), Verdict::kUndecided);
+  EXPECT_EQ(study::VerdictOf(one), study::Verdict::kUndecided);
 }
 
 TEST(PairedDifferenceTest, IsKnownExactlyWhereOnlyTheNoiseOfThePairsDiffers) {
-  const Estimate difference =
-      PairedDifference(std::array{10.5, 90.5, 50.5, 7.0}, std::array{10.0, 90.0, 50.0, kNone});
+  const study::Estimate difference = study::PairedDifference(std::array{10.5, 90.5, 50.5, 7.0},
+                                                             std::array{10.0, 90.0, 50.0, kNone});
   EXPECT_EQ(difference.n, 3);
   EXPECT_EQ(difference.low, 0.5);
   EXPECT_EQ(difference.high, 0.5);
-  EXPECT_EQ(VerdictOf(difference), Verdict::kMore);
+  EXPECT_EQ(study::VerdictOf(difference), study::Verdict::kMore);
 }
 
 TEST(VerdictTest, IsUndecidedWhereTheIntervalHasZeroInIt) {
-  EXPECT_EQ(VerdictOf({.n = 9, .mean = 1, .deviation = 1, .low = -0.1, .high = 2.1}),
-            Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf({.n = 9, .mean = 0, .deviation = 0, .low = 0, .high = 0}),
-            Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf({.n = 9, .mean = -1, .deviation = 1, .low = -2, .high = -0.1}),
-            Verdict::kLess);
+  EXPECT_EQ(study::VerdictOf({.n = 9, .mean = 1, .deviation = 1, .low = -0.1, .high = 2.1}),
+            study::Verdict::kUndecided);
+  EXPECT_EQ(study::VerdictOf({.n = 9, .mean = 0, .deviation = 0, .low = 0, .high = 0}),
+            study::Verdict::kUndecided);
+  EXPECT_EQ(study::VerdictOf({.n = 9, .mean = -1, .deviation = 1, .low = -2, .high = -0.1}),
+            study::Verdict::kLess);
 }
 
 }  // namespace

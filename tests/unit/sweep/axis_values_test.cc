@@ -3,7 +3,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "common/errors.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline {

@@ -7,7 +7,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
+#include "scenario/io/loader.h"
 
 namespace fogline {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "services/runtime/seal.h"
+#include "services/runtime/wire/message_signer.h"
 
 namespace fogline {
 namespace {
@@ -90,7 +90,7 @@ TEST_F(TrafficStatisticsTest, CountsNamesThatItDoesNotKnow) {
 }
 
 TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
-  Seal seal(SealKey(SealKey::Secret{}), std::nullopt);
+  MessageSigner seal(SigningKey(SigningKey::Secret{}), std::nullopt);
   const Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
   Add("RADAR", {radar.begin(), radar.end()});
   const TrafficView view = Observe(1000);

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenario/loader.h"
-#include "services/runtime/wire.h"
+#include "common/errors.h"
+#include "services/runtime/wire/wire.h"
 #include "services/world/world.h"
 #include "tests/unit/world/commands.h"
 

@@ -1,0 +1,37 @@
+// Keeps a file or folder to one writer at a time.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+/// A lock on a file or folder (flock(2)). The kernel removes it when the process ends in any way,
+/// and nothing is left on the disk. It binds only processes that ask for it. On a file system
+/// without locks every process gets it.
+class FileLock {
+ public:
+  enum class Kind {
+    kOwn,     // for the owner: refused while any other lock is there
+    kShared,  // for a process that works for the owner and may outlive it
+  };
+
+  /// Opens a file or folder and locks it. A file that is missing is created.
+  /// @param option the command line option that names it, such as "--log"
+  /// @param owner the kind of process that has such locks, for the message: "run"
+  /// @param patience how long to wait until other processes give up their locks
+  /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without
+  ///     the pid if /proc/locks does not give it; or the reason why the file cannot be written
+  FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
+           std::string_view owner, Duration patience = Duration::zero());
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+}  // namespace fogline

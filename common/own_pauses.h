@@ -1,0 +1,56 @@
+// The times at which this process was held up itself: stopped (Ctrl-Z), frozen with its container,
+// or waiting for a disk. A silence of others in such a time means nothing.
+//
+// A suspended machine needs no such record: its Clock stands still meanwhile.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+class OwnPauses {
+ public:
+  /// Two looks at the clock that are further apart than this are a pause. Every process looks
+  /// several times a second (Node::kHeartbeat is the longest interval).
+  static constexpr Duration kPause = milliseconds(500);
+
+  explicit OwnPauses(TimePoint now) : looked_(now) {}
+
+  /// Notes that the process looks at the clock. @return the time of its latest look
+  TimePoint Attend(TimePoint now) {
+    if (now <= looked_) return looked_;
+    const Duration away = now - looked_;
+    if (away > kPause) {
+      pauses_.push_back({.from = looked_, .to = now});
+      longest_ = std::max(longest_, away);
+    }
+    return looked_ = now;
+  }
+
+  /// The time since `since` in which this process could have heard a message.
+  Duration HeldAgainst(TimePoint since, TimePoint now) const {
+    Duration held = now - since;
+    for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
+      held -= pause->to - std::max(pause->from, since);
+    }
+    return held;
+  }
+
+  /// The longest pause since the last call, 0 if there was none.
+  Duration TakeLongest() { return std::exchange(longest_, Duration::zero()); }
+
+ private:
+  struct Pause {
+    TimePoint from;
+    TimePoint to;
+  };
+  TimePoint looked_;           // time of the latest look
+  std::vector<Pause> pauses_;  // in order
+  Duration longest_{};
+};
+
+}  // namespace fogline

@@ -1,0 +1,187 @@
+#include "common/process/console.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdint>
+#include <ctime>
+#include <mutex>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "common/clock.h"
+
+namespace fogline {
+namespace {
+
+// A process waits no longer than this for a reader that takes nothing, such as a pager that waits
+// for a key: a process that has failed keeps its log locked until it ends.
+constexpr Duration kReaderLimit = milliseconds(5000);
+
+/// Keeps a write from ending or stopping the process, for the length of a scope and in this thread:
+/// one to a pipe without a reader (SIGPIPE), and one from the background to a terminal that is set
+/// to stop that (SIGTTOU; `stty tostop`). Other writes behave as usual: `fogline digest *.lcm |
+/// head` ends.
+class WithoutSignals {
+ public:
+  WithoutSignals() {
+    sigemptyset(&sigpipe_);
+    sigaddset(&sigpipe_, SIGPIPE);
+    sigset_t pending;
+    sigpending(&pending);
+    was_pending_ = sigismember(&pending, SIGPIPE) == 1;
+    sigset_t both = sigpipe_;
+    sigaddset(&both, SIGTTOU);  // the terminal sends none to who blocks it
+    pthread_sigmask(SIG_BLOCK, &both, &before_);
+  }
+  ~WithoutSignals() {
+    constexpr timespec kNow{};
+    if (!was_pending_) sigtimedwait(&sigpipe_, nullptr, &kNow);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  WithoutSignals(const WithoutSignals&) = delete;
+  WithoutSignals& operator=(const WithoutSignals&) = delete;
+
+ private:
+  sigset_t sigpipe_{};
+  sigset_t before_{};
+  bool was_pending_ = false;
+};
+
+/// Stderr, written without waiting.
+///
+/// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
+/// wait. O_NONBLOCK on descriptor 2 itself would affect every process that shares it with the same
+/// shell. If the second open fails (a terminal of another user), poll() asks for room before each
+/// piece. A thread with a queue would need neither, but each process would have to wait at its end
+/// for its last lines.
+class Stderr {
+ public:
+  /// The only one; never destroyed, since destructors of other objects may write.
+  static Stderr& Get() {
+    static auto* const only = new Stderr;
+    return *only;
+  }
+
+  void WriteLine(std::string line, Duration limit) {
+    const std::scoped_lock lock(mutex_);
+    if (waited_in_vain_) limit = Duration::zero();
+    if (dropped_ > 0) line.insert(0, fmt::format("... {} lines are missing here\n", dropped_));
+    if (Write(line, limit)) {
+      dropped_ = 0;
+      waited_in_vain_ = false;
+    } else {
+      ++dropped_;
+      waited_in_vain_ = waited_in_vain_ || limit > Duration::zero();
+    }
+  }
+
+  void WriteText(std::string_view text) {
+    const std::scoped_lock lock(mutex_);
+    Write(text, Duration::zero());
+  }
+
+ private:
+  Stderr() {
+    struct stat info {};
+    if (fstat(STDERR_FILENO, &info) != 0 || S_ISREG(info.st_mode)) return;  // a file never waits
+    is_socket_ = S_ISSOCK(info.st_mode);
+    const int own = is_socket_ ? -1
+                               : open("/proc/self/fd/2",
+                                      O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (own >= 0) fd_ = own;
+    asks_first_ = !is_socket_ && own < 0;
+  }
+
+  /// @return whether the text was written, or the first part of it; the rest follows with the next
+  ///     write
+  bool Write(std::string_view text, Duration limit) {
+    const WithoutSignals scope;
+    const TimePoint end = Clock::now() + limit;
+    rest_.erase(0, Put(rest_, end));
+    if (!rest_.empty()) return false;
+    const std::size_t written = Put(text, end);
+    if (written > 0) rest_ = text.substr(written);  // so that no line is cut in the middle
+    return written > 0;
+  }
+
+  /// @return how many bytes were written until `end`
+  std::size_t Put(std::string_view text, TimePoint end) {
+    std::size_t written = 0;
+    while (written < text.size()) {
+      if (asks_first_ && !HasRoom(end)) break;
+      const ssize_t size = PutOnce(text.substr(written));
+      if (size > 0) {
+        written += static_cast<std::size_t>(size);
+      } else if (size < 0 && errno == EAGAIN ? !HasRoom(end) : errno != EINTR) {
+        break;
+      }
+    }
+    return written;
+  }
+
+  ssize_t PutOnce(std::string_view text) const {
+    if (is_socket_) return send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    // A pipe that has room takes at least this many bytes at once.
+    const std::size_t piece = asks_first_ ? std::size_t{_POSIX_PIPE_BUF} : text.size();
+    return write(fd_, text.data(), std::min(text.size(), piece));
+  }
+
+  bool HasRoom(TimePoint end) const {
+    while (true) {
+      pollfd waited{.fd = fd_, .events = POLLOUT, .revents = 0};
+      const std::int64_t left = std::max<std::int64_t>(0, Milliseconds(end - Clock::now()));
+      const int ready = poll(&waited, 1, static_cast<int>(left));
+      if (ready > 0) return (waited.revents & POLLOUT) != 0;
+      if (ready == 0 || errno != EINTR) return false;
+    }
+  }
+
+  std::mutex mutex_;
+  int fd_ = STDERR_FILENO;
+  bool is_socket_ = false;
+  bool asks_first_ = false;      // poll(), since a write might wait
+  std::string rest_;             // of what was written in part
+  std::int64_t dropped_ = 0;     // lines since the last one that was written
+  bool waited_in_vain_ = false;  // for the reader, since then
+};
+
+void WriteLine(std::string_view line, Duration limit) noexcept {
+  try {
+    Stderr::Get().WriteLine(EscapeLines(line) + '\n', limit);
+  } catch (...) {  // without memory nothing can be printed
+  }
+}
+
+}  // namespace
+
+void Notice(std::string_view line) noexcept { WriteLine(line, Duration::zero()); }
+
+void Complain(std::string_view line) noexcept { WriteLine(line, kReaderLimit); }
+
+void Draw(std::string_view text) noexcept {
+  try {
+    Stderr::Get().WriteText(text);
+  } catch (...) {
+  }
+}
+
+void TakeStandardDescriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // open() takes the lowest free descriptor, which is this one. Its use fails, as the use of a
+    // closed one does.
+    open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace fogline

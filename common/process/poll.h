@@ -1,0 +1,22 @@
+// Waiting for a file or socket with a limit to the nanosecond, which poll() has not.
+#pragma once
+
+#include <poll.h>
+
+#include <algorithm>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+/// Waits until a file is ready for `events`, or without one (-1) for the time to pass.
+/// @return as ppoll(): above 0 if it is ready, 0 if not, -1 with errno (EINTR: a signal)
+inline int PollFor(int file, short events, Duration timeout) {
+  pollfd waited{.fd = file, .events = events, .revents = 0};
+  const auto left = std::max(Duration::zero(), timeout);
+  const timespec limit{.tv_sec = duration_cast<std::chrono::seconds>(left).count(),
+                       .tv_nsec = static_cast<long>((left % std::chrono::seconds(1)).count())};
+  return ppoll(&waited, 1, &limit, nullptr);
+}
+
+}  // namespace fogline

@@ -1,0 +1,36 @@
+// A progress bar on stderr for a person at a terminal. It appears when the work takes longer than
+// two seconds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+class Progress {
+ public:
+  /// @param what unit of the count, such as "step"; @param total full count
+  Progress(std::string what, std::int64_t total);
+  /// Erases the bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// @param note text behind the bar
+  void Show(std::int64_t done, std::string_view note = "");
+  /// Prints a line on stderr, in place of the bar.
+  void Say(std::string_view line);
+
+ private:
+  std::string what_;
+  std::int64_t total_;
+  bool terminal_;
+  bool shown_ = false;
+  TimePoint began_;
+  TimePoint next_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,72 @@
+// Parts of messages: numbers, quoted and escaped texts, names, suggestions.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace fogline {
+
+/// The shortest text that reads back as the same number, sign of zero included.
+std::string NumberText(double value);
+
+/// A time in s, rounded to microseconds, the resolution of a run: "899.9" for 899.9000000000001.
+std::string TimeText(double time_s);
+
+/// The text in one line that any terminal can show safely. Control characters (C0, DEL, C1) and
+/// invisible characters that change the text around them (directions of writing, zero width) are
+/// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
+std::string EscapeControls(std::string_view text);
+
+/// The same, but line feeds stay. JSON stays JSON with the same meaning.
+std::string EscapeLines(std::string_view text);
+
+/// The name of a file, escaped for a terminal.
+std::string PathText(const std::filesystem::path& file);
+
+/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. For
+/// text of unknown encoding from the network.
+std::string Printable(std::string_view text);
+
+/// The text as a JSON string: in double quotes, with control characters escaped.
+std::string Quote(std::string_view text);
+
+/// For a message: as Quote, but long texts are cut.
+std::string QuoteShort(std::string_view text);
+
+/// For a message: without quotes, control characters escaped, long texts cut.
+std::string Shown(std::string_view text);
+
+/// `text` and its unit, if there is one.
+std::string WithUnit(std::string_view text, std::string_view unit);
+
+/// The names in double quotes: `"box", "half_sine", "triangle"`.
+std::string Names(std::span<const std::string_view> names);
+
+/// Least number of insertions, deletions, substitutions and swaps of neighbours that turn one word
+/// into the other (optimal string alignment: Damerau-Levenshtein without repeated edits of one
+/// place).
+std::size_t EditDistance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `word`, if it is near enough for a suggestion. Of several equally near
+/// ones it is the first.
+std::optional<std::string_view> Nearest(std::string_view word,
+                                        std::span<const std::string_view> candidates);
+
+/// `; did you mean "x"?`, or nothing.
+std::string DidYouMean(std::optional<std::string_view> suggestion);
+
+/// Number of characters (code points) of valid UTF-8.
+std::size_t CountCharacters(std::string_view text);
+
+bool HasControlCharacter(std::string_view text);
+
+bool IsUtf8(std::string_view text);
+
+/// 3 when the text begins with UTF-8's byte order mark, otherwise 0.
+std::size_t SkipByteOrderMark(std::string_view text);
+
+}  // namespace fogline

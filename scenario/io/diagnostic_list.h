@@ -1,0 +1,54 @@
+// Collects the mistakes of a scenario while it is read, and turns them into one error.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/io/loader.h"
+
+namespace fogline {
+
+/// A source of text that can have mistakes: a file or an override.
+struct Source {
+  std::string name;
+  std::string_view text;
+  bool has_lines = true;  // false: a mistake is located by the name alone
+};
+
+/// Place in a text: the index of a source, and the offset in bytes in the text of that source.
+struct Place {
+  std::uint32_t source = 0;
+  std::uint32_t offset = 0;
+};
+
+/// The mistakes found so far. It keeps the first 1000 and drops further ones, so that a hostile
+/// file cannot use much memory or time.
+class DiagnosticList {
+ public:
+  void Add(Place place, std::string pointer, std::string_view rule, std::string message);
+
+  bool full() const { return kept_.size() >= kMaxKept; }
+  bool empty() const { return kept_.empty(); }
+  bool Has(std::string_view rule) const;
+
+  /// @pre not empty; every place lies in `sources`
+  /// @throws ScenarioError with all mistakes, sorted by their places
+  [[noreturn]] void Throw(const std::vector<Source>& sources);
+
+ private:
+  struct Entry {
+    Place place;
+    Diagnostic mistake;
+  };
+  static constexpr std::size_t kMaxKept = 1000;
+
+  std::vector<Entry> kept_;
+};
+
+/// @throws ScenarioError with the one mistake of a file that cannot be read at all
+[[noreturn]] void ThrowUnreadable(std::string_view file, std::string_view message);
+
+}  // namespace fogline

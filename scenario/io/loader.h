@@ -1,0 +1,66 @@
+// Scenario files: reading with every mistake reported at once, overriding, writing, explaining.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/errors.h"
+#include "scenario/sections/scenario.h"
+
+namespace fogline {
+
+/// One mistake in a scenario.
+struct Diagnostic {
+  std::string file;     // where it is: the file's name, or an override such as "--set /seed=x"
+  int line = 0;         // 1-based; 0 for an override and for a file that cannot be read
+  int column = 0;       // 1-based, in characters
+  std::string pointer;  // JSON pointer of the field, such as /arbitrator/threshold
+  std::string rule;     // stable name of the broken rule, such as "range" (scenario/README.md)
+  std::string message;  // the mistake, the allowed values, and a suggestion
+};
+
+/// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
+/// `file:line:column: error: /pointer: message`: first those of the file in its order, then those
+/// of the overrides, then the number of mistakes. mistakes() has at least one mistake and at most
+/// 1000.
+class ScenarioError : public InputError {
+ public:
+  ScenarioError(const std::string& text, std::vector<Diagnostic> mistakes)
+      : InputError(text), mistakes_(std::move(mistakes)) {}
+  const std::vector<Diagnostic>& mistakes() const { return mistakes_; }
+
+ private:
+  std::vector<Diagnostic> mistakes_;
+};
+
+/// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)
+/// before it checks anything. If the leader is recorded and lead.recorded.speeds_mps is empty,
+/// reads the CSV file (relative to the scenario's folder) and fills speeds_mps with the speeds at
+/// steps 0 to steps - 1, interpolated linearly.
+/// @throws ScenarioError
+Scenario LoadScenario(const std::filesystem::path& file,
+                      const std::vector<std::string>& overrides = {});
+
+/// The same for text in memory; `name` stands for the file in messages. Never reads another file.
+/// @throws ScenarioError
+Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",
+                       const std::vector<std::string>& overrides = {});
+
+/// The effective scenario: JSON with every default written out, and a line feed at the end. Equal
+/// scenarios give equal text, and ParseScenario(PrintScenario(s)) gives s back, bit by bit.
+/// @pre every value of `scenario` is within the range of its field
+std::string PrintScenario(const Scenario& scenario);
+
+/// JSON schema (draft-07) of scenario files, made from the same field descriptions. It accepts
+/// exactly the JSON documents without duplicate keys that ParseScenario accepts.
+std::string ScenarioSchema();
+
+/// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"
+/// or "" is the whole scenario; an item of a list is /published/0 or /published/*.
+/// @throws InputError (no such field)
+std::string ExplainField(std::string_view pointer);
+
+}  // namespace fogline

@@ -1,0 +1,13 @@
+// Reads a JSON tree into the structs of a scenario, and notes every mistake on the way.
+#pragma once
+
+#include "scenario/io/diagnostic_list.h"
+#include "scenario/io/json.h"
+#include "scenario/sections/scenario.h"
+
+namespace fogline {
+
+/// The scenario that `root` describes. It is valid only if `mistakes` stays empty.
+Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes);
+
+}  // namespace fogline

@@ -1,0 +1,132 @@
+// What the types in an algorithm's Step function say about its role: its inputs and outputs, and,
+// by the graph table, its channels and the role itself.
+//
+// An algorithm may have one more input, which only some scenarios demand:
+//
+//     static bool UsesOptionalInput(const Scenario& scenario);  // whether this scenario does
+//     void SetOptionalInput(const M& message);                    // called before each Step, if so
+//
+// M is of the same step if its producer comes before this role in the order of evaluation. If its
+// producer comes after this role, M is of the step before; at step 0 it is all zero. In real time
+// the role does not wait for M: SetOptionalInput gets the newest M that has come, and there is no
+// call before the first M has come.
+#pragma once
+
+#include <concepts>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "scenario/sections/scenario.h"
+#include "services/graph.h"
+
+namespace fogline {
+
+namespace internal {
+
+template <class T>
+struct AsTuple {
+  using Type = std::tuple<T>;
+};
+template <class... T>
+struct AsTuple<std::tuple<T...>> {
+  using Type = std::tuple<T...>;
+};
+
+template <class StepFunction>
+struct StepSignature;
+template <class A, class Out, class... In>
+struct StepSignature<const Out& (A::*)(const In&...)> {
+  using Inputs = std::tuple<In...>;
+  using Output = Out;
+  using Outputs = typename AsTuple<Out>::Type;
+};
+
+template <class HearFunction>
+struct OptionalInputSignature;
+template <class A, class M>
+struct OptionalInputSignature<void (A::*)(const M&)> {
+  using Inputs = std::tuple<M>;
+};
+
+template <class A>
+struct OnDemandInputs {
+  using Type = std::tuple<>;
+};
+template <class A>
+requires requires { &A::SetOptionalInput; }
+struct OnDemandInputs<A> {
+  using Type = typename OptionalInputSignature<decltype(&A::SetOptionalInput)>::Inputs;
+};
+
+/// Whether the tuple has exactly the types of the kStep channels that kGraph sends to the role.
+template <class... In>
+constexpr bool Reads(Role role, std::type_identity<std::tuple<In...>>) {
+  bool exact = true;
+  ForEachStepChannel([&]<class M>(std::size_t i) {
+    exact = exact && kChannels[i].to.Has(role) == (std::is_same_v<M, In> || ...);
+  });
+  return exact;
+}
+
+template <class... Out>
+constexpr bool Writes(Role role, std::type_identity<std::tuple<Out...>>) {
+  bool exact = true;
+  ForEachStepChannel([&]<class M>(std::size_t i) {
+    exact = exact && (kChannels[i].from == role) == (std::is_same_v<M, Out> || ...);
+  });
+  return exact;
+}
+
+/// Whether kGraph lets a role read these types on demand.
+template <class... In>
+constexpr bool MayHear([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
+  return (ChannelOf<In>().on_demand.Has(role) && ...);
+}
+
+}  // namespace internal
+
+/// Traits of an algorithm: a class with a constructor from a Scenario and one function
+/// `const Output& Step(const Input&...)`, where Output is a message or a tuple of messages.
+template <class A>
+struct AlgorithmTraits {
+  using Signature = internal::StepSignature<decltype(&A::Step)>;
+  using Inputs = typename Signature::Inputs;
+  using Output = typename Signature::Output;
+  using Outputs = typename Signature::Outputs;
+
+  /// The message that it may hear on demand: a tuple of one type, or of none.
+  using OnDemand = typename internal::OnDemandInputs<A>::Type;
+  static constexpr bool kHears = std::tuple_size_v<OnDemand> != 0;
+  /// Everything that it can read; the input on demand comes last.
+  using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
+
+  static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
+  /// An algorithm with Start() makes step 0 without inputs, and each further step from the one
+  /// before.
+  static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
+
+  /// Whether it hears its input on demand in this scenario.
+  static bool UsesOptionalInput([[maybe_unused]] const Scenario& scenario) {
+    if constexpr (kHears) {
+      return A::UsesOptionalInput(scenario);
+    } else {
+      return false;
+    }
+  }
+
+  static_assert(std::constructible_from<A, const Scenario&>);
+  static_assert(internal::Reads(kRole, std::type_identity<Inputs>{}),
+                "the inputs of Step are not the channels that kGraph sends to this role");
+  static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
+                "the outputs of Step are not the channels that kGraph expects from this role");
+  // kGraph may allow an input on demand that this algorithm for the role does not demand.
+  static_assert(internal::MayHear(kRole, std::type_identity<OnDemand>{}),
+                "kGraph does not let this role read on demand what SetOptionalInput takes");
+  static_assert(
+      kHears == requires(const Scenario& scenario) { A::UsesOptionalInput(scenario); },
+      "UsesOptionalInput and SetOptionalInput are only of use together");
+  static_assert(!(kHears && kStarts), "who begins the steps hears nothing on demand");
+};
+
+}  // namespace fogline

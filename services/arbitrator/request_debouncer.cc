@@ -1,0 +1,60 @@
+#include "services/arbitrator/request_debouncer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/whole_steps.h"
+
+namespace fogline {
+namespace {
+
+// ln(p/(1 - p)). A p closer than 1e-12 to 0 or 1 counts as 1e-12 away: there a DoC is only
+// rounding.
+double LogOdds(double probability) {
+  constexpr double kNearest = 1e-12;
+  const double p = std::clamp(probability, kNearest, 1 - kNearest);
+  return std::log(p / (1 - p));
+}
+
+}  // namespace
+
+RequestDebouncer::RequestDebouncer(const TransferSection& section, double step_s, bool posterior)
+    : section_(section),
+      posterior_(posterior),
+      plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0),
+      accept_human_(std::log((1 - section.sprt_beta) / section.sprt_alpha)),
+      accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
+      dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
+      steps_since_change_(dwell_steps_) {}
+
+double RequestDebouncer::PutOff(const EngagementRequest& wish, double doc) {
+  decided_human_ = HumanByHysteresis(wish, doc);
+  ++steps_since_change_;
+  if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_) {
+    wanted_human_ = decided_human_;
+    steps_since_change_ = 0;
+  }
+  return wanted_human_ ? 1 : 0;
+}
+
+double RequestDebouncer::LowerThreshold(double threshold) const {
+  return threshold - std::min(section_.band, threshold / 2);
+}
+
+bool RequestDebouncer::HumanByHysteresis(const EngagementRequest& wish, double doc) {
+  switch (section_.hysteresis) {
+    case Hysteresis::kNone:
+      break;
+    case Hysteresis::kBand:
+      return !(doc < (decided_human_ ? LowerThreshold(wish.threshold) : wish.threshold));
+    case Hysteresis::kSprt:
+      if (posterior_) evidence_ = 0;
+      evidence_ += LogOdds(doc) - LogOdds(wish.threshold);
+      if (evidence_ < accept_human_ && evidence_ > accept_automation_) return decided_human_;
+      return posterior_ ? evidence_ > 0 : std::exchange(evidence_, 0.0) > 0;
+  }
+  return wish.lambda_human > 0;
+}
+
+}  // namespace fogline

@@ -1,0 +1,59 @@
+// Debouncer of the policy's wish: hysteresis, and a least time between two changes.
+#pragma once
+
+#include <cstdint>
+
+#include "scenario/sections/engagement.h"
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// Turns the policy's wish of every step into the wanted authority. The scenario's hysteresis
+/// delays the result of the comparison of DoC and threshold:
+///
+///     none  the human is wanted while DoC >= threshold
+///     band the human is wanted from DoC >= threshold until DoC < threshold - min(band,
+///     threshold/2):
+///           a DoC that falls to 0 always returns authority, also if the threshold moves
+///     sprt Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold); the human is wanted
+///           from L >= ln((1 - beta)/alpha) on, the automation from L <= ln(beta/(1 - alpha)) on;
+///           with every decision a new test begins from L = 0
+///
+/// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities
+/// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
+/// a windowed z is neither, so the test errs more often. If the DoC is a posterior, it already
+/// contains the evidence of all steps: then L = logit(DoC) - logit(threshold), so that no evidence
+/// counts twice. A firm wish passes without delay.
+class RequestDebouncer {
+ public:
+  /// @param posterior whether the DoC is a posterior probability of all evidence so far
+  RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
+
+  /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
+  double Step(const EngagementRequest& wish, double doc) {
+    if (wish.firm) return wish.lambda_human;
+    return plain_ ? wish.lambda_human : PutOff(wish, doc);
+  }
+
+  /// With hysteresis sprt: L of the current test; if the DoC is a posterior, L of the last step.
+  double evidence() const { return evidence_; }
+
+ private:
+  double PutOff(const EngagementRequest& wish, double doc);
+  bool HumanByHysteresis(const EngagementRequest& wish, double doc);
+  double LowerThreshold(double threshold) const;
+
+  TransferSection section_;
+  bool posterior_;
+  bool plain_;  // neither hysteresis nor min_dwell_s
+  double accept_human_;
+  double accept_automation_;
+  std::int64_t dwell_steps_;
+
+  double evidence_ = 0;         // L
+  bool decided_human_ = false;  // by the hysteresis
+  bool wanted_human_ = false;   // after the wait for min_dwell_s
+  std::int64_t steps_since_change_;
+};
+
+}  // namespace fogline

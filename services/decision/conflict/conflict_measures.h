@@ -1,0 +1,37 @@
+// The tables of conflict measures. Studies, policies, documents and tests use them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "services/decision/conflict/conflict_measure.h"
+#include "services/decision/conflict/conflict_parameters.h"
+
+namespace fogline {
+
+/// One measure. `Measure` is ConflictMeasure or BlameMeasure.
+template <class Measure>
+struct MeasureRow {
+  std::string_view name;        // lower_snake, unique in its table
+  std::string_view definition;  // in one line
+  std::string_view source;
+  std::string_view range;    // with unit, if it has one
+  std::string_view missing;  // treatment of a step without radar or LiDAR value
+  std::unique_ptr<Measure> (*make)(const ConflictParameters& parameters);
+  bool posterior = false;  // the score is the posterior probability of conflict by all evidence
+};
+
+using ConflictMeasureRow = MeasureRow<ConflictMeasure>;
+using BlameMeasureRow = MeasureRow<BlameMeasure>;
+
+/// All measures of conflict, in the order of services/decision/conflict/README.md.
+std::span<const ConflictMeasureRow> ConflictMeasures();
+/// All measures of which sensor is wrong.
+std::span<const BlameMeasureRow> BlameMeasures();
+
+/// The row with this name; nullptr if there is none.
+const ConflictMeasureRow* FindConflictMeasure(std::string_view name);
+const BlameMeasureRow* FindBlameMeasure(std::string_view name);
+
+}  // namespace fogline

@@ -1,0 +1,31 @@
+#include "services/decision/conflict/one_step/doc.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace fogline {
+
+Doc::Doc(const ConflictParameters& parameters)
+    : source_(parameters, DisagreementSource::Offset::kKept),
+      window_(static_cast<std::size_t>(parameters.window_steps)),
+      reading_(parameters.doc_reading),
+      window_steps_(parameters.window_steps),
+      slope_pm_(parameters.doc_slope_pm),
+      centre_m_(parameters.doc_centre_m) {}
+
+void Doc::Observe(const Evidence& evidence) {
+  const std::optional<Disagreement> disagreement = source_.Next(evidence);
+  window_.Push(disagreement ? std::optional(disagreement->difference_m) : std::nullopt);
+}
+
+double Doc::Step(const Evidence& evidence) {
+  Observe(evidence);
+  return DegreeOfConflict(conflict_m(), slope_pm_, centre_m_);
+}
+
+void Doc::Reset() {
+  source_.Reset();
+  for (int i = 0; i < window_steps_; ++i) window_.Push(std::nullopt);
+}
+
+}  // namespace fogline

@@ -1,0 +1,34 @@
+// The paper's Degree of Conflict as a conflict measure.
+#pragma once
+
+#include "services/decision/conflict/disagreement.h"
+#include "services/decision/conflict/one_step/degree_of_conflict.h"
+
+namespace fogline {
+
+/// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
+/// services/decision/conflict/one_step/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi)
+/// with the mean of absolutes: only this measure has a scale in metres. The offset of the sensors
+/// is not subtracted. Skipped steps leave their place in the window empty.
+class Doc final : public ConflictMeasure {
+ public:
+  explicit Doc(const ConflictParameters& parameters);
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override;
+
+  /// First half of a Step(): adds the step to the window.
+  void Observe(const Evidence& evidence);
+  /// Second half of a Step(): z of the window, in m.
+  double conflict_m() const { return window_.Conflict(reading_); }
+
+ private:
+  DisagreementSource source_;
+  ConflictWindow window_;
+  ConflictReading reading_;
+  int window_steps_;
+  double slope_pm_;
+  double centre_m_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,31 @@
+// Measures of a single step.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "services/decision/conflict/disagreement.h"
+
+namespace fogline {
+
+/// A measure that is a function of the disagreement of the step alone: double(Disagreement). A
+/// skipped step scores 0, and so does, under `hold`, a missing value before the first measured one.
+template <class Score>
+class Momentary final : public ConflictMeasure {
+ public:
+  Momentary(const ConflictParameters& parameters, Score score)
+      : source_(parameters), score_(std::move(score)) {}
+
+  double Step(const Evidence& evidence) override {
+    const std::optional<Disagreement> disagreement = source_.Next(evidence);
+    return disagreement ? score_(*disagreement) : 0;
+  }
+
+  void Reset() override { source_.Reset(); }
+
+ private:
+  DisagreementSource source_;
+  Score score_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,82 @@
+// Sequential tests of the difference: they add up the evidence of many steps.
+#pragma once
+
+#include <optional>
+
+#include "services/decision/conflict/disagreement.h"
+#include "services/decision/conflict/over_time/window.h"
+
+namespace fogline {
+
+/// Cumulative sum of u = d/sqrt(S) (Page 1954). It is one-sided, because fog shortens the LiDAR's
+/// range:
+///
+///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
+///
+/// in standard deviations. With kappa = 0.5 and a threshold of 4 or 5, two such tests of opposite
+/// sign have a mean run length of 168 or 465 steps to a false alarm, and of 8.4 or 10.4 steps to
+/// the alarm after a shift by one standard deviation. A skipped step changes nothing.
+class Cusum final : public ConflictMeasure {
+ public:
+  explicit Cusum(const ConflictParameters& parameters);
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override;
+
+ private:
+  DisagreementSource source_;
+  double kappa_;
+  double ceiling_;
+  double sum_ = 0;
+};
+
+/// Generalised likelihood ratio for a jump of unknown size at an unknown step j, either sign
+/// (Willsky & Jones 1976; Basseville & Nikiforov 1993, section 2.4.3):
+///
+///     max over j of (sum from j to now of u_i)^2/(2 n_j),        at least 0
+///
+/// over the n_j differences since step j, which lies in the window. A skipped step leaves its place
+/// empty; an empty window scores 0.
+class Glr final : public ConflictMeasure {
+ public:
+  explicit Glr(const ConflictParameters& parameters);
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override;
+
+ private:
+  DisagreementSource source_;
+  Window standardised_;
+};
+
+/// Bounds of the sequential probability ratio test for the error probabilities alpha (false alarm)
+/// and beta (miss) (Wald 1947).
+struct SprtBounds {
+  double accept_agreement;  // ln(beta/(1 - alpha)), below 0
+  double accept_conflict;   // ln((1 - beta)/alpha), above 0
+};
+SprtBounds WaldBounds(double alpha, double beta);
+
+/// SPRT of "the LiDAR's range is too short by delta" against "it is not":
+///
+///     L+ = L + (delta/S)(d - delta/2),        in [accept_agreement, ceiling accept_conflict]
+///
+/// At the lower bound the test accepts agreement and begins again, so L never falls below this
+/// bound. The two bounds are a hysteresis with known errors. Scores from accept_conflict on accept
+/// the conflict. A skipped step changes nothing.
+class Sprt final : public ConflictMeasure {
+ public:
+  explicit Sprt(const ConflictParameters& parameters);
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override;
+
+ private:
+  DisagreementSource source_;
+  SprtBounds bounds_;
+  double delta_m_;
+  double ceiling_;
+  double log_ratio_ = 0;
+};
+
+}  // namespace fogline

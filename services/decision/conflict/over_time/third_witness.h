@@ -1,0 +1,147 @@
+// Finds the sensor that is wrong. Two different values are not enough for this, so a third one, the
+// witness, is needed: the filter's prediction of the range from all steps before this one.
+//
+// All measures here first subtract the offset of the sensors from the radar's range. Without a
+// prediction there is no witness, and the blame of both sensors is 0. A witness is only as good as
+// its earlier input: a filter that has followed a slowly drifting sensor blames the other one.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "services/decision/conflict/conflict_measure.h"
+#include "services/decision/conflict/conflict_parameters.h"
+#include "services/decision/conflict/one_step/consonant_belief.h"
+#include "services/decision/conflict/over_time/window.h"
+
+namespace fogline {
+
+/// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
+/// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. With one step T^2 is
+/// the NIS. The prediction's error correlates the residuals of several steps, so T of a long window
+/// scatters more than a standard normal number.
+class SensorResidual {
+ public:
+  /// @param nominal_std_m standard deviation to use before the sensor has stated one
+  /// @param missing_error_m error of a missing value if it counts as conflict
+  SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
+                 double missing_error_m);
+
+  /// T; 0 without a prediction or a residual. A missing value repeats the last residual, leaves its
+  /// place empty, or counts as conflict, by the rule of the parameters.
+  double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
+  void Reset();
+
+ private:
+  std::optional<double> Residual(const StatedRange& sensor, const StatedRange& prediction,
+                                 double offset_m);
+
+  MissingLidar missing_;
+  double missing_error_m_;
+  double smallest_std_m_;
+  double nominal_std_m_;
+  double std_m_;  // last stated
+  std::optional<double> last_;
+  Window residuals_;
+};
+
+/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)). This is 1 minus
+/// the smallest level at which the test of T would reject the sensor. For a sensor without fault it
+/// is uniformly distributed over [0, 1].
+class NisBlame final : public BlameMeasure {
+ public:
+  explicit NisBlame(const ConflictParameters& parameters);
+
+  Blame Step(const Evidence& evidence) override;
+  void Reset() override;
+  /// max T^2 of the two sensors in the last step, at least 0. It still distinguishes large T for
+  /// which the blame rounds to 1.
+  double largest_square() const { return largest_square_; }
+
+ private:
+  double offset_m_;
+  SensorResidual radar_;
+  SensorResidual lidar_;
+  double largest_square_ = 0;
+};
+
+/// max T^2 of NisBlame, at least 0.
+class NisWitness final : public ConflictMeasure {
+ public:
+  explicit NisWitness(const ConflictParameters& parameters) : blame_(parameters) {}
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override { blame_.Reset(); }
+
+ private:
+  NisBlame blame_;
+};
+
+/// Products c under Jousselme's D of three consonant beliefs: the square, which is the same for
+/// each belief, and the product of each pair.
+struct BeliefProducts {
+  double square;
+  double radar_lidar;
+  double radar_prediction;
+  double lidar_prediction;
+};
+
+/// Support of each body of evidence by the others, at least 0, in any unit.
+struct Support {
+  double radar;
+  double lidar;
+};
+
+/// Deng et al. 2004: credibility Crd_i = Sup_i/sum of Sup, Sup_i = sum over j of Sim_ij, with
+/// Sim = 1 - d_J/sqrt(c11). (sqrt(c11) is the largest d_J of consonant beliefs. Without this
+/// divisor disjoint bodies of evidence would still support each other.)
+Support DengSupport(const BeliefProducts& products);
+/// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11), with d_J its
+/// distance from the average of the two others.
+Support MurphySupport(const BeliefProducts& products);
+/// As Deng's support, but Sim is the cosine of the angle between two bodies as vectors under
+/// Jousselme's metric, by the law of cosines. It is our reading of the published description of
+/// Zhang et al. 2014 (vector space, cosine theorem, degree of mutual support, an extension of
+/// Deng's rule); their equations were not available.
+Support MutualSupport(const BeliefProducts& products);
+
+/// Blame = 1 - support/support0, at least 0. support0 is the support for the same three precisions
+/// and equal means, so bodies that agree are not blamed for unequal precision. For a missing value
+/// the rule says: hold, the last blame; skip, no blame; conflict, all the blame on that sensor.
+class BeliefBlame final : public BlameMeasure {
+ public:
+  using SupportFunction = Support (*)(const BeliefProducts&);
+
+  BeliefBlame(const ConflictParameters& parameters, SupportFunction support);
+
+  Blame Step(const Evidence& evidence) override;
+  void Reset() override { last_ = {}; }
+
+ private:
+  Blame Judge(const Evidence& evidence) const;
+  // Means and standard deviations are in the order radar, LiDAR, prediction.
+  BeliefProducts Products(const std::array<double, 3>& means_m,
+                          const std::array<double, 3>& stds_m) const;
+
+  ConsonantBeliefs beliefs_;
+  SupportFunction support_;
+  MissingLidar missing_;
+  double offset_m_;
+  double smallest_std_m_;
+  Blame last_;
+};
+
+/// The larger blame of the two sensors, in [0, 1].
+class LargestBlame final : public ConflictMeasure {
+ public:
+  explicit LargestBlame(std::unique_ptr<BlameMeasure> blame) : blame_(std::move(blame)) {}
+
+  double Step(const Evidence& evidence) override;
+  void Reset() override { blame_->Reset(); }
+
+ private:
+  std::unique_ptr<BlameMeasure> blame_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,39 @@
+// Policy `adaptive`: traded control with a threshold that moves with the situation.
+#pragma once
+
+#include <algorithm>
+
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most) with
+/// the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
+/// host's acceleration a. The threshold is higher for a driver who is not ready, and lower if the
+/// fog is dense, the follower close, or the host already braking. The formula is ours, after a
+/// suggestion of the paper (future work 3).
+class Adaptive final : public EngagementPolicy {
+ public:
+  static constexpr bool kNeedsSurroundings = true;
+
+  explicit Adaptive(const Scenario& scenario) : section_(scenario.arbitrator.adaptive) {}
+
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    return Compare(view.doc, Threshold(view));
+  }
+
+ private:
+  double Threshold(const ArbitratorView& view) const {
+    const Surroundings& around = view.surroundings;
+    const double threshold =
+        view.threshold + section_.readiness_gain * (1 - view.driver.readiness) -
+        section_.visibility_gain_m / around.visibility_m -
+        section_.closing_gain_s * around.ClosingRate(view.ego.speed_mps) -
+        section_.braking_gain_s2pm * std::max(0.0, -view.ego.acceleration_mps2);
+    return std::clamp(threshold, section_.least, section_.most);
+  }
+
+  AdaptiveSection section_;
+};
+
+}  // namespace fogline

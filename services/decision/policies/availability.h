@@ -1,0 +1,45 @@
+// Policy `availability`: no hand-over to a driver who would take over too late.
+#pragma once
+
+#include "services/decision/policies/isolation.h"
+
+namespace fogline {
+
+/// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host, while it
+/// keeps its speed and the host brakes with `host_braking_mps2` >= 0:
+///
+///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
+///
+/// with gap s and closing speed w. 0 if the follower already has to; infinite if it never has to.
+double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
+                            double limit_mps2);
+
+/// The paper's rule, if the driver is available. He is available if he already drives, or if his
+/// take-over time is less than the time until the follower has to brake harder than comfort_mps2.
+/// His take-over time is the 95th percentile of its distribution plus unready_s (1 - A). If he is
+/// not available, the automation stays, with one sensor less. Marberger et al. 2018: availability
+/// is the time budget minus the required time.
+///
+/// The fusion always leaves out the sensor that is to blame, as with Isolate, also while the driver
+/// is available. It does not know whether he is, and need not know: while he drives, the track is
+/// not used; when the automation drives, it has a usable track from the first step on.
+class Availability final : public EngagementPolicy {
+ public:
+  static constexpr bool kNeedsSurroundings = true;
+
+  explicit Availability(const Scenario& scenario);
+
+  SensorSelection SelectSensors(const FusionView& view) override {
+    return isolation_.Judge(view.evidence);
+  }
+  EngagementRequest Decide(const ArbitratorView& view) override;
+
+ private:
+  bool DriverIsAvailable(const ArbitratorView& view) const;
+
+  AvailabilitySection section_;
+  double take_over_s_;  // 95th percentile
+  Isolation isolation_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,43 @@
+// Policy `bayes`: traded control that chooses the smaller expected cost.
+#pragma once
+
+#include <algorithm>
+
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// The human drives while P C_a >= (1 - P) C_h, that is while P >= C_h/(C_h + C_a), the threshold
+/// in force. P is the probability that the automation is deceived; the policy uses the DoC as P.
+/// The DoC is a probability with measure lidar_modes and measure_scale probability
+/// (services/decision/conflict/over_time/lidar_modes.h); with the paper's z it is only a steep
+/// function of the conflict. With readiness A, visibility MOR and the follower's time to collision
+/// TTC the expected costs are
+///
+///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
+///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation
+///
+/// This is Bayes' decision between two actions (Berger 1985, 4.4); the costs are our choice.
+class Bayes final : public EngagementPolicy {
+ public:
+  static constexpr bool kNeedsSurroundings = true;
+  static constexpr bool kUsesThreshold = false;
+
+  explicit Bayes(const Scenario& scenario) : section_(scenario.arbitrator.bayes) {}
+
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    const Surroundings& around = view.surroundings;
+    const double blindness = std::min(1.0, section_.near_m / around.visibility_m);
+    const double closeness =
+        std::min(1.0, section_.near_ttc_s * around.ClosingRate(view.ego.speed_mps));
+    const double human = section_.human_cost + section_.unready_cost * (1 - view.driver.readiness) +
+                         section_.blind_cost * blindness;
+    const double automation = section_.automation_cost + section_.follower_cost * closeness;
+    return Compare(view.doc, human / (human + automation));
+  }
+
+ private:
+  BayesSection section_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,29 @@
+// Policy `blend`: shared control, the alternative to traded control.
+#pragma once
+
+#include <algorithm>
+
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// lambda_H = clip((DoC - from)/width, 0, 1): both drive, the human in proportion to the conflict.
+/// The threshold in force is the DoC at which he has half of the authority.
+class Blend final : public EngagementPolicy {
+ public:
+  static constexpr bool kShares = true;
+  static constexpr bool kUsesThreshold = false;
+
+  explicit Blend(const Scenario& scenario) : section_(scenario.arbitrator.blend) {}
+
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    return {.lambda_human = std::clamp((view.doc - section_.from) / section_.width, 0.0, 1.0),
+            .threshold = std::min(1.0, section_.from + section_.width / 2),
+            .firm = true};
+  }
+
+ private:
+  BlendSection section_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,28 @@
+// Policy `isolate`: reject the sensor, keep the automation. Every policy with hand-overs should be
+// better than this one.
+#pragma once
+
+#include "services/decision/policies/isolation.h"
+
+namespace fogline {
+
+/// Fault isolation: the fusion goes on without the sensor that is to blame, and the human never
+/// drives.
+class Isolate final : public EngagementPolicy {
+ public:
+  static constexpr Rule kRule = Rule::kNever;
+
+  explicit Isolate(const Scenario& scenario) : isolation_(scenario.arbitrator) {}
+
+  SensorSelection SelectSensors(const FusionView& view) override {
+    return isolation_.Judge(view.evidence);
+  }
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    return StayAutomated(view.threshold);
+  }
+
+ private:
+  Isolation isolation_;
+};
+
+}  // namespace fogline

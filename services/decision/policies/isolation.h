@@ -1,0 +1,31 @@
+// Decides which sensor is not used, because it is wrong.
+#pragma once
+
+#include <memory>
+
+#include "services/decision/conflict/conflict_measures.h"
+#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// Drops the sensor with the larger blame, by the scenario's measure of blame, if this blame is at
+/// least blame_threshold. Never drops both. The witness is the filter's prediction.
+class Isolation {
+ public:
+  explicit Isolation(const ArbitratorSection& section)
+      : blame_(RowOf(section.blame).make(ConflictParametersOf(section))),
+        threshold_(section.blame_threshold) {}
+
+  SensorSelection Judge(const Evidence& evidence) {
+    const auto [radar, lidar] = blame_->Step(evidence);
+    return {.radar = radar < threshold_ || radar <= lidar,
+            .lidar = lidar < threshold_ || lidar <= radar};
+  }
+
+ private:
+  std::unique_ptr<BlameMeasure> blame_;
+  double threshold_;
+};
+
+}  // namespace fogline

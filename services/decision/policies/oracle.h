@@ -1,0 +1,32 @@
+// Policy `oracle`: the best possible isolation. It uses the true gap, which no car knows.
+#pragma once
+
+#include <cmath>
+
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+/// Selects the best sensor by the truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA
+/// 2022). Of two values the fusion uses the one nearer to the true gap, or the radar's if they are
+/// equally near. The automation always drives.
+class Oracle final : public EngagementPolicy {
+ public:
+  static constexpr bool kNeedsTrueGap = true;
+  static constexpr Rule kRule = Rule::kNever;
+
+  explicit Oracle(const Scenario&) {}
+
+  SensorSelection SelectSensors(const FusionView& view) override {
+    const auto& [radar, lidar, prediction] = view.evidence;
+    if (!view.true_gap_m || !radar.valid || !lidar.valid) return {};
+    const bool best_is_radar =
+        std::abs(radar.range_m - *view.true_gap_m) <= std::abs(lidar.range_m - *view.true_gap_m);
+    return {.radar = best_is_radar, .lidar = !best_is_radar};
+  }
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    return StayAutomated(view.threshold);
+  }
+};
+
+}  // namespace fogline

@@ -1,0 +1,53 @@
+// The table of policies. Scenario files, processes, studies and tests use it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "services/decision/policies/policy.h"
+
+namespace fogline {
+
+struct PolicyRow {
+  std::string_view name;  // in the scenario, lower_snake, unique
+  std::string_view doc;   // in one line
+  bool trusts;            // selects sensors in the fusion
+  Rule rule;              // its decision in the arbitrator
+  bool uses_threshold;    // the scenario's threshold changes what it decides
+  bool needs_true_gap;
+  bool needs_surroundings;
+  bool shares;
+  std::unique_ptr<EngagementPolicy> (*make)(const Scenario& scenario);
+};
+
+/// The row of class P. The constants of P give the other columns.
+template <class P>
+constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
+  constexpr bool kTrusts =
+      !std::is_same_v<decltype(&P::SelectSensors), decltype(&EngagementPolicy::SelectSensors)>;
+  return {.name = name,
+          .doc = doc,
+          .trusts = kTrusts,
+          .rule = P::kRule,
+          .uses_threshold = P::kUsesThreshold && P::kRule != Rule::kNever,
+          .needs_true_gap = P::kNeedsTrueGap,
+          .needs_surroundings = P::kNeedsSurroundings,
+          .shares = P::kShares,
+          .make = [](const Scenario& scenario) -> std::unique_ptr<EngagementPolicy> {
+            return std::make_unique<P>(scenario);
+          }};
+}
+
+/// All policies; a `Policy` is the index of a row.
+std::span<const PolicyRow> Policies();
+
+/// The row of this policy.
+const PolicyRow& RowOf(Policy policy);
+
+/// The policy with this name; nullopt if there is none.
+std::optional<Policy> FindPolicy(std::string_view name);
+
+}  // namespace fogline

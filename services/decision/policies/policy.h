@@ -1,0 +1,119 @@
+// Interface of the policies of engagement: their inputs and decisions. A policy decides in two
+// processes: in the fusion, which sensors are used; in the arbitrator, which side should drive.
+// Each process has its own instance, and the two exchange only the messages of the run. The
+// arbitrator decides how authority then changes (services/arbitrator/README.md).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "scenario/sections/scenario.h"
+#include "services/decision/conflict/conflict_measure.h"
+#include "services/graph.h"
+#include "services/models/minimal_risk/modes.h"
+
+namespace fogline {
+
+/// Which sensors the fusion uses in this step. The values of a sensor that is not trusted are
+/// compared with the prediction, but correct nothing.
+struct SensorSelection {
+  bool radar = true;
+  bool lidar = true;
+
+  friend bool operator==(const SensorSelection&, const SensorSelection&) = default;
+};
+
+/// Inputs of a policy in the fusion, before the filter uses the values of the step.
+struct FusionView {
+  const Evidence& evidence;
+  /// From the host's front bumper to the preceding car, for policies with kNeedsTrueGap.
+  std::optional<double> true_gap_m;
+};
+
+/// Values of a perfect rear sensor and a visibility meter, for policies with kNeedsSurroundings.
+struct Surroundings {
+  bool followed = false;
+  double follower_gap_m = 0;      // from the follower's front bumper to the host
+  double follower_speed_mps = 0;  // speed of the follower
+  double visibility_m = std::numeric_limits<double>::infinity();  // meteorological optical range
+
+  /// 1/TTC of the follower in 1/s; 0 without a follower, or if its gap does not close.
+  double ClosingRate(double host_speed_mps) const {
+    // A smaller gap counts as this one, at which the bumpers nearly touch.
+    constexpr double kTouching_m = 0.1;
+    if (!followed) return 0;
+    return std::max(0.0, follower_speed_mps - host_speed_mps) /
+           std::max(follower_gap_m, kTouching_m);
+  }
+};
+
+/// Inputs of a policy in the arbitrator.
+struct ArbitratorView {
+  double doc;           // Degree of Conflict in this step, in [0, 1]
+  double threshold;     // DoC_th of the scenario
+  double lambda_human;  // authority in the step before
+  const ego_t& ego;
+  const track_t& track;
+  const accel_command_t& automation;
+  const driver_command_t& driver;
+  const Surroundings& surroundings;
+};
+
+/// A policy's decision in the arbitrator.
+struct EngagementRequest {
+  double lambda_human = 0;  // wanted, in [0, 1]
+  double threshold = 1;     // in force: the DoC from which on the human is wanted
+  /// true: the wish passes without delay. false: the wish is the result of the comparison of DoC
+  /// and threshold, and a hysteresis may delay it.
+  bool firm = true;
+};
+
+/// The paper's rule with this threshold: the human drives unless 0 <= DoC < threshold.
+inline EngagementRequest Compare(double doc, double threshold) {
+  return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
+}
+
+/// The automation drives at any conflict.
+inline EngagementRequest StayAutomated(double threshold) {
+  return {.lambda_human = 0, .threshold = threshold, .firm = true};
+}
+
+/// The rule that a policy's Decide() follows. The arbitrator follows the simple rules without a
+/// call of Decide(), which saves 6 ns of a step's 400 (AMD EPYC, GCC 12). The rules of both runs of
+/// a pair are simple ones.
+enum class Rule : std::uint8_t {
+  kOwn,        // a rule of the policy itself: Decide() is called
+  kNever,      // StayAutomated() with the scenario's threshold
+  kThreshold,  // Compare() with the scenario's threshold
+};
+
+/// A policy. It is made from a scenario and called in every step, in the order of steps. It reads
+/// no clock, shares no state, and allocates memory only in its constructor.
+class EngagementPolicy {
+ public:
+  /// Inputs that the policy needs beyond the regular ones. A policy that needs them redefines these
+  /// constants.
+  static constexpr bool kNeedsTrueGap = false;
+  static constexpr bool kNeedsSurroundings = false;
+  /// Whether the policy shares authority: its wishes can lie between 0 and 1. A driver who must be
+  /// asked is asked for any share, and has this share after he has taken over.
+  static constexpr bool kShares = false;
+  /// Whether its decisions depend on the scenario's threshold. A policy with a rule of its own that
+  /// does not depend on it redefines this constant.
+  static constexpr bool kUsesThreshold = true;
+  /// The rule of Decide(). A policy with a simple rule redefines this constant.
+  static constexpr Rule kRule = Rule::kOwn;
+
+  virtual ~EngagementPolicy() = default;
+
+  /// Decision in the fusion, once per step, after the prediction if there is a track. Not called
+  /// for a policy that does not override it.
+  virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
+
+  /// Decision in the arbitrator, once per decision. Called only with Rule::kOwn.
+  virtual EngagementRequest Decide(const ArbitratorView& view) = 0;
+};
+
+}  // namespace fogline

@@ -1,0 +1,101 @@
+// Take-over on request: the policy's wish for the human becomes a request to the driver. He may
+// answer late or never; then a manoeuvre stops the car.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/random.h"
+#include "fogline/header_t.hpp"
+#include "fogline/track_t.hpp"
+#include "scenario/sections/scenario.h"
+#include "services/decision/take_over/take_over_request.h"
+#include "services/decision/take_over/take_over_table.h"
+#include "services/models/driver/take_over_time.h"
+#include "services/models/minimal_risk/minimal_risk.h"
+
+namespace fogline {
+
+/// Inputs of the decision of a step.
+struct TakeOverInputs {
+  bool human_wanted = false;   // the policy's wish
+  double automation_mps2 = 0;  // the automation's offer
+  double human_mps2 = 0;       // the driver's
+  double readiness = 0;        // the driver's, in [0, 1]
+  double speed_mps = 0;        // of the host
+  double applied_mps2 = 0;     // command sent in the step before; at first the applied acceleration
+  const track_t* track = nullptr;  // the preceding car; nullptr: none is known
+};
+
+/// Result of a step.
+struct TakeOverOutcome {
+  TakeOverState state = TakeOverState::kAutomated;
+  Authority authority = Authority::kAutomation;
+  double acceleration_mps2 = 0;  // of the side that has authority, or of the manoeuvre
+};
+
+/// Below this speed in m/s the host counts as standing, unless it is about to drive off. Our
+/// choice: 1 cm/s, which wheel sensors cannot measure.
+inline constexpr double kStandstill_mps = 0.01;
+
+/// A stage of the manoeuvre is overdue after this multiple of the time that its brake needs on a
+/// level road. Our choice: with 2, a descent of 7 % and slow brakes may take half of a comfortable
+/// 1.5 m/s2.
+inline constexpr double kOverdueFactor = 2.0;
+
+/// Runs the state machine of take_over_table.h. t is the time in s since the request:
+///
+///     acknowledgement: t >= T, T drawn in the step of the request (take_over_time.h), never with
+///                      absent_probability            transfer: and readiness >= required_readiness
+///     escalation:      t >= escalation_s             deadline: t >= lead_s
+///     easing:          a = min(a_A, max(0, a' - j h))   a' the command of the step before
+///     manoeuvre:       services/models/minimal_risk with jerk j and, in its stages, the
+///     deceleration
+///                      clip(-a_A, comfort, emergency) and emergency
+///
+/// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
+/// deceleration. A driver who is not absent is late if and only if T > lead_s. Between
+/// acknowledgement and transfer the automation drives for at least one step; only a driver who
+/// answers during the manoeuvre gets authority at once.
+class TakeOver {
+ public:
+  /// @throw std::invalid_argument if lead_s is below kLeastLead_s, and when TakeOverTime throws it
+  explicit TakeOver(const Scenario& scenario);
+
+  /// Decides the step of `header`. Call it in the order of steps; some may be left out. The result
+  /// is valid until the next call.
+  const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
+
+  const TakeOverOutcome& outcome() const { return out_; }
+  /// The last request, if there has been one, without `effective`.
+  const std::optional<TakeOverRequest>& request() const { return request_; }
+  /// A manoeuvre is running, has failed, or has ended in standstill.
+  bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
+  /// A manoeuvre has begun in this run; the driver may have ended it.
+  bool manoeuvred() const { return manoeuvre_.begun(); }
+
+ private:
+  TakeOverEvents EventsOf(std::int64_t step, const TakeOverInputs& inputs) const;
+  bool Severe(const track_t* track) const;
+  void Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs);
+  void Ask(std::int64_t step);
+  void BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs);
+  double Acceleration(const TakeOverInputs& inputs);
+
+  TakeOverSection section_;
+  double step_s_;
+  std::int64_t lead_steps_;
+  std::int64_t escalation_steps_;
+  std::int64_t recovery_steps_;
+  Random random_;
+  TakeOverTime time_;
+  MinimalRisk manoeuvre_;
+
+  std::optional<TakeOverRequest> request_;
+  std::int64_t answer_step_ = 0;   // of this request's acknowledgement
+  bool in_time_ = false;           // the driver answers within lead_s
+  std::int64_t overdue_step_ = 0;  // of this stage of the manoeuvre
+  TakeOverOutcome out_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,119 @@
+#include "services/decision/take_over/take_over_log.h"
+
+#include <algorithm>
+
+#include "services/models/minimal_risk/modes.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::string_view kToDriver = "transfer to the driver";
+constexpr std::string_view kToAutomation = "return to automation";
+
+const TakeOverStateInfo* StateOf(std::int8_t mode) {
+  const auto* info = std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode);
+  return info == kTakeOverStates.end() ? nullptr : info;
+}
+
+/// The text of the table for this change of state. A change that is not in the table (the driver
+/// need not be asked, or inputs have failed in real time) gets a text of its own.
+std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
+  const TakeOverStateInfo* a = StateOf(from);
+  const TakeOverStateInfo* b = StateOf(to);
+  if (a != nullptr && b != nullptr) {
+    const auto* row = std::ranges::find_if(kTakeOverTable, [&](const TakeOverRow& r) {
+      return r.state == a->state && r.next == b->state;
+    });
+    if (row != kTakeOverTable.end()) return row->logged;
+  }
+  if (to == arbitration_t::MINIMAL_RISK) return "manoeuvre begins: inputs have failed";
+  if (HumanDrives(to)) return kToDriver;
+  if (to == arbitration_t::AUTOMATION) return kToAutomation;
+  return "change of state";
+}
+
+}  // namespace
+
+std::string_view NameOfMode(std::int8_t mode) {
+  if (mode == arbitration_t::MINIMAL_RISK) return "MINIMAL_RISK";
+  const TakeOverStateInfo* info = StateOf(mode);
+  return info == nullptr ? "UNKNOWN" : info->name;
+}
+
+void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
+  if (!last_) {
+    entries_.push_back({.step = command.header.step,
+                        .utime = command.header.utime,
+                        .from = arbitration_t::AUTOMATION,
+                        .to = arbitration_t::AUTOMATION,
+                        .logged = "activation of the automation"});
+  }
+  const std::int8_t from = last_ ? last_->mode : arbitration_t::AUTOMATION;
+  const bool human = HumanDrives(command.lambda_human);
+  const bool transfer = last_ && human != HumanDrives(last_->lambda_human);
+  const bool with_state =
+      HumanDrives(command.mode) != HumanDrives(from) && HumanDrives(command.mode) == human;
+  if (command.mode != from) Change(command, from, transfer && with_state);
+  if (transfer) Transfer(command);
+  if (transfer && !with_state) {
+    entries_.push_back({.step = command.header.step,
+                        .utime = command.header.utime,
+                        .from = command.mode,
+                        .to = command.mode,
+                        .transfer = true,
+                        .logged = human ? kToDriver : kToAutomation});
+  }
+  if (human_mps2 && HumanDrives(command.mode)) Drive(command, *human_mps2);
+  last_ = command;
+}
+
+void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool transfer) {
+  const bool has_share = HumanDrives(command.mode);
+  const bool share_changes = has_share != HumanDrives(from);
+  std::string_view logged = LoggedOf(from, command.mode);
+  if (share_changes && !transfer) {
+    if (has_share) logged = "driver takes part";
+    if (command.mode == arbitration_t::AUTOMATION) logged = "driver is released";
+  }
+  entries_.push_back({.step = command.header.step,
+                      .utime = command.header.utime,
+                      .from = from,
+                      .to = command.mode,
+                      .transfer = transfer,
+                      .logged = logged});
+  if (share_changes) {
+    before_share_mps2_.reset();
+    if (has_share && last_) before_share_mps2_ = last_->acceleration_mps2;
+    asked_ = command.mode == arbitration_t::RECOVERING;
+  }
+  const TakeOverStateInfo* state = StateOf(command.mode);
+  if (state == nullptr) return;
+  if (state->state == TakeOverState::kDemand) {
+    requests_.push_back({.requested = command.header.step});
+  }
+  // If the driver was never asked, there is no request to update.
+  if (requests_.empty()) return;
+  requests_.back().Enter(state->state, command.header.step);
+  // Transfer() sets this: in kRecovering the driver's share may still be small.
+  if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
+}
+
+void TakeOverLog::Transfer(const arbitration_t& command) {
+  const bool answers = asked_ && HumanDrives(command.mode) && HumanDrives(command.lambda_human);
+  if (!answers || requests_.empty() || requests_.back().transferred) return;
+  requests_.back().transferred = command.header.step;
+}
+
+void TakeOverLog::Drive(const arbitration_t& command, double human_mps2) {
+  if (!before_share_mps2_) return;
+  if (!IsEffective(command.lambda_human, human_mps2, *before_share_mps2_)) return;
+  before_share_mps2_.reset();
+  entries_.push_back({.step = command.header.step,
+                      .utime = command.header.utime,
+                      .from = command.mode,
+                      .to = command.mode,
+                      .logged = "first effective input of the driver"});
+  if (asked_ && !requests_.empty()) requests_.back().effective = command.header.step;
+}
+
+}  // namespace fogline

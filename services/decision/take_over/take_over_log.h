@@ -1,0 +1,60 @@
+// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD). It reads them from
+// the commands of the host, which every log has. It lists every change of mode, also in runs whose
+// driver need not be asked.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "fogline/arbitration_t.hpp"
+#include "services/decision/take_over/take_over_request.h"
+
+namespace fogline {
+
+/// Name of the state that belongs to a mode of HOST_COMMAND; "UNKNOWN" for an invalid mode.
+std::string_view NameOfMode(std::int8_t mode);
+
+/// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
+/// `from` and `to` are the same mode.
+struct TakeOverEntry {
+  std::int64_t step = 0;
+  std::int64_t utime = 0;
+  std::int8_t from = 0;  // modes
+  std::int8_t to = 0;
+  bool transfer = false;  // the main authority changed, as the measures count it
+  std::string_view logged;
+};
+
+/// Reads commands in the order of steps; some may be missing.
+///
+/// The state says whether the driver has a share of the authority, and lambda_H how large this
+/// share is. It may be small, even 0, and it may be growing. So two events differ: the driver gets
+/// a share; and the transfer, at which lambda_H passes kMainAuthority. If both happen in one step,
+/// one entry covers both. The driver's input is effective if it changes the command enough: the
+/// measure is lambda_H (a_H - a), with a the command before he got his share. The automation's part
+/// of the command does not count.
+class TakeOverLog {
+ public:
+  /// @param human_mps2 a_H, the driver's offer; nullopt if that is not known
+  void Add(const arbitration_t& command, std::optional<double> human_mps2);
+
+  const std::vector<TakeOverEntry>& entries() const { return entries_; }
+  const std::vector<TakeOverRequest>& requests() const { return requests_; }
+
+ private:
+  void Change(const arbitration_t& command, std::int8_t from, bool transfer);
+  void Transfer(const arbitration_t& command);
+  void Drive(const arbitration_t& command, double human_mps2);
+
+  std::optional<arbitration_t> last_;
+  // If the driver has a share of the authority: the command before he got it (empty after his first
+  // effective input), and whether he was asked.
+  std::optional<double> before_share_mps2_;
+  bool asked_ = false;
+  std::vector<TakeOverEntry> entries_;
+  std::vector<TakeOverRequest> requests_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,50 @@
+// The times of a request to take over.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "services/decision/take_over/take_over_table.h"
+
+namespace fogline {
+
+/// Least change of the command by the driver alone for which an input counts as effective, in m/s2.
+/// Our choice: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or
+/// engine has a finer setting.
+inline constexpr double kEffectiveInput_mps2 = 0.01;
+
+/// Whether the driver's offer changes the command noticeably: his share times the difference
+/// between his offer and the command before he had a share.
+inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
+  return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
+}
+
+/// The times of one request, as steps. A field is empty if its event has not happened. For the
+/// state machine `transferred` is the step in which the driver gets a share of the authority, and
+/// `effective` stays empty. TakeOverLog finds both from the authorities and commands
+/// (take_over_log.h).
+struct TakeOverRequest {
+  std::int64_t requested = 0;
+  std::optional<std::int64_t> escalated;
+  std::optional<std::int64_t> acknowledged;
+  std::optional<std::int64_t> transferred;
+  std::optional<std::int64_t> effective;  // first effective input
+  std::optional<std::int64_t> manoeuvre;  // begins
+  std::optional<std::int64_t> standstill;
+
+  /// The state changes in this step.
+  void Enter(TakeOverState state, std::int64_t step) {
+    using enum TakeOverState;
+    if (state == kUrgentDemand) escalated = step;
+    // A driver who takes over during the manoeuvre thereby answers the request.
+    if (!acknowledged && (state == kHandover || state == kRecovering)) acknowledged = step;
+    if (state == kRecovering) transferred = step;
+    if (!manoeuvre && (state == kMrmComfort || state == kMrmEmergency)) manoeuvre = step;
+    if (state == kMrmDone) standstill = step;
+  }
+
+  friend bool operator==(const TakeOverRequest&, const TakeOverRequest&) = default;
+};
+
+}  // namespace fogline

@@ -1,0 +1,22 @@
+// Chooses the driver of each following car: as the scenario says, or drawn with its seed.
+#pragma once
+
+#include <cstddef>
+
+#include "scenario/sections/scenario.h"
+#include "services/models/follower/style.h"
+
+namespace fogline {
+
+/// Driver of a following car.
+struct DriverAssignment {
+  bool has_acc = true;
+  Style style = Style::kNormal;  // of a person
+};
+
+/// The driver of this following car; the car behind the host has number 0. Random choices are drawn
+/// for each car independently: a further car, or other parameters of one car, change no other
+/// driver.
+DriverAssignment AssignmentOf(const Scenario& scenario, std::size_t car);
+
+}  // namespace fogline

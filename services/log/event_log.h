@@ -1,0 +1,155 @@
+// Reads and writes LCM event logs; it reads them by mapping the file. A log of Fogline is a
+// standard LCM event log whose event times are simulated times. LCM's own library needs seven calls
+// and a copy of all data for each event that it reads or writes, and the format is simple enough to
+// do without it (LCM, eventlog.c). An event is, all big endian: sync word 0xEDA1DA01, int64 event
+// number, int64 timestamp in us, int32 channel length, int32 data length, channel, data.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// The most bytes that an event takes besides its data: its header, and LCM's longest channel name.
+inline constexpr std::size_t kMostEventOverhead = 28 + 63;
+
+/// The part of a log that is kept when a writer continues it: its first bytes, which hold so many
+/// whole events.
+struct LogHead {
+  std::int64_t bytes = 0;
+  std::int64_t events = 0;
+};
+
+/// The contents of a log by the report of one of its writers: the bytes from `begin` up to `bytes`,
+/// and their CRC-32 (as zlib computes it).
+struct WrittenLog {
+  std::int64_t begin = 0;
+  std::int64_t bytes = 0;
+  std::uint32_t checksum = 0;
+};
+
+/// A recorder that is killed leaves, behind the last complete step, at most a ring of incomplete
+/// steps and a torn event, which it has not reported. All of that fits into this many bytes at the
+/// end of the log.
+inline constexpr std::int64_t kTailBytes = 1 << 20;
+
+/// Appends events to a new file, or to the head of an old one.
+class EventLogWriter {
+ public:
+  /// Opens the file for writing and replaces an existing one. @throws InputError if it cannot
+  explicit EventLogWriter(const std::filesystem::path& file);
+  /// Cuts an existing file behind `head` and continues it there. @throws InputError if it cannot
+  EventLogWriter(const std::filesystem::path& file, const LogHead& head);
+  ~EventLogWriter();
+  EventLogWriter(const EventLogWriter&) = delete;
+  EventLogWriter& operator=(const EventLogWriter&) = delete;
+
+  /// @throws std::runtime_error, such as when the disk is full
+  void Write(std::string_view channel, std::int64_t utime, Bytes data);
+  /// Hands everything written so far to the operating system, so that it survives a kill -9 of this
+  /// process.
+  /// @throws std::runtime_error
+  void Flush();
+  /// Bytes of all events so far, including those that Flush() has not handed over.
+  std::int64_t size() const { return size_; }
+  /// The same, with the number of events.
+  LogHead head() const { return {.bytes = size_, .events = events_}; }
+  /// The part of the log that the operating system has. In a continued log it begins with the last
+  /// kTailBytes of the old head, with their bytes as they were found: the earlier writer has
+  /// reported the bytes before them.
+  const WrittenLog& written() const { return written_; }
+
+ private:
+  bool WriteOut();
+  /// Adds bytes, which the operating system has, to written_.
+  void CountWritten(Bytes bytes);
+  /// Reads the last kTailBytes of the head and adds them to written_.
+  /// @return false and errno if they cannot be read
+  bool CountHead(std::int64_t bytes);
+  [[noreturn]] void FailToWrite() const;
+
+  std::filesystem::path file_;
+  std::FILE* out_;  // without a buffer of its own
+  std::int64_t events_ = 0;
+  std::int64_t size_ = 0;
+  WrittenLog written_;
+  std::vector<std::uint8_t> pending_;  // events that are not written yet
+};
+
+/// Appends an event to the bytes of a log.
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
+                 std::vector<std::uint8_t>& bytes);
+
+/// Whether a log may replace the file: it begins like an event log, or is empty.
+bool IsEventLogOrEmpty(const std::filesystem::path& file);
+
+/// One event; views into the mapped file.
+struct Event {
+  std::int64_t number;
+  std::int64_t utime;
+  std::string_view channel;
+  Bytes data;
+};
+
+/// The event at the beginning of `bytes`; nullopt if there is none.
+/// @param why is set to the reason if there is none
+std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
+/// The bytes that an event takes in a file.
+std::size_t SizeInFile(const Event& event);
+
+/// The place of the first event in `bytes`, from `offset` on, that `accept` recognises; nullopt if
+/// there is no such event. Other bytes may stand before it, such as the end of another event.
+std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+                                     const std::function<bool(const Event&)>& accept);
+
+/// Reads a log from front to back without copying. A torn tail (an incomplete last event, which a
+/// kill or a full disk leaves) ends the log. torn() describes it.
+class EventLogReader {
+ public:
+  /// @throws InputError if the file cannot be read or does not begin like an event log
+  explicit EventLogReader(const std::filesystem::path& file);
+  ~EventLogReader();
+  EventLogReader(const EventLogReader&) = delete;
+  EventLogReader& operator=(const EventLogReader&) = delete;
+
+  /// The next event; nullopt at the end or at a torn tail.
+  std::optional<Event> Next();
+  /// Continues to read behind these bytes, which hold so many events.
+  void GoTo(const LogHead& head);
+  /// What is wrong with the end of the file; "" if nothing is. It is known once Next() has reached
+  /// the end.
+  const std::string& torn() const { return torn_; }
+  /// Whether the file has no bytes.
+  bool empty() const { return content_.empty(); }
+  /// Bytes of the complete events read so far.
+  std::size_t good_bytes() const { return offset_; }
+  /// The events read so far.
+  LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
+  /// All bytes of the file.
+  Bytes content() const { return content_; }
+  /// Passes the bytes of the file from `from` to `to` to `use` in pieces, and releases the memory
+  /// of each piece.
+  void ReadThrough(std::size_t from, std::size_t to, const std::function<void(Bytes)>& use) const;
+
+ private:
+  /// Releases the memory of the bytes that have been read. Otherwise the mapped file would stay in
+  /// memory.
+  void Release();
+
+  Bytes content_;
+  std::size_t released_ = 0;  // memory is released up to here
+  std::size_t offset_ = 0;
+  std::int64_t events_ = 0;
+  std::string torn_;
+};
+
+}  // namespace fogline

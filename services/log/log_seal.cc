@@ -1,0 +1,127 @@
+#include "services/log/log_seal.h"
+
+#include <fcntl.h>
+#include <libdeflate.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/file.h"
+#include "common/process/this_process.h"
+#include "services/runtime/wire/digest.h"
+
+namespace fogline {
+namespace {
+
+std::string HashOfBytes(Bytes bytes) {
+  return HashOf({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// The correct value of `check`.
+std::int64_t CheckOf(log_seal_t seal) {
+  seal.check = 0;
+  std::vector<std::uint8_t> bytes;
+  Encode(seal, bytes);
+  constexpr int kHexadecimal = 16;
+  constexpr std::size_t kDigits = 2 * sizeof(std::int64_t);
+  return static_cast<std::int64_t>(
+      std::stoull(HashOfBytes(bytes).substr(0, kDigits), nullptr, kHexadecimal));
+}
+
+std::uint32_t ChecksumOf(std::uint32_t before, Bytes bytes) {
+  return libdeflate_crc32(before, bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+bool IsLogSeal(const Event& event) {
+  return event.channel == kLogSealChannel ||
+         (event.data.size() >= kHeaderEnd && ReadInt64(event.data, 0) == log_seal_t::getHash());
+}
+
+LogSeal ReadLogSeal(const Event& event, const LogHead& before) {
+  LogSeal seal;
+  seal.before = before;
+  seal.event.assign(event.data.begin(), event.data.end());
+  const bool decodes = Decode(event.data, seal.says) ||
+                       (LooksSigned(event.data) && Decode(WithoutSignature(event.data), seal.says));
+  seal.whole = decodes && event.channel == kLogSealChannel && seal.says.check == CheckOf(seal.says);
+  if (!seal.whole) seal.says = {};
+  seal.copied = event.utime != seal.says.header.utime;
+  return seal;
+}
+
+void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
+             const SigningKey* key) {
+  seal.check = CheckOf(seal);
+  std::vector<std::uint8_t> data;
+  Encode(seal, data);
+  if (key != nullptr) {
+    MessageSigner signer(*key, Role::kRunner);
+    const Bytes with_signature = signer.Sign(kLogSealChannel, data);
+    data = std::vector<std::uint8_t>(with_signature.begin(), with_signature.end());
+  }
+  std::vector<std::uint8_t> event;
+  AppendEvent(before.events, kLogSealChannel, seal.header.utime, data, event);
+  const int fd = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const int error =
+      fd < 0 ? errno : WriteAll(fd, {reinterpret_cast<const char*>(event.data()), event.size()});
+  // A part of a seal would make the whole log one that is cut off.
+  const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
+  if (fd >= 0) close(fd);
+  if (error == 0) return;
+  throw std::runtime_error(fmt::format(
+      "cannot seal {}: {}; {}", log.string(), WhyWriteFailed(error),
+      left ? "a part of the seal is in it" : "the log is as the run left it, without a seal"));
+}
+
+std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {
+  const auto before = static_cast<std::size_t>(seal.before.bytes);
+  Hash hash;
+  file.ReadThrough(0, before, [&hash](Bytes piece) { hash.Add(piece); });
+  const bool same = hash.Hex() == seal.says.file_hash;
+  if (seal.copied) return same ? "the time of its seal was changed" : "";
+  if (!same) return "other bytes than those that were sealed";
+  std::string_view why;
+  const Bytes last = file.content().subspan(before);
+  const auto event = ParseEvent(last, why);
+  if (!event || event->number != seal.before.events) return "the number of its seal was changed";
+  if (SizeInFile(*event) != last.size()) {
+    return fmt::format("{} bytes behind the seal", last.size() - SizeInFile(*event));
+  }
+  return "";
+}
+
+SealSignature VerifySeal(const LogSeal& seal, const SigningKey& key) {
+  switch (MessageSigner(key, std::nullopt).Open(kLogSealChannel, seal.event).verdict) {
+    case MessageSigner::Verdict::kGood:
+      return SealSignature::kHolds;
+    case MessageSigner::Verdict::kNotSigned:
+      return SealSignature::kNone;
+    case MessageSigner::Verdict::kBadlySigned:
+      break;
+  }
+  return SealSignature::kWrong;
+}
+
+std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenLog>& written) {
+  for (const WrittenLog& told : written) {
+    const std::size_t to = std::min(file.content().size(), static_cast<std::size_t>(told.bytes));
+    const std::size_t from = std::min(to, static_cast<std::size_t>(told.begin));
+    std::uint32_t checksum = 0;
+    file.ReadThrough(from, to, [&](Bytes piece) { checksum = ChecksumOf(checksum, piece); });
+    if (std::cmp_equal(to, told.bytes) && checksum == told.checksum) continue;
+    return fmt::format(
+        "the log on disk is not what the recorder wrote: {} bytes with checksum {:08x}, on disk {} "
+        "with {:08x}",
+        told.bytes, told.checksum, to, checksum);
+  }
+  return "";
+}
+
+}  // namespace fogline

@@ -1,0 +1,69 @@
+#include "services/log/realtime_figures.h"
+
+#include <algorithm>
+
+#include "services/runtime/lockstep/possible_status.h"
+
+namespace fogline {
+
+void RealtimeAccumulator::Add(const status_t& status) {
+  if (!IsPossible(status)) return;  // a file may contain any numbers
+  status_t& last = last_[{status.role, status.instance}];
+  if (status.sequence <= last.sequence) return;  // overtaken on its way
+  last = status;
+  fallbacks_.Add(status);
+}
+
+void RealtimeAccumulator::AddStep(const ChannelSet& there) {
+  ++steps_;
+  for (std::size_t i = 0; i < kNumChannels; ++i) logged_[i] += there[i] ? 1 : 0;
+}
+
+std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
+  const Role from = kChannels[channel].from;
+  // The world leaves no step out, even if several processes of it compute the steps.
+  if (from == Role::kWorld) return steps_ - logged_[channel];
+  std::int64_t published = 0;
+  int processes = 0;
+  std::int64_t late = 0;  // at the recorder, which wrote the step without the message
+  for (const auto& [process, status] : last_) {
+    if (process.first == NameOf(from)) {
+      published = status.ticks;
+      ++processes;
+    }
+    if (process.first != NameOf(Role::kRecorder)) continue;
+    const auto input = std::ranges::find(status.input, kChannels[channel].name);
+    if (input != status.input.end()) {
+      late += status.input_late[static_cast<std::size_t>(input - status.input.begin())];
+    }
+  }
+  // With several processes no number is known: a restarted process may compute a step once more.
+  return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
+}
+
+RealtimeFigures RealtimeAccumulator::Result() const {
+  RealtimeFigures figures{
+      .speed = speed_, .fallbacks = fallbacks_.all(), .fallbacks_left_out = fallbacks_.left_out()};
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    if (kChannels[i].pace != Pace::kStep) continue;
+    figures.missed_messages += steps_ - logged_[i];
+    figures.unlogged_messages += Unlogged(i);
+  }
+  for (const auto& [process, status] : last_) {
+    if (process.first == NameOf(Role::kRecorder)) continue;  // no role depends on it
+    figures.deadline_misses += status.deadline_misses;
+    for (const std::int64_t late : status.input_late) figures.late_messages += late;
+    if (process.first != NameOf(Role::kWorld)) continue;
+    figures.ticks += status.ticks;
+    figures.ticks_late += status.ticks_late;
+    figures.ticks_missed += status.ticks_missed;
+    // Quantiles of two processes cannot be added: the worse one counts.
+    figures.jitter_p99_us = std::max(figures.jitter_p99_us, status.jitter_p99_us);
+    figures.latency_p50_us = std::max(figures.latency_p50_us, status.latency_p50_us);
+    figures.latency_p99_us = std::max(figures.latency_p99_us, status.latency_p99_us);
+    figures.latency_max_us = std::max(figures.latency_max_us, status.latency_max_us);
+  }
+  return figures;
+}
+
+}  // namespace fogline

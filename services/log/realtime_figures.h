@@ -1,0 +1,81 @@
+// How well a run in real time kept its time, by the STATUS messages in its log.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/runtime/realtime/fallback_log.h"
+
+namespace fogline {
+
+struct RealtimeFigures {
+  double speed = 1;  // simulated seconds per second
+  // The world's clock: its steps; the steps that were more than 5 ms late; ticks at which its
+  // process stood still; the time between a step's beginning and its due time.
+  std::int64_t ticks = 0;
+  std::int64_t ticks_late = 0;
+  std::int64_t ticks_missed = 0;
+  std::int64_t jitter_p99_us = 0;
+  // From the world's TRUTH out to the arbitrator's HOST_COMMAND in, at the world.
+  std::int64_t latency_p50_us = 0;
+  std::int64_t latency_p99_us = 0;
+  std::int64_t latency_max_us = 0;
+  // Steps that a role left out, or computed without an input that was due.
+  std::int64_t deadline_misses = 0;
+  // Messages that came too late to be used; messages that are not in the log, published or not; and
+  // the least number of these that were published and did not come too late at the recorder.
+  std::int64_t late_messages = 0;
+  std::int64_t missed_messages = 0;
+  std::int64_t unlogged_messages = 0;
+  // The first fallbacks, and how many came after these.
+  std::vector<Fallback> fallbacks;
+  std::int64_t fallbacks_left_out = 0;
+};
+
+/// Calls `visit(name, value, unit, description)` for every figure that is a number, in order.
+template <class Visitor>
+void VisitFigures(const RealtimeFigures& f, Visitor&& visit) {
+  visit("speed", f.speed, "", "simulated seconds per second");
+  visit("ticks", f.ticks, "", "steps that the world has begun");
+  visit("ticks_late", f.ticks_late, "", "of these, more than 5 ms late");
+  visit("ticks_missed", f.ticks_missed, "", "ticks at which the world stood still");
+  visit("deadline_misses", f.deadline_misses, "", "steps without an input that was due");
+  visit("late_messages", f.late_messages, "", "messages that came too late to be used");
+  visit("missed_messages", f.missed_messages, "", "messages that are not in the log");
+  visit("unlogged_messages", f.unlogged_messages, "", "of these, at least so many were published");
+  visit("jitter_p99_us", f.jitter_p99_us, "us", "how far from its due time a step begins");
+  visit("latency_p50_us", f.latency_p50_us, "us", "from sensor to command: median");
+  visit("latency_p99_us", f.latency_p99_us, "us", "the same: 99 % are below");
+  visit("latency_max_us", f.latency_max_us, "us", "the same: longest");
+}
+
+class RealtimeAccumulator {
+ public:
+  RealtimeAccumulator(double speed, std::int64_t step_us, std::int64_t steps)
+      : speed_(speed), fallbacks_(step_us, speed, steps) {}
+
+  /// Adds the next STATUS of the log.
+  void Add(const status_t& status);
+  /// Adds the next step of the log, which has messages on these channels.
+  void AddStep(const ChannelSet& there);
+
+  RealtimeFigures Result() const;
+
+ private:
+  /// Messages of a channel that are not in the log although its producer has published them.
+  std::int64_t Unlogged(std::size_t channel) const;
+
+  double speed_;
+  FallbackLog fallbacks_;
+  std::int64_t steps_ = 0;                           // number of steps in the log
+  std::array<std::int64_t, kNumChannels> logged_{};  // messages of each channel
+  // The last STATUS of each process. Its counters are those since the start of the process.
+  std::map<std::pair<std::string, std::int64_t>, status_t> last_;
+};
+
+}  // namespace fogline

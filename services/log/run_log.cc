@@ -1,0 +1,260 @@
+#include "services/log/run_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "scenario/io/loader.h"
+#include "services/log/step_order.h"
+#include "services/runtime/wire/digest.h"
+#include "services/runtime/wire/message_signer.h"
+#include "services/runtime/wire/scenario_parts.h"
+
+namespace fogline {
+namespace {}  // namespace
+
+/// Combines the events of a log into steps.
+class RunLogReader::Assembler {
+ public:
+  Assembler(const std::filesystem::path& file, Compared compared)
+      : file_(file), reader_(file), compared_(compared) {}
+
+  const StepMessages* Next() {
+    while (!Ready()) {
+      const auto event = reader_.Next();
+      if (!event) {
+        ended_ = true;
+        if (Ready()) break;
+        if (!finished_) Finish();
+        return nullptr;
+      }
+      Take(*event);
+    }
+    current_ = TakeStep();
+    for (const Bytes message : current_) {
+      if (!message.empty()) digest_.Add(message);
+    }
+    if (Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
+    ++run_.steps;
+    return &current_;
+  }
+
+  const RunLog& run() const { return run_; }
+
+ private:
+  // In real time, the most steps by which a message may stand behind its place.
+  static constexpr std::int64_t kLongestOverdue = 64;
+
+  struct Pending {
+    StepMessages messages{};
+    std::size_t count = 0;
+  };
+
+  /// Whether the next step is complete, or in real time as complete as it will be.
+  bool Ready() const {
+    if (pending_.empty()) return false;
+    const auto& [step, next] = *pending_.begin();
+    if (step == run_.steps && next.count == kStepChannels) return true;
+    return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
+  }
+
+  /// The messages of the next step. In real time there may be none.
+  StepMessages TakeStep() {
+    const auto next = pending_.begin();
+    StepMessages messages{};
+    if (next->first == run_.steps) {
+      messages = next->second.messages;
+      pending_.erase(next);
+    }
+    if (realtime_) {
+      ChannelSet there;
+      for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
+      realtime_->AddStep(there);
+    }
+    return messages;
+  }
+
+  void Take(const Event& event) {
+    const std::size_t channel = Find(event.channel);
+    if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
+    if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
+    if (channel == IndexOf<run_t>()) return TakeRun(event.data);
+    if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
+    if (kChannels[channel].pace != Pace::kStep) return;
+    const Bytes data = Payload(event.data);
+    if (parts_.empty() || data.empty() || ReadInt64(data, kRunIdOffset) != run_.run_id) {
+      ++foreign_;
+      return;
+    }
+    const std::int64_t step = ReadInt64(data, kStepOffset);
+    if (step < run_.steps) return;  // a repetition
+    if (realtime_ && step >= steps_) return;
+    Pending& pending = pending_[step];
+    if (!pending.messages[channel].empty()) {
+      if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], data)) {
+        conflict_ = fmt::format("step {} has two different {}", step, event.channel);
+      }
+      return;
+    }
+    pending.messages[channel] = data;
+    ++pending.count;
+  }
+
+  void Finish() {
+    finished_ = true;
+    if (reader_.empty()) {
+      throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
+                                   PathText(file_)));
+    }
+    if (!parts_.Complete()) {
+      throw InputError(
+          fmt::format("{}: error: the log has no complete scenario of a run", PathText(file_)));
+    }
+    if (!parts_.HashHolds()) {
+      throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
+                                   PathText(file_)));
+    }
+    run_.scenario_text = parts_.Text();
+    run_.scenario_hash = parts_.hash();
+    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
+    run_.digest = digest_.Hex();
+    run_.events = reader_.head();
+    if (realtime_) run_.realtime = realtime_->Result();
+    const std::string alteration = Alteration();
+    run_.altered = !alteration.empty();
+    run_.complete =
+        last_ && pending_.empty() && conflict_.empty() && reader_.torn().empty() && !run_.altered;
+    run_.note = reader_.torn();
+    const auto note = [this](const std::string& text) {
+      run_.note += run_.note.empty() ? text : "; " + text;
+    };
+    if (run_.altered) note("altered: " + alteration);
+    if (!last_) note(Shortage());
+    if (run_.realtime && run_.realtime->missed_messages > 0) {
+      note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
+    }
+    if (!pending_.empty()) {
+      note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
+    }
+    if (!conflict_.empty()) note(conflict_);
+    if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+  /// How the log differs from its seal; "" if it does not or has no seal.
+  std::string Alteration() const {
+    if (!run_.seal) return "";
+    const LogSeal& seal = *run_.seal;
+    if (!seal.whole) return "its seal was changed";
+    if (seal.says.digest != run_.digest || seal.says.steps != run_.steps) {
+      return fmt::format("sealed with digest {} of {} steps, it has {} of {}",
+                         EscapeControls(seal.says.digest), seal.says.steps, run_.digest,
+                         run_.steps);
+    }
+    if (seal.says.scenario_hash != run_.scenario_hash) return "it was sealed with another scenario";
+    if (compared_ == Compared::kRun && !run_.realtime) return "";
+    return WhyNotSealedFile(seal, reader_);
+  }
+
+  std::string Shortage() const {
+    if (run_.steps == 0) return fmt::format("no step of {} is complete", run_.scenario.steps);
+    return fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps);
+  }
+
+  std::size_t Find(std::string_view name) {
+    // The recorder writes channels in the order of the table, so the channel after the last one is
+    // the best guess.
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      const std::size_t guess = (guess_ + i) % kNumChannels;
+      if (kChannels[guess].name != name) continue;
+      guess_ = guess + 1;
+      return guess;
+    }
+    return kNumChannels;
+  }
+
+  void TakeRun(Bytes data) {
+    run_t run{};
+    const bool is_sealed = LooksSigned(data) && Decode(WithoutSignature(data), run);
+    if (!is_sealed && !Decode(data, run)) return;
+    if (parts_.empty()) {
+      run_.run_id = run.header.run_id;
+      sealed_ = is_sealed;
+    }
+    if (run.header.run_id != run_.run_id) return;
+    const bool known = parts_.Complete();
+    if (!parts_.Add(run)) ++foreign_;
+    if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
+  }
+
+  void TakeSeal(const Event& event) {
+    LogHead before = reader_.head();
+    before.bytes -= static_cast<std::int64_t>(SizeInFile(event));
+    --before.events;
+    LogSeal seal = ReadLogSeal(event, before);
+    const bool others = seal.whole && seal.says.header.run_id != run_.run_id;
+    if (others) ++foreign_;
+    if (!others && !run_.seal) run_.seal = std::move(seal);
+  }
+
+  void ExpectRealtime(const run_t& run) {
+    const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
+    steps_ = scenario.steps;
+    realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
+  }
+
+  void TakeStatus(Bytes event) {
+    const Bytes data = Payload(event);
+    status_t status{};
+    if (!realtime_ || !Decode(data, status) || status.header.run_id != run_.run_id) return;
+    realtime_->Add(status);
+  }
+
+  /// The payload of a message. lcm-logger writes signed messages as they come, with their
+  /// signatures. This reader cannot verify them. In a signed run a message without a signature does
+  /// not belong to the run: the result is then empty.
+  Bytes Payload(Bytes data) const {
+    if (!sealed_) return data;
+    return LooksSigned(data) && data.size() >= kHeaderEnd + kSignatureBytes ? WithoutSignature(data)
+                                                                            : Bytes();
+  }
+
+  static std::string Lacking(const StepMessages& messages) {
+    std::string names;
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      if (kChannels[i].pace != Pace::kStep || !messages[i].empty()) continue;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", kChannels[i].name);
+    }
+    return names;
+  }
+
+  std::filesystem::path file_;
+  EventLogReader reader_;
+  Compared compared_;
+  Digest digest_;
+  RunLog run_;
+  ScenarioParts parts_;
+  std::map<std::int64_t, Pending> pending_;
+  StepMessages current_{};
+  std::size_t guess_ = 0;
+  std::int64_t foreign_ = 0;
+  bool sealed_ = false;   // whether the run's messages are signed
+  std::string conflict_;  // names the first step with two different messages of one channel
+  truth_t truth_{};
+  bool last_ = false;
+  bool finished_ = false;
+  bool ended_ = false;  // the log has no further event
+  std::optional<RealtimeAccumulator> realtime_;
+  std::int64_t steps_ = 0;  // number of steps of the scenario, in real time
+};
+
+RunLogReader::RunLogReader(const std::filesystem::path& file, Compared compared)
+    : assembler_(std::make_unique<Assembler>(file, compared)) {}
+RunLogReader::~RunLogReader() = default;
+const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
+const RunLog& RunLogReader::run() const { return assembler_->run(); }
+
+}  // namespace fogline

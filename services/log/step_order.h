@@ -1,0 +1,61 @@
+// The order of the steps in a log of the recorder. In lockstep the messages of a step stand
+// together, in the order of the graph table, and none is missing. So the number of an event gives
+// its step and channel. In real time messages may be missing, and STATUS stands between them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "services/log/event_log.h"
+
+namespace fogline {
+
+inline constexpr std::size_t kStepChannels = [] {
+  std::size_t count = 0;
+  for (const ChannelInfo& channel : kChannels) count += channel.pace == Pace::kStep ? 1 : 0;
+  return count;
+}();
+
+/// Names of the per-step channels, in the order of their messages in a log.
+inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
+  std::array<std::string_view, kStepChannels> names;
+  std::size_t i = 0;
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace == Pace::kStep) names[i++] = channel.name;
+  }
+  return names;
+}();
+
+/// The most bytes that a step takes in a log.
+inline constexpr std::int64_t kMostStepBytes =
+    kStepChannels * (kMostEventOverhead + kMaxMessageBytes);
+
+inline bool IsStepChannel(std::string_view channel) {
+  return std::ranges::find(kStepNames, channel) != kStepNames.end();
+}
+
+/// The step of a message of this run; -1 if the message is of another run.
+inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
+  const bool is_ours =
+      event.data.size() >= kHeaderEnd && ReadInt64(event.data, kRunIdOffset) == run_id;
+  return is_ours ? ReadInt64(event.data, kStepOffset) : -1;
+}
+
+/// The step of a run in lockstep that begins with this event; nullopt if none does.
+/// @param front_events number of events before step 0
+inline std::optional<std::int64_t> StepBegunBy(const Event& event, std::int64_t front_events,
+                                               std::int64_t run_id) {
+  const std::int64_t step = StepOf(event, run_id);
+  constexpr auto kEvents = static_cast<std::int64_t>(kStepChannels);
+  if (step < 0 || event.channel != kStepNames.front() || event.number < front_events) {
+    return std::nullopt;
+  }
+  const std::int64_t before = event.number - front_events;
+  if (before % kEvents != 0 || before / kEvents != step) return std::nullopt;
+  return step;
+}
+
+}  // namespace fogline

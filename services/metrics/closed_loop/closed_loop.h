@@ -1,0 +1,119 @@
+// The whole experiment in one process without transport of messages: the same Step functions in the
+// order of the graph table. For sweeps, calibration and tests. Its results equal those of the
+// distributed run.
+#pragma once
+
+#include "scenario/sections/scenario.h"
+#include "services/acc/acc.h"
+#include "services/algorithm.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/metrics/sample.h"
+#include "services/radar/radar.h"
+#include "services/world/world.h"
+
+namespace fogline {
+
+/// The messages of one step; they belong to the algorithms and are valid until the next step.
+struct StepView {
+  const truth_t& truth;
+  const ego_t& ego;
+  const radar_t& radar;
+  const lidar_t& lidar;
+  const track_t& track;
+  const accel_command_t& acc;
+  const driver_command_t& driver;
+  const arbitration_t& host;
+  const follower_command_t& follower;
+
+  /// Calls `visit(message)` for each message, in the order of the graph table.
+  template <class Visit>
+  void ForEachMessage(Visit&& visit) const {
+    visit(truth);
+    visit(ego);
+    visit(radar);
+    visit(lidar);
+    visit(track);
+    visit(acc);
+    visit(driver);
+    visit(host);
+    visit(follower);
+  }
+
+  Sample ToSample() const {
+    return MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
+  }
+};
+
+class ClosedLoop {
+ public:
+  /// @throws InputError if the weights of an ACC make an ill-conditioned problem.
+  explicit ClosedLoop(const Scenario& scenario);
+
+  /// Resets the object for another run, which equals that of a new ClosedLoop(scenario) bit by bit.
+  /// It is cheaper than a new object, because an ACC with an unchanged section keeps its
+  /// precomputed gains.
+  /// @throws as the constructor; Restart() must then succeed before the next Run()
+  void Restart(const Scenario& scenario);
+
+  /// Computes the steps from 0 to the last, and calls `visit(const StepView&)` after each. Call it
+  /// once after construction, and once after each Restart().
+  template <class Visit>
+  void Run(std::int64_t run_id, Visit&& visit) {
+    static const arbitration_t kBeforeTheRun{};
+    const arbitration_t* last = &kBeforeTheRun;
+    const auto* made = &world_.Start(run_id);
+    while (true) {
+      const auto& [truth, ego] = *made;
+      const radar_t& radar = radar_.Step(truth);
+      const lidar_t& lidar = lidar_.Step(truth);
+      SetOptionalInput(demands_.fusion, fusion_, truth);
+      const track_t& track = fusion_.Step(ego, radar, lidar);
+      const accel_command_t& acc = acc_.Step(ego, track);
+      SetOptionalInput(demands_.driver, driver_, *last);
+      const driver_command_t& driver = driver_.Step(truth);
+      SetOptionalInput(demands_.arbitrator, arbitrator_, truth);
+      const arbitration_t& host = arbitrator_.Step(ego, radar, lidar, track, acc, driver);
+      const follower_command_t& follower = follower_.Step(truth);
+      visit(StepView{truth, ego, radar, lidar, track, acc, driver, host, follower});
+      if (truth.last) return;
+      made = &world_.Step(host, follower);
+      last = &host;
+    }
+  }
+
+ private:
+  /// Which roles receive their channels on demand in this scenario (services/algorithm.h).
+  struct UsesOptionalInput {
+    explicit UsesOptionalInput(const Scenario& scenario)
+        : fusion(AlgorithmTraits<Fusion>::UsesOptionalInput(scenario)),
+          driver(AlgorithmTraits<Driver>::UsesOptionalInput(scenario)),
+          arbitrator(AlgorithmTraits<Arbitrator>::UsesOptionalInput(scenario)) {}
+    bool fusion;
+    bool driver;
+    bool arbitrator;
+  };
+
+  template <class A, class M>
+  static void SetOptionalInput([[maybe_unused]] bool demanded, [[maybe_unused]] A& algorithm,
+                               [[maybe_unused]] const M& message) {
+    if constexpr (AlgorithmTraits<A>::kHears) {
+      if (demanded) algorithm.SetOptionalInput(message);
+    }
+  }
+
+  UsesOptionalInput demands_;
+  World world_;
+  Radar radar_;
+  Lidar lidar_;
+  Fusion fusion_;
+  Acc acc_;
+  Driver driver_;
+  Arbitrator arbitrator_;
+  Follower follower_;
+};
+
+}  // namespace fogline

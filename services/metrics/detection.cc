@@ -1,0 +1,57 @@
+#include "services/metrics/detection.h"
+
+#include <cmath>
+
+namespace fogline {
+namespace {
+
+constexpr double kSecondsPerHour = 3600;
+
+}  // namespace
+
+double LidarError(const Sample& sample, const LidarSection& lidar) {
+  const double right_m = std::sqrt(sample.host_gap_m * sample.host_gap_m +
+                                   lidar.lateral_offset_m * lidar.lateral_offset_m) +
+                         lidar.bias_m;
+  return sample.lidar_range_m - right_m;
+}
+
+DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)
+    : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar) {}
+
+// A missing value (NaN) does not count as deceived.
+bool DetectionAccumulator::IsDeceived(const Sample& sample) const {
+  return std::abs(LidarError(sample, lidar_)) > tolerance_m_;
+}
+
+void DetectionAccumulator::Pass(double duration_s) {
+  measures_.wrong_human_s += wrong_human_ * duration_s;
+  measures_.wrong_automation_s += wrong_automation_ * duration_s;
+  if (quiet_) quiet_s_ += duration_s;
+}
+
+void DetectionAccumulator::Add(const Sample& sample) {
+  if (begun_) Pass(sample.time_s - time_s_);
+  const bool deceived = IsDeceived(sample);
+  const bool misled = std::abs(sample.fused_distance_m - sample.host_gap_m) > tolerance_m_;
+  const bool alarm = sample.doc >= sample.threshold;
+  quiet_ = !deceived && !sample.fog_present;
+  wrong_human_ = deceived ? 0 : sample.lambda_human;
+  wrong_automation_ = deceived && misled ? sample.lambda_automation : 0;
+  if (deceived && !onset_s_) onset_s_ = sample.time_s;
+  if (alarm && onset_s_ && !measures_.deception_to_alarm_s) {
+    measures_.deception_to_alarm_s = sample.time_s - *onset_s_;
+  }
+  if (alarm && !alarm_ && quiet_) ++false_alarms_;
+  alarm_ = alarm;
+  time_s_ = sample.time_s;
+  begun_ = true;
+}
+
+DetectionMeasures DetectionAccumulator::Result() const {
+  DetectionMeasures result = measures_;
+  if (quiet_s_ > 0) result.false_alarms_ph = kSecondsPerHour * false_alarms_ / quiet_s_;
+  return result;
+}
+
+}  // namespace fogline

@@ -1,0 +1,159 @@
+#include "services/metrics/run_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "services/models/minimal_risk/modes.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kPercent = 100.0;
+constexpr double kSecondsPerMinute = 60.0;
+
+// Times are whole microseconds: two times that differ by less count as equal.
+constexpr double kSameTime_s = 0.5e-6;
+
+std::optional<double> Root(std::optional<double> mean_square) {
+  if (!mean_square) return std::nullopt;
+  return std::sqrt(*mean_square);
+}
+
+}  // namespace
+
+double CompromisedSafety(const Sample& sample) {
+  return CompromisedSafety(sample.follower_safe_distance_m, sample.follower_gap_m);
+}
+
+MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
+    : handover_s_(scenario.measures.handover_s),
+      host_(scenario.measures),
+      follower_(scenario.measures),
+      detection_(scenario) {}
+
+// AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
+// the command of a step is applied only in the next one.
+void MeasureAccumulator::Add(const Sample& sample) {
+  if (!previous_) first_time_s_ = sample.time_s;
+  ++measures_.steps;
+  measures_.duration_s = sample.time_s - first_time_s_;
+  AddSafety(sample);
+  AddPairs(sample);
+  AddMotion(sample);
+  AddAuthority(sample);
+  AddSensing(sample);
+  detection_.Add(sample);
+  previous_ = sample;
+}
+
+void MeasureAccumulator::AddSafety(const Sample& sample) {
+  const double compromised = CompromisedSafety(sample);
+  Lower(measures_.min_host_gap_m, sample.host_gap_m);
+  Lower(measures_.min_follower_gap_m, sample.follower_gap_m);
+  Raise(measures_.max_compromised_safety_m, compromised);
+  if (sample.fog_present) compromised_safety_fog_m_.Add(compromised);
+  if (sample.collision != truth_t::COLLISION_NONE && !measures_.collision_time_s) {
+    measures_.collision = sample.collision;
+    measures_.collision_time_s = sample.collision_time_s;
+  }
+}
+
+void MeasureAccumulator::AddPairs(const Sample& sample) {
+  const double since_s = previous_ ? sample.time_s - previous_->time_s : 0;
+  host_.Add({sample.host_gap_m, sample.host_speed_mps, sample.preceding_speed_mps}, since_s);
+  follower_.Add({sample.follower_gap_m, sample.follower_speed_mps, sample.host_speed_mps}, since_s);
+}
+
+void MeasureAccumulator::AddAuthority(const Sample& sample) {
+  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
+  if (!previous_) return;
+  if (HumanIsEngaged(previous_->lambda_human)) {
+    measures_.human_time_s += sample.time_s - previous_->time_s;
+  }
+  if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
+  if (HumanDrives(sample.lambda_human) != HumanDrives(previous_->lambda_human)) AddTransfer(sample);
+}
+
+void MeasureAccumulator::AddTransfer(const Sample& sample) {
+  ++measures_.transfers;
+  measures_.max_handover_jump_mps2 = std::max(
+      measures_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
+  if (transferred_s_) Lower(measures_.min_dwell_s, sample.time_s - *transferred_s_);
+  transferred_s_ = sample.time_s;
+}
+
+// The acceleration at step 0 is a convention; none was applied.
+void MeasureAccumulator::AddMotion(const Sample& sample) {
+  if (sample.step == 0) return;
+  Raise(measures_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
+  if (!previous_ || previous_->step == 0) return;
+  const double jerk_mps3 = (sample.host_acceleration_mps2 - previous_->host_acceleration_mps2) /
+                           (sample.time_s - previous_->time_s);
+  Raise(measures_.max_abs_jerk_mps3, std::abs(jerk_mps3));
+  squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
+  if (authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s) {
+    Raise(measures_.max_handover_jerk_mps3, std::abs(jerk_mps3));
+  }
+}
+
+void MeasureAccumulator::AddSensing(const Sample& sample) {
+  Raise(measures_.max_doc, sample.doc);
+  if (!sample.fog_present) {
+    Lower(measures_.min_conflict_clear_m, sample.conflict_m);
+    Raise(measures_.max_conflict_clear_m, sample.conflict_m);
+  }
+  const double error = sample.fused_distance_m - sample.host_gap_m;
+  squared_fusion_error_m2_.Add(error * error);
+}
+
+RunMeasures MeasureAccumulator::Result() const {
+  RunMeasures result = measures_;
+  result.mean_compromised_safety_fog_m = compromised_safety_fog_m_.Value();
+  if (const auto share = human_in_clear_air_.Value()) result.rhe_pct = kPercent * *share;
+  result.rms_jerk_mps3 = Root(squared_jerk_m2ps6_.Value());
+  result.rms_fusion_error_m = Root(squared_fusion_error_m2_.Value());
+  result.host = host_.Result();
+  result.follower = follower_.Result();
+  result.detection = detection_.Result();
+  if (measures_.duration_s > 0) {
+    result.transfers_pmin =
+        kSecondsPerMinute * static_cast<double>(measures_.transfers) / measures_.duration_s;
+  }
+  return result;
+}
+
+RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario) {
+  MeasureAccumulator accumulator(scenario);
+  for (const Sample& sample : samples) accumulator.Add(sample);
+  return accumulator.Result();
+}
+
+void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
+  if (baseline.step != traded.step) {
+    throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
+                                " of the baseline does not pair with step " +
+                                std::to_string(traded.step));
+  }
+  const double without = CompromisedSafety(baseline);
+  if (!baseline.fog_present || !(without > floor_m_)) return;
+  sum_ += (without - CompromisedSafety(traded)) / without;
+  ++relevant_steps_;
+}
+
+std::optional<double> SafetyImprovement::Pct() const {
+  if (relevant_steps_ == 0) return std::nullopt;
+  return kPercent * sum_ / static_cast<double>(relevant_steps_);
+}
+
+std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
+                                           std::span<const Sample> traded, double floor_m) {
+  SafetyImprovement improvement(floor_m);
+  const std::size_t steps = std::min(baseline.size(), traded.size());
+  for (std::size_t i = 0; i < steps; ++i) improvement.Add(baseline[i], traded[i]);
+  return improvement.Pct();
+}
+
+}  // namespace fogline

@@ -1,0 +1,245 @@
+// Measures of a run, computed from its samples alone, in one pass and constant memory. They are the
+// same for a run in this process and for a log of a million messages.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "scenario/sections/scenario.h"
+#include "services/metrics/detection.h"
+#include "services/metrics/running.h"
+#include "services/metrics/sample.h"
+#include "services/metrics/surrogate.h"
+
+namespace fogline {
+
+/// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
+/// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
+/// for the measure.
+struct RunMeasures {
+  /// Number of samples.
+  std::int64_t steps = 0;
+  /// Time from the first sample to the last, s.
+  double duration_s = 0;
+
+  /// Smallest true gap from the host to the preceding car, m.
+  std::optional<double> min_host_gap_m;
+  /// Smallest true gap from the first following car to the host, m.
+  std::optional<double> min_follower_gap_m;
+  /// Surrogate measures of the host behind the preceding car, and of the first following car behind
+  /// the host.
+  PairMeasures host;
+  PairMeasures follower;
+  /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
+  std::optional<double> max_compromised_safety_m;
+  /// Mean of CS over the steps in fog, m.
+  std::optional<double> mean_compromised_safety_fog_m;
+  /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
+  std::int8_t collision = truth_t::COLLISION_NONE;
+  /// Its simulated time, s.
+  std::optional<double> collision_time_s;
+
+  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
+  /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
+  /// services/models/minimal_risk/modes.h. In traded control he then drives; in shared control he
+  /// may have a small part.
+  std::optional<double> rhe_pct;
+  /// Time during which the human is engaged, s. It ends with the last step: its command is never
+  /// carried out.
+  double human_time_s = 0;
+  /// Hand-overs in either direction: the human drives in only one of two successive steps, by
+  /// HumanDrives(lambda_H) in services/models/minimal_risk/modes.h. `fogline events` lists the same
+  /// hand-overs, in the same steps.
+  std::int64_t transfers = 0;
+  /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
+  std::optional<double> transfers_pmin;
+  /// Least time between two hand-overs, s; nullopt with fewer than two hand-overs.
+  std::optional<double> min_dwell_s;
+  /// Largest change of the commanded acceleration from the step before a hand-over to the step of
+  /// the hand-over, m/s2; 0 without a hand-over.
+  double max_handover_jump_mps2 = 0;
+  /// Largest |jerk| of the host within `handover_s` after a change of the authorities, m/s3;
+  /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
+  /// step until `handover_s` after its last step.
+  std::optional<double> max_handover_jerk_mps3;
+  /// Time under the wrong controller, time from deception to alarm, false alarms.
+  DetectionMeasures detection;
+
+  /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
+  std::optional<double> max_abs_acceleration_mps2;
+  /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
+  /// next, divided by the time between them.
+  std::optional<double> max_abs_jerk_mps3;
+  /// Root of the mean square of that jerk, m/s3.
+  std::optional<double> rms_jerk_mps3;
+
+  /// Largest Degree of Conflict, in [0, 1].
+  std::optional<double> max_doc;
+  /// Smallest and largest windowed conflict z in clear air, m. Steps after the fog count as clear
+  /// air, also if their window still contains steps in fog.
+  std::optional<double> min_conflict_clear_m;
+  std::optional<double> max_conflict_clear_m;
+  /// Root of the mean square of fused distance minus true gap over the steps with a track, m.
+  std::optional<double> rms_fusion_error_m;
+};
+
+/// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
+/// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
+/// tables and reports use these calls.
+template <class Visitor>
+void VisitMeasures(const RunMeasures& m, Visitor&& visit);
+
+/// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
+/// without a following car.
+double CompromisedSafety(const Sample& sample);
+
+/// Collects the measures of a run, sample by sample, in order of steps.
+class MeasureAccumulator {
+ public:
+  /// For a run of this scenario: uses its section `measures`, and bias and lateral offset of its
+  /// LiDAR.
+  explicit MeasureAccumulator(const Scenario& scenario);
+  /// For a run of a scenario with the defaults.
+  MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
+
+  void Add(const Sample& sample);
+
+  /// Measures of the samples so far.
+  RunMeasures Result() const;
+
+ private:
+  void AddSafety(const Sample& sample);
+  void AddPairs(const Sample& sample);
+  void AddAuthority(const Sample& sample);
+  void AddTransfer(const Sample& sample);
+  void AddMotion(const Sample& sample);
+  void AddSensing(const Sample& sample);
+
+  double handover_s_;
+  PairAccumulator host_;
+  PairAccumulator follower_;
+  DetectionAccumulator detection_;
+  RunMeasures measures_;  // those that need no final division
+  Mean compromised_safety_fog_m_;
+  Mean squared_jerk_m2ps6_;
+  Mean squared_fusion_error_m2_;
+  Mean human_in_clear_air_;  // 1 or 0 in each step
+  double first_time_s_ = 0;
+  std::optional<double> authority_changed_s_;  // last
+  std::optional<double> transferred_s_;        // last
+  std::optional<Sample> previous_;
+};
+
+/// Measures of a whole run of a scenario.
+RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
+
+/// Safety improvement SI of a run with traded control over its baseline, a run without traded
+/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
+///
+///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
+///
+/// over the n relevant steps, those in fog with CS_baseline > floor. The ratio of one step can be
+/// far below 0, never above 1.
+class SafetyImprovement {
+ public:
+  /// @param floor_m at least 0; avoids the ratio 0/0
+  explicit SafetyImprovement(double floor_m) : floor_m_(floor_m) {}
+
+  /// Adds a step of both runs.
+  /// @throws std::invalid_argument if the samples are not of the same step.
+  void Add(const Sample& baseline, const Sample& traded);
+
+  /// SI so far in %; nullopt without a relevant step.
+  std::optional<double> Pct() const;
+
+  std::int64_t relevant_steps() const { return relevant_steps_; }
+
+ private:
+  double floor_m_;
+  double sum_ = 0;
+  std::int64_t relevant_steps_ = 0;
+};
+
+/// SI of two whole runs. Where one of them ended early (a collision), over the steps of both.
+/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
+std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
+                                           std::span<const Sample> traded, double floor_m);
+
+template <class Visitor>
+void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
+  const auto count = [&](std::string_view name, std::int64_t value, std::string_view unit,
+                         std::string_view description) { visit(name, value, unit, description); };
+  const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
+                          std::string_view description) { visit(name, value, unit, description); };
+  count("steps", m.steps, "", "samples of the run");
+  number("duration_s", m.duration_s, "s", "time from the first sample to the last");
+  number("min_host_gap_m", m.min_host_gap_m, "m", "host: smallest gap to the car ahead");
+  number("min_follower_gap_m", m.min_follower_gap_m, "m",
+         "following car: smallest gap to the car ahead");
+  number("max_compromised_safety_m", m.max_compromised_safety_m, "m",
+         "largest shortfall of the following car's safe distance");
+  number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
+         "mean shortfall of the following car's safe distance in fog");
+  const auto pair = [&](const std::string& car, const std::array<std::string_view, 8>& names,
+                        const PairMeasures& of) {
+    number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
+    number(names[1], of.tet_s, "s",
+           car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
+    number(names[2], of.tit_s2, "s2",
+           car + ": integral of TTC* - TTC over that time (Minderhoud & Bovy 2001)");
+    number(names[3], of.min_headway_s, "s", car + ": smallest time headway, bumper to bumper");
+    number(names[4], of.max_drac_mps2, "m/s2",
+           car + ": largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
+    number(names[5], of.min_picud_m, "m",
+           car + ": smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
+    number(names[6], of.min_rss_margin_m, "m",
+           car + ": smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
+    number(names[7], of.cpi, "",
+           car + ": crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
+  };
+  pair("host",
+       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
+        "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
+       m.host);
+  pair("following car",
+       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
+        "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
+        "follower_cpi"},
+       m.follower);
+  count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
+  number("collision_time_s", m.collision_time_s, "s", "time of the first collision");
+  number("rhe_pct", m.rhe_pct, "%",
+         "redundant human engagement: share of clear air in which the human is engaged");
+  number("human_time_s", m.human_time_s, "s", "time during which the human is engaged");
+  count("transfers", m.transfers, "", "hand-overs in either direction");
+  number("transfers_pmin", m.transfers_pmin, "1/min", "hand-overs per minute");
+  number("min_dwell_s", m.min_dwell_s, "s", "smallest time between two hand-overs");
+  number("max_handover_jump_mps2", m.max_handover_jump_mps2, "m/s2",
+         "largest jump of the commanded acceleration at a hand-over");
+  number("max_handover_jerk_mps3", m.max_handover_jerk_mps3, "m/s3",
+         "largest jerk of the host within measures.handover_s after a change of the authorities");
+  number("wrong_human_s", m.detection.wrong_human_s, "s",
+         "time, weighed by authority, of the human while the LiDAR is right");
+  number("wrong_automation_s", m.detection.wrong_automation_s, "s",
+         "the same of the automation while LiDAR and fusion are deceived");
+  number("deception_to_alarm_s", m.detection.deception_to_alarm_s, "s",
+         "from the first step with the LiDAR off by more than measures.lidar_tolerance_m to DoC >= "
+         "threshold; 0 if DoC was there before");
+  number("false_alarms_ph", m.detection.false_alarms_ph, "1/h",
+         "alarms that begin in clear air, per hour of it");
+  number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
+         "largest acceleration or braking of the host");
+  number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");
+  number("rms_jerk_mps3", m.rms_jerk_mps3, "m/s3", "root mean square of the host's jerk");
+  number("max_doc", m.max_doc, "", "largest Degree of Conflict");
+  number("min_conflict_clear_m", m.min_conflict_clear_m, "m", "smallest conflict z in clear air");
+  number("max_conflict_clear_m", m.max_conflict_clear_m, "m", "largest conflict z in clear air");
+  number("rms_fusion_error_m", m.rms_fusion_error_m, "m",
+         "root mean square of fused distance minus true gap");
+}
+
+}  // namespace fogline

@@ -1,0 +1,101 @@
+// Surrogate measures of safety between a car and the one ahead of it: they say how near a collision
+// is. Gaps are bumper to bumper, speeds along the lane. The car ahead is assumed to keep its speed
+// unless a measure says otherwise.
+#pragma once
+
+#include <optional>
+
+#include "scenario/sections/scenario.h"
+#include "services/models/follower/safe_distance.h"
+
+namespace fogline {
+
+/// A car and the car ahead of it at one moment.
+struct CarPair {
+  double gap_m;
+  double speed_mps;       // of the car behind
+  double lead_speed_mps;  // of the car ahead
+
+  double closing_mps() const { return speed_mps - lead_speed_mps; }
+};
+
+/// Time to collision in s, d/(v - v_l) (Hayward 1972). Infinite while the gap does not close, 0 at
+/// contact.
+double TimeToCollision(const CarPair& pair);
+
+/// Deceleration rate to avoid a crash in m/s2, (v - v_l)^2/(2 d) (Cooper & Ferguson 1976). 0 while
+/// the gap does not close, infinite at contact.
+double DecelerationToAvoidCrash(const CarPair& pair);
+
+/// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r:
+/// the gap that remains if both cars brake now, the car behind after its reaction time (Uno et al.
+/// 2002). A value below 0 is dangerous.
+double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair);
+
+/// Probability that a car's maximum available deceleration is below `drac_mps2`. This deceleration
+/// has a truncated normal distribution (Cunto & Saccomanno 2008).
+double CrashProbability(const MeasuresSection& section, double drac_mps2);
+
+/// Compromised safety CS in m: the shortfall of a car's gap d below its driver's dynamic safe
+/// distance d_r, max(0, d_r - d) (Sourav & Cheng 2024). NaN if one of them is NaN.
+double CompromisedSafety(double safe_distance_m, double gap_m);
+
+/// Measures of a pair of cars over a run. nullopt: the run has no step that is relevant for the
+/// measure.
+struct PairMeasures {
+  /// Least time to collision, s.
+  std::optional<double> min_ttc_s;
+  /// Time exposed: time during which the time to collision is at most TTC*, s (Minderhoud & Bovy
+  /// 2001).
+  std::optional<double> tet_s;
+  /// Time integrated: the integral of TTC* - TTC over that time, s2 (Minderhoud & Bovy 2001).
+  std::optional<double> tit_s2;
+  /// Least time headway d/v, s, while the car moves. d is from bumper to bumper; the headway of
+  /// traffic engineers also contains a car length.
+  std::optional<double> min_headway_s;
+  /// Largest deceleration rate to avoid a crash, m/s2; steps in contact do not count.
+  std::optional<double> max_drac_mps2;
+  /// Least PICUD, m.
+  std::optional<double> min_picud_m;
+  /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017).
+  std::optional<double> min_rss_margin_m;
+  /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
+  /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).
+  std::optional<double> cpi;
+};
+
+/// Collects the measures, step by step.
+class PairAccumulator {
+ public:
+  explicit PairAccumulator(const MeasuresSection& section);
+
+  /// Adds a step. `since_s` is the time since the step before, for which the values of that step
+  /// count; 0 at the first step. A pair with NaN does not count.
+  void Add(const CarPair& pair, double since_s);
+
+  PairMeasures Result() const;
+
+ private:
+  /// Integrates the findings of the step before.
+  void Pass(double duration_s);
+
+  MeasuresSection section_;
+  RssParameters rss_;
+  std::optional<double> ttc_s_;  // of the step before; nullopt if it had no pair
+  double crash_probability_ = 0;
+  bool met_ = false;
+
+  // Extremes so far; infinite while there is no value.
+  double min_ttc_s_;
+  double min_headway_s_;
+  double max_drac_mps2_;
+  double min_picud_m_;
+  double min_rss_margin_m_;
+  // Integrals so far.
+  double time_s_ = 0;
+  double tet_s_ = 0;
+  double tit_s2_ = 0;
+  double crash_time_s_ = 0;
+};
+
+}  // namespace fogline

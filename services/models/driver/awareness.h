@@ -1,0 +1,71 @@
+// How much of the road a driver is aware of, and how his awareness fades and returns.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scenario/sections/human.h"
+
+namespace fogline {
+
+enum class DriverTask {
+  kMonitors,  // the automation drives and has not asked him to take over
+  kDrives,    // he drives, or has been asked to and may still take over
+};
+
+/// Awareness A in [0, 1], integrated exactly from step to step:
+///
+///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
+///
+/// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state: a
+/// relative error of the gap of 0.75 and an error of the closing speed of 0.15 per second and gap,
+/// each times a process of standard deviation 0.2 (1 - A).
+class Awareness {
+ public:
+  /// @throw std::invalid_argument for a parameter out of its range.
+  explicit Awareness(const AwarenessParameters& parameters, double awareness = 1.0)
+      : parameters_(parameters), awareness_(std::clamp(awareness, 0.0, 1.0)) {
+    const bool valid = parameters.monitoring >= 0.0 && parameters.monitoring <= 1.0 &&
+                       parameters.fading_s > 0.0 && parameters.recovery_ps > 0.0 &&
+                       parameters.reaction_time_s >= 0.0 && parameters.slow_reaction_time_s >= 0.0;
+    if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
+  }
+
+  /// A after this duration of the task.
+  double Step(DriverTask task, double duration_s) {
+    if (task == DriverTask::kDrives) {
+      awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);
+    } else {
+      awareness_ -=
+          (parameters_.monitoring - awareness_) * std::expm1(-duration_s / parameters_.fading_s);
+    }
+    return awareness_;
+  }
+
+  double awareness() const { return awareness_; }
+  double ReactionTime_s() const {
+    return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - awareness_);
+  }
+
+  /// The longest reaction time that can occur from now on.
+  double LongestReactionTime_s() const {
+    const double least = std::min(awareness_, parameters_.monitoring);
+    return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - least);
+  }
+
+  /// V_s and r_c of human_driver.h, as in SUMO's driver state.
+  double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
+  double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
+
+ private:
+  // Defaults of MSDriverState.
+  static constexpr double kSumoDeviation = 0.2;
+  static constexpr double kSumoGap = 0.75;
+  static constexpr double kSumoApproach_ps = 0.15;
+
+  AwarenessParameters parameters_;
+  double awareness_;
+};
+
+}  // namespace fogline

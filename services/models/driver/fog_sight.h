@@ -1,0 +1,43 @@
+// Sight of a human in fog. Of the car ahead he sees its outline if it is near, only its lamps if it
+// is further away, and nothing beyond. The model also gives the distance and closing speed that he
+// perceives.
+#pragma once
+
+#include "scenario/sections/human.h"
+#include "services/models/driver/situation.h"
+
+namespace fogline {
+
+enum class Seen { kOutline, kLamps, kNothing };
+
+/// With extinction sigma = ln 20 / visibility (services/models/driver/visibility.h):
+///
+///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
+///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
+///     closing:  W |v - v_l| / d^2 > threshold     otherwise he perceives v_l = v, constant
+///
+/// The perceived distance is d up to a share of d_o, and kappa d from d_o on; between them the
+/// factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I / E_t)) with
+/// Lambert's W.
+class FogSight {
+ public:
+  /// @throw std::invalid_argument for a parameter out of its range.
+  explicit FogSight(const FogSightParameters& parameters);
+
+  /// Range in air of this meteorological optical range, above 0; infinity is clear air.
+  double OutlineRange(double visibility_m) const;
+  double LampRange(double visibility_m) const;
+  Seen At(double gap_m, double visibility_m) const;
+
+  /// The situation that the driver perceives. He knows his own speed.
+  Situation Perceive(const Situation& truth, double visibility_m) const;
+
+ private:
+  FogSightParameters parameters_;
+};
+
+/// The highest speed in m/s from which a car can stop within the range of sight, with reaction time
+/// tau and deceleration b: v tau + v^2 / (2 b) = range.
+double SpeedForSightDistance(double range_m, double reaction_time_s, double deceleration_mps2);
+
+}  // namespace fogline

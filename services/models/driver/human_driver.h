@@ -1,0 +1,73 @@
+// A driver with errors of perception, reaction time and anticipation, around any car-following
+// model.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/random.h"
+#include "scenario/sections/human.h"
+#include "services/models/driver/following.h"
+#include "services/models/driver/ornstein_uhlenbeck.h"
+#include "services/models/driver/situation.h"
+
+namespace fogline {
+
+/// Properties of a driver that may change from step to step.
+struct Attention {
+  double reaction_time_s;    // T_r
+  double gap_error;          // V_s
+  double approach_error_ps;  // r_c
+};
+
+/// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for the one car ahead:
+///
+///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
+///     v_l,est = v_l - s r_c w_l
+///
+/// He acts on the situation of T_r ago, interpolated linearly between two steps. If he anticipates,
+/// he assumes that his own acceleration and the closing speed have been constant since then:
+///
+///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
+///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r
+///
+/// The equations are those that the literature quotes from the paper; of the paper only the
+/// abstract was checked. Without errors and reaction time this equals the car-following model, bit
+/// by bit.
+class HumanDriver {
+ public:
+  /// Longest reaction time in steps.
+  static constexpr std::size_t kMaxReactionSteps = 254;
+
+  /// @param human its reaction time is the longest that the driver will have
+  /// @param random for the driver's errors; each driver has a stream of its own
+  /// @throw std::invalid_argument for a parameter out of its range or a reaction time too long.
+  HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
+              double step_s);
+
+  /// The acceleration in this step. Call it once per step, in the order of steps: errors and memory
+  /// continue from step to step. Until T_r has passed, he acts on the first situation.
+  double Step(std::int64_t step, const Situation& seen);
+  /// The same for a driver whose attention changes. A reaction time above that of the constructor
+  /// counts as the latter.
+  double Step(std::int64_t step, const Situation& seen, const Attention& attention);
+
+ private:
+  Situation Misjudged(std::int64_t step, const Situation& seen, const Attention& attention);
+  // The situation seen this time ago.
+  Situation Remembered(double reaction_time_s) const;
+  const Situation& SeenAgo(std::size_t steps) const;
+
+  HumanParameters human_;
+  Following model_;
+  Random random_;
+  OrnsteinUhlenbeck gap_error_;
+  OrnsteinUhlenbeck approach_error_;
+  double step_s_;
+  std::array<Situation, kMaxReactionSteps + 2> seen_{};  // a ring
+  std::size_t last_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace fogline

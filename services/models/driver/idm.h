@@ -1,0 +1,34 @@
+// The Intelligent Driver Model as a formula.
+#pragma once
+
+#include "scenario/sections/control.h"
+
+namespace fogline {
+
+/// Intelligent Driver Model (Treiber, Hennecke & Helbing, Physical Review E 62:1805, 2000):
+///
+///     a  = a_max [1 - (v / v_0)^delta - (s* / s)^2]
+///     s* = s_0 + max(0, v T + v dv / (2 sqrt(a_max b)))
+///
+/// with v the own speed, dv = v - v_preceding the closing speed and s the gap, bumper to bumper.
+/// a = 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta) behind a car of equal speed.
+///
+/// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2, which
+/// is also the result for s <= 0, where the formula has no value.
+class Idm {
+ public:
+  explicit Idm(const DriverSection& driver);
+
+  /// Acceleration in m/s2, in [-max_deceleration_mps2, a_max]; finite for any finite input.
+  /// @param speed_mps v, taken as 0 if negative.
+  double Acceleration(double speed_mps, double preceding_speed_mps, double gap_m) const;
+
+  /// s* in m. @param speed_mps at least 0
+  double DesiredGap(double speed_mps, double preceding_speed_mps) const;
+
+ private:
+  DriverSection driver_;
+  double twice_sqrt_ab_mps2_;  // 2 sqrt(a_max b)
+};
+
+}  // namespace fogline

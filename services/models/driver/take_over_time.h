@@ -1,0 +1,46 @@
+// Distribution of the time from the request to take over until the driver takes over.
+#pragma once
+
+#include <cstdint>
+
+#include "common/random.h"
+#include "scenario/sections/take_over.h"
+
+namespace fogline {
+
+/// Take-over time T for a request with lead time t. A driver is late if T > t.
+///
+///     log-normal:  ln T ~ N(mu, s^2)    s^2 = ln(1 + std^2 / mean^2)    mu = ln mean - s^2 / 2
+///     SUMO:        T ~ N(m, ((t - m) / z)^2), T >= 0    m = min(2 sqrt(t), 0.7 t)
+///                  P(Z > z) = P(late)
+///     by lead:     log-normal with mean m and P(T > t) = P(late):
+///                  s = z - sqrt(z^2 - 2 ln(t / m))
+///
+/// SUMO (MSDevice_ToC) draws negative values again, up to 100 times, and then takes the mean. So
+/// for a lead time of minutes P(T > t) is larger than P(late). SUMO has a table for (t - m) / z.
+class TakeOverTime {
+ public:
+  /// @param lead_s t, above 0
+  /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
+  /// distribution has this P(late), because z^2 < 2 ln(t / m): this is so above 19.9 % for t up to
+  /// 8.2 s, and above 5 % for 60 s.
+  TakeOverTime(const TakeOverParameters& parameters, double lead_s);
+
+  /// T in s for a request in this step. It depends only on `random` and the step, not on the order
+  /// of calls.
+  double Draw(const Random& random, std::int64_t step) const;
+
+  /// The exact P(T > t).
+  double LateProbability() const;
+
+  /// The time in s that T exceeds with probability 1 - `probability`, in (0, 1).
+  double Quantile(double probability) const;
+
+ private:
+  bool normal_ = false;  // else log-normal
+  double lead_s_;
+  double location_ = 0;  // mu, or m in s
+  double scale_ = 0;     // s, or the standard deviation in s
+};
+
+}  // namespace fogline

@@ -1,0 +1,55 @@
+// Three rules for the safe distance behind a car: that of RSS, and two of the fuzzy safety model.
+#pragma once
+
+#include "services/models/driver/situation.h"
+
+namespace fogline {
+
+/// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
+/// Defaults: the parameter discussion of ad-rss-lib, for the vehicle behind.
+struct RssParameters {
+  double response_s = 1.0;          // rho, at least 0
+  double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0
+  double least_braking_mps2 = 4.0;  // b_min of the car behind after it, above 0
+  double most_braking_mps2 = 8.0;   // b_max of the car ahead, above 0
+};
+
+/// In m: d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2
+/// b_max))
+double RssSafeDistance(const RssParameters& rss, double speed_mps, double lead_speed_mps);
+
+/// Fuzzy safety model (Mattas, Makridis, Botzoris, Kriston, Minarini, Papadopoulos, Re, Rognelund &
+/// Ciuffo, Accident Analysis & Prevention 148:105794, 2020). Defaults: UN R157's use of it, as
+/// published by the JRC (JRC-FSM).
+struct FuzzyParameters {
+  double response_s = 0.75;             // rho, at least 0
+  double comfortable_braking_mps2 = 4;  // b_c, above 0
+  double hard_braking_mps2 = 6;         // b_h, above b_c
+  double lead_braking_mps2 = 7;         // b_l, above 0
+  double standstill_m = 2;              // d_1, gap that remains at rest, at least 0
+  double safe_margin_m = 2;             // d_2, extra distance that is entirely safe, at least 0
+};
+
+/// Proactive fuzzy surrogate PFS. It assumes that the car ahead brakes with b_l. PFS is 0 if
+/// comfortable braking is enough then, 1 if hard braking is not enough, and linear in the distance
+/// s - d_1 between them:
+///
+///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
+///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)
+double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
+
+/// Critical fuzzy surrogate CFS. It assumes that the car ahead keeps its speed, and that the own
+/// acceleration a, at least -b_c, lasts during the response. The closing speed after the response
+/// is c' = v + a rho - v_l. CFS is computed as PFS, but from the gap s:
+///
+///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)         d_unsafe: with b_h
+///
+/// If c' < 0, the car already brakes enough to end the closing. CFS is then 1 if
+/// s < (v - v_l)^2 / (2 |a|), otherwise 0.
+double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
+
+/// Deceleration in m/s2 that the model demands, 0 if none: b_c + CFS (b_h - b_c) if CFS > 0,
+/// otherwise PFS b_c.
+double FuzzyDeceleration(const FuzzyParameters& fuzzy, const Situation& seen);
+
+}  // namespace fogline

@@ -1,0 +1,66 @@
+// Response of a careful driver to the car ahead, by one of three definitions. It is a reference for
+// followers; a follower may also apply it in addition to his car-following model.
+#pragma once
+
+#include "services/models/driver/situation.h"
+#include "services/models/follower/safe_distance.h"
+
+namespace fogline {
+
+enum class SafetyModel { kReferenceHuman, kRss, kFuzzy };
+
+/// Parameters of a driver's response. Defaults: the competent and careful human driver of UN R157
+/// (Annex 4, appendix 3, by the JRC's implementation and secondary sources; the text was not
+/// available).
+struct ResponseParameters {
+  double perception_s = 0.4;        // until he perceives the danger, at least 0
+  double delay_s = 0.75;            // from then until he brakes, at least 0
+  double lift_off_mps2 = 0.4;       // deceleration during the delay, at least 0
+  double jerk_mps3 = 12.65;         // of the brake, above 0: 0.774 g in 0.6 s
+  double full_braking_mps2 = 7.59;  // 0.774 g, above 0
+  double critical_ttc_s = 2.0;      // he sees danger below this time to collision, at least 0,
+  double critical_headway_s = 2.0;  // or below this headway ...
+  double lead_braking_mps2 = 5.0;   // ... behind a car that brakes harder than this
+};
+
+/// After the danger appears, the driver does nothing for the perception time. Then his foot is off
+/// the throttle for the delay. Then the braking grows at the jerk limit to the deceleration that
+/// the model demands:
+///
+/// - reference human: full braking in danger as above, until the closing speed is 0
+/// - RSS: full braking while the gap is below the safe distance; it has its response time rho in
+///   place of the perception time, and no delay
+/// - fuzzy safety model: FuzzyDeceleration; it has its response time in place of the perception
+/// time,
+///   and no delay
+///
+/// If the model demands nothing, the response ends; at the next danger it starts from the
+/// beginning.
+class SafetyResponse {
+ public:
+  /// @throw std::invalid_argument for a parameter out of its range.
+  SafetyResponse(SafetyModel model, double step_s, const ResponseParameters& response = {},
+                 const RssParameters& rss = {}, const FuzzyParameters& fuzzy = {});
+
+  /// Deceleration in this step in m/s2, 0 if none. Call it once per step.
+  double Step(const Situation& seen);
+
+  /// Whether the model sees danger at the last step.
+  bool alarmed() const { return alarmed_; }
+
+ private:
+  // Deceleration in m/s2 that the model demands now; 0 means no danger.
+  double Target(const Situation& seen) const;
+  bool HumanInDanger(const Situation& seen) const;
+
+  SafetyModel model_;
+  double step_s_;
+  ResponseParameters response_;
+  RssParameters rss_;
+  FuzzyParameters fuzzy_;
+  bool alarmed_ = false;
+  double since_s_ = 0;  // time since the danger appeared
+  double braking_mps2_ = 0;
+};
+
+}  // namespace fogline

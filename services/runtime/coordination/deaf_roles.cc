@@ -1,0 +1,91 @@
+#include "services/runtime/coordination/deaf_roles.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline {
+namespace {
+
+// A role that lost its inputs to the network recovers within a second. Twice that is long enough,
+// unless the period is so long that kDeafPeriods last longer.
+constexpr Duration kDeaf = milliseconds(2000);
+constexpr int kDeafPeriods = 5;
+// Three signs of life. A longer pause between two STATUS messages says nothing about the time in
+// between.
+constexpr Duration kSteady = milliseconds(600);
+// By so many steps a role may be ahead of what is known of its producer: a STATUS is on its way for
+// less than 100 ms, which are five steps at 50 Hz.
+constexpr std::int64_t kAhead = 5;
+
+}  // namespace
+
+std::string Text(const Deafness& deaf) {
+  const ChannelInfo& channel = kChannels[deaf.channel];
+  return fmt::format("has heard no {} for {:.1f} s, which the {} has published all the while",
+                     channel.name, Seconds(deaf.missed), NameOf(channel.from));
+}
+
+DeafRoles::DeafRoles(Duration period)
+    : period_(period), limit_(std::max(kDeaf, kDeafPeriods * period)) {}
+
+void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
+  if (period_ == Duration::zero()) return;
+  Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  const Duration since = now - speaker.heard;
+  for (std::size_t i = 0; i < status.input.size(); ++i) {
+    const std::size_t channel = ChannelNamed(status.input[i]);
+    if (channel == kNumChannels || kChannels[channel].pace != Pace::kStep) continue;
+    Ear& ear = speaker.ears[channel];
+    const Duration age =
+        std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
+    // The age of an input grows with time unless a message comes. An input that never came has no
+    // age.
+    const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
+                      age >= ear.age + std::min(since, kSteady) / 2;
+    const Role from = kChannels[channel].from;
+    // To a role that is ahead all that is genuine comes late: it hears it, and takes none of it.
+    const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
+    if (!aged || late) {
+      ear.missed = ear.unsure = {};
+    } else if (!Computes(from, now)) {
+      ear.unsure = {};
+    } else {
+      if (since <= kSteady) ear.unsure += since;
+      // Behind its last step nothing is missed.
+      const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
+      if (computed) ear.missed += std::exchange(ear.unsure, {});
+    }
+    ear.age = age;
+    ear.late = status.input_late[i];
+  }
+  if (status.header.step > speaker.step) {
+    speaker.step = status.header.step;
+    speaker.advanced = now;
+  }
+  speaker.heard = now;
+}
+
+bool DeafRoles::Computes(Role role, TimePoint now) const {
+  const Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  return now - speaker.heard <= kSteady && now - speaker.advanced <= kSteady + 2 * period_;
+}
+
+bool DeafRoles::IsAheadOf(Role role, std::int64_t step, TimePoint now) const {
+  const Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  return step > speaker.step + (now - speaker.advanced) / period_ + kAhead;
+}
+
+std::optional<Deafness> DeafRoles::Missing(Role role, Duration limit) const {
+  if (period_ == Duration::zero()) return std::nullopt;
+  const auto& ears = speakers_[static_cast<std::size_t>(role)].ears;
+  const auto worst = std::ranges::max_element(ears, {}, &Ear::missed);
+  if (worst->missed < limit) return std::nullopt;
+  return Deafness{.channel = static_cast<std::size_t>(worst - ears.begin()),
+                  .missed = worst->missed};
+}
+
+}  // namespace fogline

@@ -1,0 +1,70 @@
+// Which roles of a run in real time are deaf, by their STATUS. A deaf process is alive and reports
+// its state, but for long it has not heard a channel that another role publishes all the time. A
+// role that is deaf for long does not recover by itself. A network that loses many messages for a
+// while makes no role deaf.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/clock.h"
+#include "services/graph.h"
+
+namespace fogline {
+
+class status_t;
+
+struct Deafness {
+  std::size_t channel;  // what the role does not hear, a place in kChannels
+  Duration missed;      // for how long; time counts only while its producer is known to publish it
+};
+
+/// "has heard no TRUTH for 2.1 s, which the world has published all the while".
+std::string Text(const Deafness& deaf);
+
+class DeafRoles {
+ public:
+  /// @param period of the steps on the wall clock; 0: the run is not in real time, and no role
+  ///     counts as deaf
+  explicit DeafRoles(Duration period);
+
+  /// A STATUS of the role has been accepted.
+  void Heard(Role role, const status_t& status, TimePoint now);
+  /// The role's process is dead.
+  void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
+
+  /// The input that the role has missed for longest, if that is long enough to be sure.
+  std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
+  /// The same for a run that is over; half the time is enough, because no further message will
+  /// come.
+  std::optional<Deafness> AtTheEnd(Role role) const { return Missing(role, limit_ / 2); }
+
+ private:
+  /// One input of a role.
+  struct Ear {
+    Duration age{};
+    std::int64_t late = 0;
+    Duration missed{};
+    Duration unsure{};  // since its producer was heard to have computed a step; to be added then
+  };
+  struct Speaker {
+    TimePoint heard{};
+    std::int64_t step = -1;
+    TimePoint advanced{};  // when it was first heard that it had computed `step`
+    std::array<Ear, kNumChannels> ears{};
+  };
+
+  std::optional<Deafness> Missing(Role role, Duration limit) const;
+  /// Whether the role computes step after step, by its STATUS.
+  bool Computes(Role role, TimePoint now) const;
+  /// A step is further than the role can be that should have computed it.
+  bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;
+
+  Duration period_;
+  Duration limit_;
+  std::array<Speaker, kRoles.size()> speakers_{};
+};
+
+}  // namespace fogline

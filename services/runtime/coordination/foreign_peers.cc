@@ -1,0 +1,69 @@
+#include "services/runtime/coordination/foreign_peers.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "services/graph.h"
+
+namespace fogline {
+namespace {
+
+// The longest host name (POSIX HOST_NAME_MAX on Linux).
+constexpr std::size_t kMaxHost = 64;
+
+/// A host's name from the network, made safe to print.
+std::string HostName(const std::string& name) { return Printable(name.substr(0, kMaxHost)); }
+
+}  // namespace
+
+std::string Describe(const ForeignPeer& stranger) {
+  return fmt::format("{} (pid {} on {}) of run {}", stranger.role, stranger.pid, stranger.host,
+                     stranger.run_id);
+}
+
+void ForeignPeers::Hear(const status_t& status) {
+  if (std::ranges::find(kRoles, status.role, &RoleInfo::name) == kRoles.end()) return;
+  const auto known = std::ranges::find_if(watched_, [&status](const Watched& one) {
+    return one.stranger.run_id == status.header.run_id && one.stranger.pid == status.pid &&
+           one.stranger.role == status.role && one.stranger.host == HostName(status.host);
+  });
+  if (known != watched_.end()) {
+    ++known->heard;
+    return;
+  }
+  if (watched_.size() == kMaxWatched) {
+    // The oldest of those that were heard least.
+    watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));
+    forgotten_ = true;
+  }
+  watched_.push_back({.stranger = {.role = status.role,
+                                   .pid = status.pid,
+                                   .host = HostName(status.host),
+                                   .run_id = status.header.run_id},
+                      .heard = 1});
+}
+
+std::vector<ForeignPeer> ForeignPeers::known() const {
+  std::vector<const Watched*> told;
+  for (const Watched& one : watched_) told.push_back(&one);
+  std::ranges::stable_sort(told, std::greater{}, &Watched::heard);
+  told.resize(std::min(told.size(), kMax));
+  std::ranges::sort(told);  // by their places in watched_
+  std::vector<ForeignPeer> known;
+  for (const Watched* one : told) known.push_back(one->stranger);
+  return known;
+}
+
+std::string ForeignPeers::Text() const {
+  std::string text;
+  for (const ForeignPeer& stranger : known()) {
+    text += fmt::format("{}ignored: {}", text.empty() ? "" : "\n", Describe(stranger));
+  }
+  if (watched_.size() > kMax || forgotten_) text += "\nignored: more processes of other runs";
+  return text;
+}
+
+}  // namespace fogline

@@ -1,0 +1,54 @@
+// Processes that speak on a run's network but are not part of the run (foreign peers): roles of
+// another run there, or left over from an earlier one. Their messages are refused. This class only
+// records which processes they are.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fogline/status_t.hpp"
+
+namespace fogline {
+
+struct ForeignPeer {
+  std::string role;
+  std::int64_t pid;
+  std::string host;
+  std::int64_t run_id;
+};
+
+/// "fusion (pid 4711 on lab2) of run 123"
+std::string Describe(const ForeignPeer& stranger);
+
+/// The foreign processes that were heard most often. A flood of invented names does not fill the
+/// memory. It does not hide a process that continues to speak either: a name that was heard once is
+/// forgotten before one that was heard again.
+class ForeignPeers {
+ public:
+  /// The most processes that are reported.
+  static constexpr std::size_t kMax = 32;
+  /// The most processes that are watched. A role sends a STATUS at least five times a second. So it
+  /// is heard again before it is forgotten, unless others invent more than 5,000 names a second.
+  static constexpr std::size_t kMaxWatched = 1024;
+
+  /// Takes note of a STATUS of another run. A STATUS whose role does not exist is ignored. Host
+  /// names are shortened and made safe to print.
+  void Hear(const status_t& status);
+
+  /// The most heard ones, at most kMax, in the order in which they were first heard.
+  std::vector<ForeignPeer> known() const;
+  /// One line each, "ignored: ...", and one more if there were more than kMax; "" if there are
+  /// none.
+  std::string Text() const;
+
+ private:
+  struct Watched {
+    ForeignPeer stranger;
+    std::int64_t heard;
+  };
+  std::vector<Watched> watched_;  // in the order in which they were first heard
+  bool forgotten_ = false;
+};
+
+}  // namespace fogline

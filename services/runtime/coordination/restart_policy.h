@@ -1,0 +1,48 @@
+// When a role that has died is started again: soon, later and later while restarts do not help, and
+// at most a limited number of times in a run.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+class RestartPolicy {
+ public:
+  /// The shortest and the longest wait before a restart. The wait doubles with each restart that
+  /// does not help (the figures of procman, LCM's process manager).
+  static constexpr Duration kShortest = milliseconds(10);
+  static constexpr Duration kLongest = milliseconds(1000);
+
+  /// @param limit restarts in one run
+  explicit RestartPolicy(int limit) : limit_(limit) {}
+
+  /// The role has died when the run was at this step.
+  /// @return how long to wait before it is started again; nullopt if it is not started again
+  std::optional<Duration> OnDeath(std::int64_t step) {
+    if (restarts_ >= limit_) return std::nullopt;
+    const bool helped = restarts_ == 0 || step > step_;
+    wait_ = helped ? kShortest : std::min(2 * wait_, kLongest);
+    step_ = step;
+    ++restarts_;
+    return wait_;
+  }
+
+  /// It could not be started. A try does not count as a restart; the run's stall timeout ends the
+  /// tries.
+  /// @return how long to wait before the next try
+  Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
+
+  int restarts() const { return restarts_; }
+  int limit() const { return limit_; }
+
+ private:
+  int limit_;
+  int restarts_ = 0;
+  std::int64_t step_ = -1;  // at the last death
+  Duration wait_{};
+};
+
+}  // namespace fogline

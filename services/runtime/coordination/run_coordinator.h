@@ -1,0 +1,206 @@
+// The runner's side of a run, its coordinator. It announces the scenario, waits until every role is
+// ready, lets the world start and follows the STATUS of every role. It tells a role that joins late
+// how far the run is. When a step does not complete, it names the culprit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "common/own_pauses.h"
+#include "services/graph.h"
+#include "services/runtime/coordination/deaf_roles.h"
+#include "services/runtime/coordination/foreign_peers.h"
+#include "services/runtime/coordination/send_trouble.h"
+#include "services/runtime/coordination/signs_of_life.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/other_build.h"
+#include "services/runtime/wire/refusals.h"
+#include "services/runtime/wire/scenario_parts.h"
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline {
+
+struct RunCoordinatorOptions {
+  std::int64_t run_id = 0;
+  std::string scenario_text;      // the effective scenario
+  std::int64_t steps = kMaxStep;  // number of steps of the scenario
+  std::int64_t progress = -1;     // last step that is known to have begun
+  // The sequences of this runner's RUN messages begin above this number, which exceeds those of an
+  // earlier runner of the same run.
+  std::int64_t sequence = 0;
+  double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
+  bool realtime = false;                      // runs at that pace, even if a role does not keep up
+  Duration period{};                          // of a step in real time, on the wall clock
+  Duration join_limit{};                      // until all roles are ready; 0: no limit
+  Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
+  std::vector<Role> external;                 // roles that the runner neither starts nor restarts
+  int restarts = 0;                           // how often each of these may be started again
+  RoleBuilds builds{};                        // expected builds of the roles
+  bool same_build = false;                    // whether a role of another build ends the run
+};
+
+class RunCoordinator {
+ public:
+  enum class Phase { kJoining, kRunning, kDone, kFailed };
+
+  RunCoordinator(Bus& bus, RunCoordinatorOptions options);
+
+  /// Does what is due. Call it after every Bus::Wait(). @return the latest time for the next call
+  TimePoint Poll(TimePoint now);
+
+  /// Notes that the runner looks at the clock. If two looks are far apart, the runner itself was
+  /// held up (a suspended machine, a disk, Ctrl-Z). That time does not count against any role.
+  void Attend(TimePoint now) { pauses_.Attend(now); }
+  /// The time since `since` in which this process could have heard a message.
+  Duration HeldAgainst(TimePoint since, TimePoint now) const {
+    return pauses_.HeldAgainst(since, now);
+  }
+  /// The probability that a role that has been silent for so long is alive and the network has lost
+  /// all that it has sent.
+  double ChanceOfLife(Role role, Duration silence) const {
+    return signs_of_life_.ChanceOfLife(role, silence);
+  }
+  /// In real time: the channel that a role has not heard for long although its producer publishes
+  /// it.
+  std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
+  /// The longest time that the runner was held up since the last call, 0 if it was not.
+  Duration TakeLongestPause() { return pauses_.TakeLongest(); }
+
+  Phase phase() const { return phase_; }
+  /// What went wrong, one line. Empty unless phase() is kFailed.
+  const std::string& error() const { return error_; }
+  /// Last step that the world has begun, -1 before the first.
+  std::int64_t step() const { return progress_; }
+  /// step() as text for a message: "at step 217", or "before step 0".
+  std::string Where() const;
+  /// Names of the roles that have not reported ready.
+  std::string NotReady() const;
+  /// External roles that are not there: never heard of, or silent while the run goes on.
+  std::vector<Role> Awaited(TimePoint now) const;
+  /// Sum over the roles of a counter of status_t.
+  std::int64_t Total(std::int64_t status_t::*counter) const;
+  /// Messages that the roles and the runner have refused.
+  Refusals Refused() const;
+  /// The messages that the roles and the runner could not send; processes without failed sends are
+  /// left out.
+  std::vector<SendTrouble> SendTroubles() const;
+  /// What is wrong with keys and signatures; "" if no trouble is known.
+  std::string KeyTrouble() const;
+  /// The processes of other runs that speak on this network.
+  const ForeignPeers& foreign_peers() const { return foreign_peers_; }
+  /// The expected builds of the roles.
+  const RoleBuilds& builds() const { return options_.builds; }
+  /// Whether the run goes on after the final loss of this role. In real time it does, except
+  /// without the world (the road) or the recorder (the log).
+  bool GoesOnWithout(Role role) const {
+    return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
+           role != Role::kRecorder;
+  }
+  /// Tells every role to leave; may be repeated.
+  void Stop();
+  /// Ends the run with an error from outside, such as the death of a process.
+  void Fail(std::string error);
+  /// The role's process on this machine is dead and will be started again. From now on late
+  /// messages of that process are ignored, and another instance may take its place.
+  void MarkDead(Role role, std::int32_t pid, TimePoint now);
+  /// Stores why the role cannot be started again at present, for the error message of a stall.
+  void Hinder(Role role, std::string why);
+  /// The role has been started again, as this process on this machine.
+  void Launched(Role role, std::int32_t pid, TimePoint now);
+  /// Calls `handler` for every STATUS that is accepted, in the order of its sender.
+  void OnEveryStatus(std::function<void(const status_t&)> handler) {
+    on_status_ = std::move(handler);
+  }
+  /// Whether any instance of the role has been heard of.
+  bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
+
+  /// A role's process as its STATUS describes it.
+  struct Member {
+    std::optional<status_t> status;  // last STATUS of the accepted instance
+    TimePoint heard{};
+    std::vector<status_t> dead;      // last STATUS of each dead instance
+    std::vector<std::int32_t> pids;  // of dead processes on this machine
+    std::optional<status_t> rival;   // another instance that claims this role
+    TimePoint rival_since{};
+    TimePoint rival_heard{};
+    std::optional<TimePoint> undead;  // one that is dead speaks, since then; and when last
+    std::int64_t undead_instance = 0;
+    TimePoint undead_heard{};
+    std::string hindrance;  // why it cannot be started again for now
+    int replaced = 0;       // times that an external role was started again, and when last
+    TimePoint replaced_at{};
+  };
+  const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
+
+ private:
+  // A role without a STATUS for this long (five heartbeats) counts as silent.
+  static constexpr Duration kSilent = milliseconds(1000);
+
+  void Refuse(RefusalCounter kind) { ++(own_.*kind); }
+  void OnStatus(const status_t& heard);
+  /// The newest step that a role can have computed by now.
+  std::int64_t NewestPossible(TimePoint now) const;
+  /// Ends the run when the world is done and, in lockstep, the recorder has reported what it has
+  /// written of the last step. The caller compares the log with that report.
+  void FinishWhenRecorded(TimePoint now);
+  /// The last step is over and recorded: the run is done, or fails if a role is deaf at its end.
+  void OnDone();
+  /// The role has reported that it failed.
+  void OnFailure(Role role, const status_t& status);
+  void OnResend(Bytes bytes);
+  bool AllReady(TimePoint now) const;
+  /// Whether this role is missing, so that the run cannot begin or go on.
+  bool Lacks(Role role, TimePoint now) const;
+  bool IsExternal(Role role) const;
+  /// Whether to accept the STATUS for its role; false if it comes from a dead or second instance.
+  bool Admit(Role role, const status_t& status, TimePoint now);
+  /// Admit() for a STATUS that does not come from the role's present process.
+  bool AdmitOther(Role role, const status_t& status, TimePoint now);
+  /// A process that counts as dead speaks.
+  void OnUndead(Role role, const status_t& status, TimePoint now);
+  void FailForTwo(const status_t& one, const status_t& other);
+  bool HasRival(Role role, TimePoint now) const;
+  /// Instance of the process that has an external role; 0 if no process has it.
+  std::int64_t HolderOf(Role role, TimePoint now) const;
+  void AnnounceWhenDue(TimePoint now);
+  void Announce(std::size_t part, std::int64_t answer_to = 0);
+  void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
+  /// Why the role is not there, to be added to a message; "" if nothing is known.
+  std::string HindranceOf(Role role) const;
+  /// The line that says which role holds up the run.
+  std::string Culprit(TimePoint now) const;
+
+  Bus& bus_;
+  RunCoordinatorOptions options_;
+  std::vector<std::string> parts_;
+  std::string hash_;
+  std::array<Member, kRoles.size()> members_;
+  SignsOfLife signs_of_life_;
+  DeafRoles deaf_;
+  ForeignPeers foreign_peers_;
+  status_t own_{};  // counts what the runner itself has refused and could not send
+  std::string host_;
+  Phase phase_ = Phase::kJoining;
+  TimePoint going_since_{};       // the first GO
+  bool ready_ = false;            // all roles were ready at the last Poll()
+  std::int8_t minimal_risk_ = 0;  // cars, as in status_t
+  std::function<void(const status_t&)> on_status_;
+  std::string error_;
+  TimePoint began_;
+  OwnPauses pauses_;
+  TimePoint announce_at_{};
+  TimePoint parts_at_{};
+  std::optional<TimePoint> ask_recorder_at_;  // set once the world is done
+  std::int64_t sequence_;                     // of the last RUN that was sent
+  std::int64_t progress_;
+  TimePoint progressed_{};
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,143 @@
+// Which process has which role of a run: living instances, dead ones, and two that claim the same
+// role.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "services/runtime/coordination/run_coordinator.h"
+
+namespace fogline {
+namespace {
+
+// A STATUS may take this long on its way. If one arrives later than that, its sender is alive.
+constexpr Duration kOnItsWay = milliseconds(100);
+// A process that hears that another process has its place leaves within this time (Node): five of
+// the runner's signs of life.
+constexpr Duration kLeaves = milliseconds(1000);
+
+}  // namespace
+
+bool RunCoordinator::IsExternal(Role role) const {
+  return std::ranges::find(options_.external, role) != options_.external.end();
+}
+
+bool RunCoordinator::HasRival(Role role, TimePoint now) const {
+  const Member& of = member(role);
+  // The runner does not see the death of a process that was started elsewhere.
+  return of.rival && !(IsExternal(role) && HeldAgainst(of.rival_heard, now) > kLeaves);
+}
+
+std::int64_t RunCoordinator::HolderOf(Role role, TimePoint now) const {
+  const Member& of = member(role);
+  return of.status && HeldAgainst(of.heard, now) <= kSilent ? of.status->instance : 0;
+}
+
+bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  const auto same = [&](const status_t& other) { return other.instance == status.instance; };
+  if (const auto dead = std::ranges::find_if(member.dead, same); dead != member.dead.end()) {
+    if (status.sequence > dead->sequence) OnUndead(role, status, now);
+    return false;
+  }
+  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
+    return false;
+  }
+  if (member.status && !same(*member.status)) return AdmitOther(role, status, now);
+  if (!IsExternal(role) && member.rival && status.sequence > member.status->sequence &&
+      HeldAgainst(member.rival_since, now) > kOnItsWay) {
+    FailForTwo(status, *member.rival);
+  }
+  if (status.state != status_t::LEFT) return true;
+  if (member.status) {
+    member.dead.push_back(status);
+    member.status.reset();
+    member.rival.reset();
+    deaf_.Forget(role);
+    announce_at_ = now;
+  }
+  return false;
+}
+
+void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  // Messages from before its death may come late. If the process sends more, it is not dead.
+  if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
+      HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
+    return;
+  }
+  announce_at_ = now;  // that another one has its place
+  const bool speaks_on = member.undead && member.undead_instance == status.instance &&
+                         HeldAgainst(member.undead_heard, now) <= kSilent;
+  if (!speaks_on) member.undead = now;
+  member.undead_instance = status.instance;
+  member.undead_heard = now;
+  if (HeldAgainst(*member.undead, now) > kLeaves) FailForTwo(*member.status, status);
+}
+
+bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  if (status.state == status_t::LEFT) {
+    if (member.rival && member.rival->instance == status.instance) member.rival.reset();
+    return false;
+  }
+  const bool speaks_on = member.rival && member.rival->instance == status.instance &&
+                         HeldAgainst(member.rival_heard, now) <= kSilent;
+  if (!speaks_on) {
+    member.rival = status;
+    member.rival_since = now;
+    announce_at_ = now;  // tells the process that another one has its place
+  }
+  member.rival_heard = now;
+  if (!IsExternal(role)) return false;
+  if (HeldAgainst(member.heard, now) <= kSilent) {
+    const bool both = member.heard > member.rival_since;
+    if (both && HeldAgainst(member.rival_since, now) > kLeaves) FailForTwo(*member.status, status);
+    return false;
+  }
+  if (++member.replaced > options_.restarts) {
+    Fail(
+        fmt::format("{} was started again as pid {} on {} {}, after {} restarts "
+                    "(--restarts)",
+                    status.role, status.pid, status.host, Where(), options_.restarts));
+    return false;
+  }
+  member.dead.push_back(std::move(*member.status));
+  member.status.reset();
+  member.rival.reset();
+  member.undead.reset();
+  deaf_.Forget(role);
+  member.replaced_at = now;
+  return true;
+}
+
+void RunCoordinator::FailForTwo(const status_t& one, const status_t& other) {
+  Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", one.role, one.pid,
+                   one.host, other.pid, other.host));
+}
+
+void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  member.pids.push_back(pid);
+  if (member.status && member.status->pid == pid && member.status->host == host_) {
+    member.dead.push_back(std::move(*member.status));
+    member.status.reset();
+    deaf_.Forget(role);
+  }
+  member.rival.reset();
+  progressed_ = now;  // the restart is under way, so the stall limit counts from here
+}
+
+void RunCoordinator::Hinder(Role role, std::string why) {
+  members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
+}
+
+void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  std::erase(member.pids, pid);
+  member.hindrance.clear();
+  signs_of_life_.Since(role, now);
+  progressed_ = now;
+}
+
+}  // namespace fogline

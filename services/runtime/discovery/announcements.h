@@ -1,0 +1,77 @@
+// The runs that announce themselves at the meeting address, where programs listen that were given
+// no URL. This class has no subscription and no clock: its caller passes messages and times to it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "fogline/beacon_t.hpp"
+#include "services/graph.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// The channel of beacon_t. It is no part of kGraph: no run has it.
+inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
+/// The interval at which a run announces itself: a few times while a person looks for it.
+inline constexpr Duration kBeaconEvery = milliseconds(500);
+
+/// A run as its beacon describes it. Its texts are safe to print.
+struct Announcement {
+  std::int64_t run_id = 0;
+  std::int64_t began_us = 0;  // wall clock, since 1970
+  std::string url;
+  std::string scenario;  // title; UTF-8
+  std::string host;
+  std::int32_t pid = 0;
+  std::vector<Role> awaited;  // roles that the run waits for, in the order of kRoles
+
+  bool Awaits(Role role) const;
+  /// "run 123 at udpm://239.255.76.67:7700?ttl=0, scenario A box of fog, announced by pid 4711 on
+  /// lab1; it waits for the driver". ASCII: '?' stands for other characters of the title.
+  std::string Text() const;
+};
+
+/// All runs that are announced. LCM has no access control. A beacon that a runner on this machine
+/// cannot have sent is therefore refused, and the number of remembered runs is limited.
+class Announcements {
+ public:
+  /// @param host name of this machine; a beacon does not leave its machine, so a beacon with
+  ///     another host name is refused
+  explicit Announcements(std::string host) : host_(std::move(host)) {}
+
+  /// @param wall_us wall clock, microseconds since 1970
+  void Hear(Bytes bytes, TimePoint now, std::int64_t wall_us);
+
+  /// The runs that have not ended, the newest first.
+  std::vector<Announcement> Current(TimePoint now) const;
+
+  /// How many beacons were refused.
+  std::int64_t refused() const { return refused_; }
+
+  /// A run without a beacon for this long (six beacons) counts as ended.
+  static constexpr Duration kGone = 6 * kBeaconEvery;
+  /// The most runs that are remembered. If there is no room, the run that was heard least is
+  /// forgotten. So invented runs that are heard once do not displace a run that continues to
+  /// announce itself.
+  static constexpr std::size_t kMax = 256;
+  /// The longest title, in bytes.
+  static constexpr std::size_t kMaxTitle = 200;
+
+ private:
+  struct Entry {
+    Announcement announcement;
+    TimePoint heard;
+    std::int64_t times = 0;
+  };
+  bool Take(Bytes bytes, TimePoint now, std::int64_t wall_us);
+  void Keep(Announcement announcement, TimePoint now);
+
+  std::string host_;
+  std::vector<Entry> entries_;  // in the order in which they were heard first
+  std::int64_t refused_ = 0;
+};
+
+}  // namespace fogline

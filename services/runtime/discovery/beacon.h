@@ -1,0 +1,69 @@
+// How a run and the programs that were given no URL find each other: the runner announces the run
+// at the address where such programs listen (lcm_url.h, MeetingUrl()).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fogline/beacon_t.hpp"
+#include "services/runtime/discovery/announcements.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/load_shedder.h"
+
+struct _lcm_t;
+
+namespace fogline {
+
+/// The runner's side. It is best effort: if a beacon cannot be sent, the run goes on without it. A
+/// beacon stays on this machine (ttl=0) whatever ttl the meeting address has. It is never signed,
+/// even if the run has a key: a beacon tells only where to look, and the messages of the run itself
+/// are verified.
+class Beacon {
+ public:
+  /// Announces nothing if the run is at the meeting address itself, if programs may not follow a
+  /// beacon to the run's URL (MayBeAnnounced()), or if the meeting address is no multicast group.
+  /// @param run the constructor fills in its host, process and time of beginning
+  explicit Beacon(Announcement run);
+  /// Says that the run is over.
+  ~Beacon();
+  Beacon(const Beacon&) = delete;
+  Beacon& operator=(const Beacon&) = delete;
+
+  /// Whether the next beacon is due.
+  bool Due(TimePoint now) const { return lcm_ != nullptr && now >= due_; }
+  /// @param awaited roles that the run waits for now
+  void Send(TimePoint now, const std::vector<Role>& awaited);
+
+ private:
+  void Publish();
+
+  beacon_t beacon_{};
+  // LCM directly, not Bus: LCM starts no thread and no self-test for sending alone.
+  _lcm_t* lcm_ = nullptr;
+  TimePoint due_{};
+  std::vector<std::uint8_t> buffer_;
+};
+
+/// The side of a program that looks for a run.
+class BeaconListener {
+ public:
+  /// Hears nothing if the address is no multicast group.
+  explicit BeaconListener(const std::string& meeting_url);
+
+  /// Reads the beacons that have come.
+  void Look();
+  /// The runs that have not ended, the newest first.
+  std::vector<Announcement> Runs() const { return announcements_.Current(Clock::now()); }
+  std::int64_t refused() const { return announcements_.refused(); }
+  /// Readable when Look() has something to read; -1 if there never is.
+  int fd() const { return bus_ ? bus_->fd() : -1; }
+
+ private:
+  std::optional<Bus> bus_;
+  Announcements announcements_;
+  // The limit, in beacons per second: many times what the runs of one machine send.
+  LoadShedder gate_{3000};
+};
+
+}  // namespace fogline

@@ -1,0 +1,44 @@
+#include "services/runtime/discovery/run_seeker.h"
+
+#include <algorithm>
+
+namespace fogline {
+
+std::optional<Announcement> RunSeeker::Look(TimePoint now) {
+  pauses_.Attend(now);
+  listener_.Look();
+  const std::vector<Announcement> runs = listener_.Runs();
+  for (const Announcement& run : runs) {
+    if (!run.Awaits(role_)) std::erase(in_vain_, run.run_id);
+  }
+  if (tried_) return std::nullopt;
+  for (const Announcement& run : runs) {
+    if (!run.Awaits(role_) || run.run_id == own_ ||
+        std::ranges::find(in_vain_, run.run_id) != in_vain_.end()) {
+      continue;
+    }
+    tried_ = {.run_id = run.run_id, .at = now};
+    return run;
+  }
+  return std::nullopt;
+}
+
+bool RunSeeker::InVain(TimePoint now) {
+  if (!tried_) return false;
+  now = pauses_.Attend(now);
+  listener_.Look();
+  const std::vector<Announcement> runs = listener_.Runs();
+  const bool announced =
+      std::ranges::find(runs, tried_->run_id, &Announcement::run_id) != runs.end();
+  // Before that it may not have heard of a run that goes on.
+  const bool would_know = pauses_.HeldAgainst(began_, now) > Announcements::kGone;
+  return pauses_.HeldAgainst(tried_->at, now) > kPatience || (would_know && !announced);
+}
+
+void RunSeeker::GiveUp() {
+  in_vain_.push_back(tried_->run_id);
+  tried_.reset();
+  if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
+}
+
+}  // namespace fogline

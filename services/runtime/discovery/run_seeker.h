@@ -1,0 +1,60 @@
+// Where a role looks for a run if it was given neither a network nor a run. It looks at the meeting
+// address (lcm_url.h), and at the network of each run that is announced there and waits for the
+// role.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "common/own_pauses.h"
+#include "services/runtime/discovery/beacon.h"
+
+namespace fogline {
+
+class RunSeeker {
+ public:
+  /// @throws InputError as Bus()
+  RunSeeker(Role role, const std::string& meeting_url)
+      : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
+
+  /// Call it while the role has no run.
+  /// @return the run to join now: the newest that waits for this role and was not tried in vain;
+  ///     nullopt if there is none
+  std::optional<Announcement> Look(TimePoint now);
+
+  /// Whether the role is at the network of an announced run.
+  bool Tries() const { return tried_.has_value(); }
+  /// Whether the run is over, or nothing was heard of it for kPatience. The role then goes back to
+  /// the meeting address.
+  bool InVain(TimePoint now);
+  /// The run that was gone to last is not tried again, unless it has had the role meanwhile: then
+  /// its place was taken, and may be free again.
+  void GiveUp();
+  /// This run, which the role has a part in, is not to be tried.
+  void Ignore(std::int64_t run_id) { own_ = run_id; }
+  /// The role is at the network of this run, and has no part in it any more.
+  void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
+
+ private:
+  // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
+  // by less than this.
+  static constexpr Duration kPatience = milliseconds(5000);
+  // A limit, so that invented runs do not fill the memory.
+  static constexpr std::size_t kMaxInVain = 64;
+
+  struct Try {
+    std::int64_t run_id;
+    TimePoint at;
+  };
+  Role role_;
+  BeaconListener listener_;
+  TimePoint began_;
+  OwnPauses pauses_;
+  std::optional<Try> tried_;
+  std::optional<std::int64_t> own_;
+  std::deque<std::int64_t> in_vain_;
+};
+
+}  // namespace fogline

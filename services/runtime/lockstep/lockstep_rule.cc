@@ -1,0 +1,111 @@
+#include "services/runtime/lockstep/lockstep_rule.h"
+
+#include <algorithm>
+
+namespace fogline {
+namespace {
+
+// The shortest time between two requests of a node that asks because another process asked it.
+constexpr Duration kMinBetweenAsks = milliseconds(2);
+
+}  // namespace
+
+LockstepRule::LockstepRule(Node& node) : FireRule(node), expected_(progress()), late_(progress()) {}
+
+StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
+  const Input& from = inputs()[input];
+  const auto verdict = from.ring.Classify(step, bytes, FirstNeeded(from));
+  // A node that catches up also hears the current steps of the others, which are too new for it.
+  const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
+  return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
+                                                                 : verdict;
+}
+
+void LockstepRule::OnInput(std::size_t /*input*/, std::int64_t step, TimePoint time) {
+  Expect(step);
+  if (CatchingUp()) patience_.Arrived(time);
+  Advance(time);
+}
+
+TimePoint LockstepRule::Poll(TimePoint now) {
+  Advance(now);
+  return Repair(now);
+}
+
+void LockstepRule::OnProgress() {
+  Expect(progress());
+  if (progress() > next() + kMaxAhead) late_ = progress();
+}
+
+void LockstepRule::OnAskedAhead(std::int64_t step, TimePoint now) {
+  // A request may name a wrong step, so its effect is limited.
+  Expect(std::min(step, next() + kRingSteps - 1));
+  // A node that catches up has already asked for its inputs.
+  if (!CatchingUp() && now - patience_.asked() >= kMinBetweenAsks) AskForMissing(now);
+}
+
+void LockstepRule::WriteStatus(TimePoint now) {
+  const Input* missing = patience_.since() ? FirstMissing() : nullptr;
+  if (missing == nullptr) return;
+  status().waiting_for = kChannels[missing->channel].name;
+  status().last_heard_step = missing->ring.newest();
+  status().last_heard_ms = status().last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
+  status().waiting_ms = Milliseconds(now - *patience_.since());
+}
+
+const LockstepRule::Input* LockstepRule::FirstMissing() const {
+  const auto missing = std::ranges::find_if_not(
+      inputs(), [this](const Input& input) { return input.ReadyFor(next()); });
+  return missing == inputs().end() ? nullptr : &*missing;
+}
+
+std::int64_t LockstepRule::FirstNeeded(const Input& input) const {
+  return std::max<std::int64_t>(0, next() - input.lag);
+}
+
+void LockstepRule::Advance(TimePoint now) {
+  while (Running() && InputsReady() && MayCompute(next(), now)) {
+    if (!Compute(next())) return;
+    patience_.Computed(now);
+  }
+}
+
+TimePoint LockstepRule::Repair(TimePoint now) {
+  if (expected_ < next() || FirstMissing() == nullptr) return now + kHeartbeat;
+  const TimePoint ask_at = patience_.Wait(now);
+  // The step has not been asked for yet, so none of its inputs can be on their way.
+  if (CatchingUp() && next() > asked_) {
+    AskForMissing(now);
+    patience_.AskedForMany(now);
+  } else if (now >= ask_at) {
+    AskForMissing(now);
+    patience_.AskedInVain(now);
+  }
+  return patience_.Wait(now);
+}
+
+void LockstepRule::AskForMissing(TimePoint now) {
+  patience_.Asked(now);
+  // Up to the newest step that is known to be under way, but no more steps than the rings can hold.
+  asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
+  for (const Input& input : inputs()) {
+    const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);
+    if (steps.count == 0) continue;
+    Ask(kChannels[input.channel].name, steps);
+    ++status().repairs_asked;
+  }
+}
+
+StepRange LockstepRule::Lacking(const Input& input, std::int64_t first, std::int64_t last) const {
+  if (CatchingUp()) {  // old steps come only on request
+    while (first <= last && input.ring.Has(first)) ++first;
+    while (first <= last && input.ring.Has(last)) --last;
+    return {.first = first, .count = last - first + 1};
+  }
+  // Asks only for the first gap: the steps after it may be on their way.
+  std::int64_t count = 0;
+  while (first + count <= last && !input.ring.Has(first + count)) ++count;
+  return {.first = first, .count = count};
+}
+
+}  // namespace fogline

@@ -1,0 +1,73 @@
+// What a role knows of its runner: whether the runner is there, how long to wait for it, and
+// whether its run has a place for the role.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "common/own_pauses.h"
+#include "fogline/run_t.hpp"
+
+namespace fogline {
+
+/// Whether a run has a place for a role that is started elsewhere.
+enum class Seat {
+  kNone,   ///< the runner starts that role itself
+  kFree,   ///< the run waits for the role
+  kOurs,   ///< this process has the place
+  kTaken,  ///< another process has the place
+};
+
+inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instance) {
+  const auto found = std::ranges::find(run.external, role);
+  if (found == run.external.end()) return Seat::kNone;
+  const std::int64_t holder = run.holder[static_cast<std::size_t>(found - run.external.begin())];
+  if (holder == 0) return Seat::kFree;
+  return holder == instance ? Seat::kOurs : Seat::kTaken;
+}
+
+class RunnerWatch {
+ public:
+  /// A runner speaks five times a second. After this silence (ten missing messages) a role joins
+  /// another run that waits for it. A runner on a fit machine is never held up for so long. A
+  /// runner that a person has stopped may come back too late.
+  static constexpr Duration kSilent = milliseconds(2000);
+  /// If no other run waits, a role waits this much longer than the runner waits for a step. By then
+  /// the run is lost, unless its runner itself is paused (Ctrl-Z), for which this time is left.
+  static constexpr Duration kGone = milliseconds(15'000);
+  /// The stall limit if the runner does not give one: the default of `fogline run`.
+  static constexpr Duration kStallLimit = milliseconds(4000);
+
+  explicit RunnerWatch(TimePoint now) : pauses_(now) {}
+
+  /// Notes that the process looks at the clock. Call it before a question about a duration.
+  /// @return the time of its latest look
+  TimePoint Attend(TimePoint now) { return pauses_.Attend(now); }
+  /// The runner has said something new.
+  void Heard(const run_t& run, TimePoint now) {
+    constexpr std::int64_t kMax_ms = 1'000'000'000;  // the largest that fogline run takes
+    if (run.stall_ms > 0) stall_limit_ = milliseconds(std::min(run.stall_ms, kMax_ms));
+    heard_ = now;
+  }
+  /// The role has no runner.
+  void Forget() { heard_ = {}; }
+
+  /// How long the runner has been silent, without the time in which this process was held up. Zero
+  /// if there is no runner.
+  Duration Silence(TimePoint now) const {
+    return heard_ == TimePoint{} ? Duration::zero() : pauses_.HeldAgainst(heard_, now);
+  }
+  bool Silent(TimePoint now) const { return Silence(now) > kSilent; }
+  bool Gone(TimePoint now) const { return Silence(now) > stall_limit_ + kGone; }
+  /// Whether something has lasted for longer than the run waits for a step.
+  bool Stalled(TimePoint since, TimePoint now) const {
+    return pauses_.HeldAgainst(since, now) > stall_limit_;
+  }
+
+ private:
+  OwnPauses pauses_;
+  TimePoint heard_{};
+  Duration stall_limit_ = kStallLimit;
+};
+
+}  // namespace fogline

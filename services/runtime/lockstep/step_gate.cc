@@ -1,0 +1,83 @@
+#include "services/runtime/lockstep/step_gate.h"
+
+#include <algorithm>
+
+namespace fogline {
+namespace {
+
+constexpr Duration kFirstPatience = milliseconds(20);
+constexpr Duration kMaxPatience = milliseconds(500);
+// Three years: an upper limit for the time when a step is due, at any pace.
+constexpr double kLongest_s = 1e8;
+
+}  // namespace
+
+StepGate::StepGate(Bus& bus, status_t& own) {
+  bus.Subscribe(ChannelOf<status_t>().name, [this, &own](Arrival& arrival) {
+    if (run_id_ == 0) return;  // in no run yet
+    const auto* status = arrival.As<status_t>();
+    if (status == nullptr || status->header.run_id != run_id_) {
+      ++(own.*(status == nullptr ? arrival.Wrong<status_t>() : &status_t::foreign));
+      return;
+    }
+    // A recorder that has failed may not have on disk the step that it reports.
+    if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
+    // The recorder cannot have a step that neither this world nor an earlier one has begun.
+    if (status->header.step > std::max(own.header.step, begun_before_)) {
+      ++own.out_of_window;
+      return;
+    }
+    recorded_ = std::max(recorded_, status->header.step);
+  });
+}
+
+void StepGate::Configure(const Scenario& scenario, std::int64_t run_id) {
+  step_s_ = scenario.step_s;
+  run_id_ = run_id;
+}
+
+void StepGate::OnGo(const run_t& run, TimePoint now) {
+  BegunBefore(run.progress);
+  if (started_) return;
+  started_ = true;
+  pace_ = std::max(0.0, run.pace);
+  // A world that joins late computes the old steps at once and then continues at the pace.
+  start_ = now;
+  start_ -= Due(std::max<std::int64_t>(0, run.progress)) - now;
+}
+
+TimePoint StepGate::Due(std::int64_t step) const {
+  if (pace_ == 0) return start_;
+  const std::chrono::duration<double> since(
+      std::min(static_cast<double>(step) * step_s_ / pace_, kLongest_s));
+  return start_ + duration_cast<Duration>(since);
+}
+
+bool StepGate::Open(std::int64_t step, TimePoint now) const {
+  return started_ && !(final_ && step > *final_) && recorded_ >= Needed(step) && now >= Due(step);
+}
+
+std::optional<std::int64_t> StepGate::WantsRecorded(std::int64_t next, TimePoint now) {
+  if (!started_ || recorded_ >= Needed(next)) {
+    ask_at_.reset();
+    return std::nullopt;
+  }
+  if (!ask_at_) {
+    patience_ = kFirstPatience;
+    ask_at_ = now + patience_;
+  }
+  if (now < *ask_at_) return std::nullopt;
+  patience_ = std::min(2 * patience_, kMaxPatience);
+  ask_at_ = now + patience_;
+  return Needed(next);
+}
+
+TimePoint StepGate::NextPoll(std::int64_t next, TimePoint now) const {
+  if (!started_) return now + kMaxPatience;
+  TimePoint at = now + kMaxPatience;
+  if (ask_at_) at = std::min(at, *ask_at_);
+  if (const TimePoint due = Due(next); due > now) at = std::min(at, due);
+  return at;
+}
+
+}  // namespace fogline

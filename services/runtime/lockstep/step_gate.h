@@ -1,0 +1,62 @@
+// When the role that begins the steps (the world) may begin one (a step gate). It may not begin a
+// step before the runner's GO, faster than the pace, more than kMaxAhead steps ahead of the
+// recorder's log on disk, or after the end.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "common/clock.h"
+#include "scenario/sections/scenario.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline {
+
+class StepGate {
+ public:
+  /// Listens to the recorder's STATUS on `bus`. Messages that it refuses are counted in `own`.
+  StepGate(Bus& bus, status_t& own);
+
+  void Configure(const Scenario& scenario, std::int64_t run_id);
+  /// An earlier process of the world has begun this step.
+  void BegunBefore(std::int64_t step) { begun_before_ = std::max(begun_before_, step); }
+  void OnGo(const run_t& run, TimePoint now);
+  bool started() const { return started_; }
+
+  /// Whether step `step` may begin.
+  bool Open(std::int64_t step, TimePoint now) const;
+  /// No step follows `step`.
+  void SetFinal(std::int64_t step) { final_ = step; }
+  /// Whether the final step has begun and is on disk.
+  bool Finished(std::int64_t next) const {
+    return final_ && next > *final_ && recorded_ >= *final_;
+  }
+  /// The step that the recorder should be asked for; nullopt unless it is time to ask because the
+  /// recorder holds up step `next`.
+  std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
+  /// When the answer of Open() or WantsRecorded() may change without a message.
+  TimePoint NextPoll(std::int64_t next, TimePoint now) const;
+
+ private:
+  /// The step that must be on disk before `next` can begin (or, at the end, before the run is
+  /// done).
+  std::int64_t Needed(std::int64_t next) const {
+    return final_ && next > *final_ ? *final_ : next - kMaxAhead;
+  }
+  TimePoint Due(std::int64_t step) const;
+
+  std::int64_t run_id_ = 0;
+  double step_s_ = 0;
+  bool started_ = false;
+  double pace_ = 0;
+  TimePoint start_{};
+  std::int64_t recorded_ = -1;
+  std::int64_t begun_before_ = -1;
+  std::optional<std::int64_t> final_;
+  std::optional<TimePoint> ask_at_;
+  Duration patience_{};
+};
+
+}  // namespace fogline

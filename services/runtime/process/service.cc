@@ -1,0 +1,295 @@
+#include "services/runtime/process/service.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include "common/errors.h"
+#include "common/own_pauses.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/process/this_process.h"
+#include "services/runtime/discovery/run_seeker.h"
+#include "services/runtime/process/version.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/traffic_options.h"
+
+namespace fogline {
+namespace {
+
+enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
+
+// Priorities in real time: the world, which is the clock of the run, goes first, then the other
+// roles, then the rest of the machine.
+constexpr int kWorldPriority = 2;
+constexpr int kPriority = 1;
+// A network that cannot be joined is tried again so often; it is away until somebody mends it.
+constexpr Duration kTryAgain = milliseconds(500);
+
+struct Arguments {
+  std::string name;  // of the program
+  Role role;
+  std::string url;  // "": NetworkUrl() decides
+  std::optional<std::int64_t> run_id;
+  double wait_s = 60;
+  TrafficOptions traffic;
+
+  void AddTo(CLI::App& app) {
+    app.add_option("--lcm-url", url, "LCM network to join (default: see above)");
+    app.add_option("--run-id", run_id, "Join only the run with this id");
+    app.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
+        ->check(CLI::Range(0.0, 1e6))
+        ->check([](const std::string& text) {  // CLI::Range accepts NaN
+          return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
+        })
+        ->capture_default_str();
+    AddTrafficOptions(app, traffic);
+  }
+};
+
+/// A process on its network: a bus, and the role's node on that bus.
+class Service {
+ public:
+  /// @throws InputError, std::runtime_error if it cannot join the network
+  Service(const Arguments& arguments, const NodeFactory& make)
+      : arguments_(arguments), make_(make), began_(Clock::now()), pauses_(began_) {
+    Join(NetworkUrl(arguments.url), arguments.run_id);
+    if (arguments.run_id) return;
+    if (arguments.url.empty()) seeker_.emplace(arguments.role, MeetingUrl());
+    Say(fmt::format("waiting for a run on {}{}", bus_->url(), HowToStartOne()));
+  }
+
+  /// Takes part in one run. @return the exit code
+  int Run() {
+    while (!node_->left()) {
+      if (WasInterrupted()) {
+        node_->Leave();
+        return kInterrupted;
+      }
+      const TimePoint now = Clock::now();
+      pauses_.Attend(now);
+      if (node_->released()) {
+        StartOver(now);
+      } else if (node_->Waits()) {
+        WarnOfSignatures();
+        Seek(now);
+      } else if (node_->RunnerSilent(now)) {
+        SeekAnother(now);
+      } else {
+        seeker_.reset();
+        PreferIfRealtime();
+      }
+      TakePart();
+    }
+    if (node_->error().empty()) return kStopped;
+    Complain(fmt::format("{}: error: {}", arguments_.name, node_->error()));
+    return kFailed;
+  }
+
+ private:
+  void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
+
+  /// If it cannot, it stays where it is. @throws as Bus()
+  void Join(const std::string& url, std::optional<std::int64_t> run_id) {
+    auto bus = std::make_unique<Bus>(url);
+    Apply(arguments_.traffic, arguments_.role, *bus);
+    node_ = make_(*bus, run_id);
+    bus_ = std::move(bus);
+    starts_over_ = false;
+  }
+
+  std::string HowToStartOne() const {
+    // The runner starts the recorder, and every role with a run's id, itself.
+    if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
+    const std::string url =
+        arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);
+    return fmt::format("; start one with: fogline run SCENARIO --external {}{}",
+                       NameOf(arguments_.role), url);
+  }
+
+  void TakePart() {
+    try {
+      const TimePoint now = Clock::now();
+      bus_->Wait(node_->Poll(now) - now);
+    } catch (const std::exception& error) {
+      if (!seeker_ || !seeker_->Tries()) throw;
+      GoBack(error.what());  // the relay that a message named has ended
+    }
+  }
+
+  /// @throws std::runtime_error after --wait
+  void LimitWait(TimePoint now) const {
+    if (arguments_.wait_s <= 0 ||
+        pauses_.HeldAgainst(began_, now) <= std::chrono::duration<double>(arguments_.wait_s)) {
+      return;
+    }
+    throw std::runtime_error(
+        fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
+                    arguments_.wait_s, bus_->url(), HowToStartOne()));
+  }
+
+  /// Whether it was told neither a network nor a run.
+  bool MaySeek() const { return arguments_.url.empty() && !arguments_.run_id; }
+
+  /// Opens the seeker if its network is there. @return whether there is one
+  bool OpenSeeker(TimePoint now) {
+    if (seeker_) return true;
+    if (now < try_at_) return false;
+    try_at_ = now + kTryAgain;
+    try {
+      seeker_.emplace(arguments_.role, MeetingUrl());
+    } catch (const std::exception&) {  // not yet
+      return false;
+    }
+    return true;
+  }
+
+  /// Goes where a run waits for the role, and back if it does not.
+  /// @throws std::runtime_error after --wait
+  void Seek(TimePoint now) {
+    LimitWait(now);
+    if (!MaySeek() || !OpenSeeker(now)) return;
+    if (seeker_->InVain(now)) return GoBack("nothing is heard of it");
+    const auto run = seeker_->Look(now);
+    if (!run) return;
+    GoTo(*run);
+  }
+
+  void GoTo(const Announcement& run) {
+    Say("joins " + run.Text());
+    try {
+      Join(run.url, std::nullopt);
+    } catch (const std::exception& error) {  // the address came from the network and may be wrong
+      GoBack(error.what());
+    }
+  }
+
+  /// Called while the runner is silent. If another run waits for the role, the process goes there.
+  /// (The node itself hears runs on its present network.)
+  void SeekAnother(TimePoint now) {
+    if (!MaySeek() || !OpenSeeker(now)) return;
+    seeker_->Ignore(node_->run_id());
+    const auto run = seeker_->Look(now);
+    if (!run) return;
+    node_->Release(fmt::format("went to run {}: the runner was silent", run->run_id));
+    began_ = now;
+    GoTo(*run);
+  }
+
+  /// The node has given up its place. It waits for a run where it is, as soon as that network is
+  /// there. @throws std::runtime_error after --wait
+  void StartOver(TimePoint now) {
+    if (!std::exchange(starts_over_, true)) {
+      Say(node_->error());
+      began_ = now;
+      try_at_ = now;
+    }
+    LimitWait(now);
+    if (now < try_at_) return;
+    const bool had_seeker = seeker_.has_value();
+    if (MaySeek() && OpenSeeker(now) && !had_seeker && !SameNetwork(bus_->url(), MeetingUrl())) {
+      seeker_->Stay(node_->run_id(), now);
+    }
+    try_at_ = now + kTryAgain;
+    try {
+      Join(std::string(bus_->url()), std::nullopt);
+    } catch (const std::exception&) {  // not yet
+    }
+  }
+
+  void GoBack(const std::string& why) {
+    seeker_->GiveUp();
+    try {
+      Join(MeetingUrl(), std::nullopt);
+    } catch (const std::exception&) {  // it stays where it is
+    }
+    Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
+  }
+
+  void WarnOfSignatures() {
+    if (warned_) return;
+    const std::string trouble = SignatureTrouble(bus_->unverified());
+    warned_ = !trouble.empty();
+    if (warned_) Say(trouble);
+  }
+
+  void PreferIfRealtime() {
+    if (!node_->realtime() || std::exchange(preferred_, true)) return;
+    // If the kernel does not grant it, the process keeps time as well as the machine allows.
+    RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
+  }
+
+  const Arguments& arguments_;
+  const NodeFactory& make_;
+  TimePoint began_;  // when the wait for a run began
+  OwnPauses pauses_;
+  std::unique_ptr<Bus> bus_;
+  std::unique_ptr<Node> node_;
+  std::optional<RunSeeker> seeker_;  // while there is no run yet
+  TimePoint try_at_{};               // when to try again what a network that is away has prevented
+  bool starts_over_ = false;
+  bool warned_ = false;
+  bool preferred_ = false;
+};
+
+std::string_view PurposeOf(Role role) {
+  for (const RoleInfo& info : kRoles) {
+    if (info.role == role) return info.purpose;
+  }
+  return "";
+}
+
+}  // namespace
+
+int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
+               const std::function<void(CLI::App&)>& extend) {
+  TakeStandardDescriptors();
+  Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
+  const std::string& name = arguments.name;
+  CLI::App app{
+      fmt::format(
+          "Fogline's {}: {}.\n"
+          "Joins the next run on the LCM network, takes part in it, and leaves when the\n"
+          "runner says so. Without --lcm-url the network is $LCM_DEFAULT_URL or, if that is\n"
+          "not set, {}, and that of any run that waits\n"
+          "for this role and is announced there.",
+          NameOf(role), PurposeOf(role), kLcmDefaultUrl),
+      name};
+  app.set_version_flag("--version", VersionText());
+  arguments.AddTo(app);
+  app.footer(
+      fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
+                  "\n\nExamples: in two shells of one machine; with a network of one's own\n"
+                  "  {0}\n"
+                  "  fogline run scenario/paper.json --external {1}\n\n"
+                  "  {0} --lcm-url 'udpm://239.255.76.67:7700?ttl=0'\n"
+                  "  fogline run scenario/paper.json --external {1} \\\n"
+                  "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'",
+                  name, NameOf(role)));
+  if (extend) extend(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    Complain(fmt::format("{0}: error: {1} (see {0} --help)", name, error.what()));
+    return kBadUsage;
+  }
+  WatchInterrupts();
+  FailWritesBeyondTheSizeLimit();
+  try {
+    return Service(arguments, make).Run();
+  } catch (const InputError& error) {
+    Complain(fmt::format("{}: {}", name, error.what()));
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    Complain(fmt::format("{}: error: {}", name, error.what()));
+    return kFailed;
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,47 @@
+// Quantiles of durations. The memory does not grow with their number.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+/// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
+/// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
+/// therefore too large by at most 1/64 (1.6 %) and never too small. Maximum and count are exact. It
+/// takes 14 kB, allocates nothing, and adds a duration in constant time.
+///
+/// (Boost.Accumulators has the P2 estimator, without a bound on its error in the tail; HdrHistogram
+/// in C is no Debian package.)
+class DurationHistogram {
+ public:
+  /// Counts a duration, in whole microseconds, rounded up. A negative one counts as 0, one above
+  /// kMaxUs as kMaxUs.
+  void Add(Duration duration);
+
+  /// The smallest duration, in microseconds, that at least a share `q` of all durations does not
+  /// exceed; 0 if there are none. q is in [0, 1].
+  std::int64_t QuantileUs(double q) const;
+  std::int64_t MaxUs() const { return max_us_; }
+  std::int64_t count() const { return count_; }
+
+  static constexpr std::int64_t kMaxUs = (std::int64_t{1} << 32) - 1;  // 71 minutes
+
+ private:
+  static constexpr int kCellBits = 6;  // 64 cells to a power of two
+  static constexpr int kExactBits = kCellBits + 1;
+  static constexpr std::size_t kNumCells = (32 - kExactBits + 2) << kCellBits;
+
+  static std::size_t CellOf(std::int64_t us);
+  static std::int64_t LargestOf(std::size_t cell);
+
+  std::array<std::int64_t, kNumCells> cells_{};
+  std::int64_t count_ = 0;
+  std::int64_t max_us_ = 0;
+};
+
+}  // namespace fogline

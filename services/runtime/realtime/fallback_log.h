@@ -1,0 +1,75 @@
+// What went wrong in a run in real time and how its roles reacted, by their STATUS. A person reads
+// it during the run, and afterwards from the log.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/input_state.h"
+#include "services/runtime/realtime/culprit.h"
+
+namespace fogline {
+
+/// A change in how a role reacts to its inputs, or an input that is lost or there again. (An input
+/// that is only stale is reported if the role reacts to it.)
+struct Fallback {
+  std::int64_t step = 0;  // step that was under way then
+  std::string role;
+  std::string what;     // "TRACK, ACC_COMMAND lost: the human drives"
+  std::string culprit;  // role that fell silent, "" if none is
+  double age_s = 0;     // since the role last heard the culprit
+
+  /// "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): the human drives"
+  std::string Text() const;
+
+  std::string inputs;  // "TRACK, ACC_COMMAND lost"
+  std::string does;    // "the human drives", as it may be printed
+};
+
+class FallbackLog {
+ public:
+  /// The most changes that are kept. Further ones add little for a reader, and must not fill the
+  /// memory.
+  static constexpr std::size_t kMaxKept = 1000;
+
+  /// @param step_us simulated time of a step
+  /// @param speed simulated seconds per second
+  /// @param steps of the run; silence after its last step is not reported
+  FallbackLog(std::int64_t step_us, double speed, std::int64_t steps);
+
+  /// Takes the next STATUS of a role.
+  /// @return the change since its last one, nullptr if there is none; valid until the next call
+  const Fallback* Add(const status_t& status);
+
+  /// The first changes, kMaxKept at most.
+  const std::vector<Fallback>& all() const { return all_; }
+  /// How many changes came after these.
+  std::int64_t left_out() const { return left_out_; }
+
+ private:
+  struct Known {
+    std::array<InputState, kNumChannels> inputs{};  // LOST until it is OK again
+    std::string does;
+    // The lost inputs in its last STATUS, and how far the run was then.
+    ChannelSet lost;
+    std::int64_t utime = 0;
+  };
+
+  std::string Culprit(const status_t& status) const;
+  /// Whether the role has been silent for so long that its last STATUS does not count.
+  bool IsSilent(const Known& known, std::int64_t utime) const;
+
+  std::int64_t step_us_;
+  std::int64_t steps_;
+  double silent_us_;  // simulated
+  std::array<Known, kRoles.size()> roles_;
+  Fallback newest_;
+  std::vector<Fallback> all_;
+  std::int64_t left_out_ = 0;
+};
+
+}  // namespace fogline

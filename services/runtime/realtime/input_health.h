@@ -1,0 +1,78 @@
+// The health of one input in real time, by the times when its steps arrive on the receiver's own
+// clock. Callers pass the time in: nothing here reads a clock, and senders' clocks do not matter.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/clock.h"
+#include "scenario/sections/realtime.h"
+#include "services/input_state.h"
+
+namespace fogline {
+
+/// Age, rate and state of an input that brings one step in every period.
+///
+///     AWAITED --a step--> OK --age > stale--> STALE --age > lost--> LOST
+///        |                 ^                    |                    |
+///        +--age > lost--> LOST                  +-- recover_steps ---+--> OK
+///
+/// The age is the time since the last new step arrived, or since the beginning. The limits are
+/// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
+/// steps. Each of them but the first must come within `stale` of the one before, and together they
+/// must last as long as so many steps should. So a sender that was stopped and sends its backlog at
+/// once recovers only when it is back in its rhythm.
+///
+/// The loss of an input is detected `lost` periods after its last step. That is at most `lost`
+/// periods after its sender's death, plus the time until the receiver looks: see NextChange().
+class InputHealth {
+ public:
+  /// @param period of the steps on the wall clock, above 0
+  /// @param began from when on the input is expected
+  InputHealth(const HealthSection& section, Duration period, TimePoint began);
+
+  /// A message of step `step` has arrived. A repetition of the newest step changes nothing. An
+  /// older step is late and counted.
+  void Arrived(std::int64_t step, TimePoint now);
+
+  /// Takes the time into account. @return the state now
+  InputState Update(TimePoint now);
+  InputState state() const { return state_; }
+  /// When Update() will change the state if no step arrives; TimePoint::max() if it will not.
+  TimePoint NextChange() const;
+
+  /// Newest step that has arrived, -1 if none.
+  std::int64_t newest() const { return newest_; }
+  /// Time since the newest step arrived, or since the beginning.
+  Duration Age(TimePoint now) const { return now - heard_; }
+  /// Steps per second over the last kRateSteps arrivals. The rate falls while no step comes. It is
+  /// 0 before two steps have come.
+  double RateHz(TimePoint now) const;
+  /// Messages that came after a newer one of the same input.
+  std::int64_t late() const { return late_; }
+
+  static constexpr std::size_t kRateSteps = 16;
+
+ private:
+  void Recover(TimePoint now);
+
+  Duration stale_;
+  Duration lost_;
+  std::int64_t recover_steps_;
+  Duration recover_time_;  // the least time that recover_steps_ steps take
+
+  InputState state_ = InputState::kAwaited;
+  std::int64_t newest_ = -1;
+  TimePoint heard_;
+  std::int64_t late_ = 0;
+  // Steps in time without interruption, and when the first of them came.
+  std::int64_t streak_ = 0;
+  TimePoint streak_began_;
+  // The last arrivals: a ring.
+  std::array<TimePoint, kRateSteps> arrivals_{};
+  std::size_t num_arrivals_ = 0;
+  std::size_t next_arrival_ = 0;
+};
+
+}  // namespace fogline

@@ -1,0 +1,54 @@
+// How well a role keeps its time in a run in real time, and how STATUS reports it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "common/clock.h"
+#include "services/runtime/realtime/duration_histogram.h"
+#include "services/runtime/realtime/input_health.h"
+
+namespace fogline {
+
+class status_t;
+
+/// A tick is the moment at which a step is due: the beginning of a period at the world, the arrival
+/// of an input at another role. Latency goes from sensor to command: from when the world has sent a
+/// step's TRUTH to when that step's HOST_COMMAND is back at the world. Both times are on the
+/// world's clock, so no clocks of two hosts are compared.
+class RealtimeStatistics {
+ public:
+  /// A tick that is later than this counts as late.
+  static constexpr Duration kLate = milliseconds(5);
+
+  /// A tick that was due at `due` happened at `now`.
+  void Tick(TimePoint due, TimePoint now);
+  /// The command of a step came back after this time.
+  void Latency(Duration duration) { latency_.Add(duration); }
+  /// A step lacked an input that was due.
+  void Miss() { ++deadline_misses_; }
+
+  std::int64_t ticks() const { return jitter_.count(); }
+  std::int64_t ticks_late() const { return ticks_late_; }
+  std::int64_t deadline_misses() const { return deadline_misses_; }
+  /// The time between a tick and its due time, early or late.
+  const DurationHistogram& jitter() const { return jitter_; }
+  const DurationHistogram& latency() const { return latency_; }
+
+  /// Writes everything into a STATUS.
+  void Write(status_t& status) const;
+
+ private:
+  DurationHistogram jitter_;
+  DurationHistogram latency_;
+  std::int64_t ticks_late_ = 0;
+  std::int64_t deadline_misses_ = 0;
+};
+
+/// Removes the inputs from a STATUS, before they are written again.
+void ClearInputs(status_t& status);
+/// Adds an input to a STATUS.
+void WriteInput(std::string_view channel, const InputHealth& health, TimePoint now,
+                status_t& status);
+
+}  // namespace fogline

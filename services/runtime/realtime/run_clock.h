@@ -1,0 +1,66 @@
+// The clock on which a role judges its inputs in real time: the wall clock without the world's
+// pauses. When the world's process stops, every role falls silent a step later, and only the world
+// is to blame. The world cannot hear its inputs during its own pause either.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "common/clock.h"
+
+namespace fogline {
+
+/// The clock runs with the wall clock while the run goes on. It stands still when the next step is
+/// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
+/// were skipped in between, they took their time, and the clock makes up for it. A message that
+/// comes late (a TRUTH that was lost and sent again) shows a step, not a pause: the next message
+/// that is in time sets the clock right. The clock never goes backwards, nor ahead of the wall
+/// clock. Before the first step it stands at its beginning.
+class RunClock {
+ public:
+  RunClock(Duration period, TimePoint began)
+      : period_(period), heard_(began), then_(began), due_(began), limit_(began) {}
+
+  /// A message that claims to be of this step has come now: the world has begun the step.
+  void Heard(std::int64_t step, TimePoint now) {
+    if (step <= step_) return;
+    then_ = At(now);
+    if (step_ >= 0) due_ = std::min(now, due_ + Periods(static_cast<double>(step - step_)));
+    then_ = std::max(then_, due_);
+    limit_ = std::max(then_, due_ + Periods(1 + kGrace));
+    step_ = step;
+    heard_ = now;
+  }
+
+  /// @pre `now` is not before the last step
+  TimePoint At(TimePoint now) const { return std::min(then_ + (now - heard_), limit_); }
+  /// The wall-clock time when At() is `at`; TimePoint::max() if that is not before the next step.
+  TimePoint Wall(TimePoint at) const {
+    return at > limit_ ? TimePoint::max() : heard_ + (at - then_);
+  }
+
+  bool started() const { return step_ >= 0; }
+  /// The time since the newest step was first heard of.
+  Duration Silence(TimePoint now) const { return now - heard_; }
+
+ private:
+  /// The part of a period by which a tick may be late: well above its usual variation, well below
+  /// the delay that makes an input stale.
+  static constexpr double kGrace = 0.25;
+  /// Longer than any run. The sum of two such times does not overflow.
+  static constexpr double kLongest_ns = 1e18;
+
+  Duration Periods(double periods) const {
+    return Duration(static_cast<Duration::rep>(
+        std::min(periods * static_cast<double>(period_.count()), kLongest_ns)));
+  }
+
+  Duration period_;
+  std::int64_t step_ = -1;  // newest step that was heard of
+  TimePoint heard_;         // when it was heard of, on the wall clock
+  TimePoint then_;          // the same moment on this clock
+  TimePoint due_;           // when the step was due, on this clock
+  TimePoint limit_;         // the time at which this clock stands still
+};
+
+}  // namespace fogline

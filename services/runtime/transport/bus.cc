@@ -1,0 +1,368 @@
+#include "services/runtime/transport/bus.h"
+
+#include <fcntl.h>
+#include <lcm/lcm.h>
+#include <sodium.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/file.h"
+#include "common/process/console.h"
+#include "common/process/poll.h"
+#include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/transport/tcpq_client.h"
+#include "services/runtime/wire/channel_filter.h"
+
+namespace fogline {
+namespace {
+
+/// Adds options to a udpm URL that does not give them. Larger buffers survive bursts (a default one
+/// loses 88 % of 5000 messages sent at once); ttl=0 keeps traffic on this machine.
+std::string WithDefaults(std::string url) {
+  if (!url.starts_with("udpm://")) return url;
+  const auto add = [&url](std::string_view option, std::string_view value) {
+    if (url.find(option) != std::string::npos) return;
+    url += fmt::format("{}{}={}", url.find('?') == std::string::npos ? '?' : '&', option, value);
+  };
+  add("ttl", "0");
+  add("recv_buf_size", "2097152");
+  return url;
+}
+
+/// LCM reads channel names as regular expressions.
+std::string Escaped(std::string_view channel) {
+  std::string escaped;
+  for (const char c : channel) {
+    if (std::string_view(R"(\^$.|?*+()[]{}-#)").find(c) != std::string_view::npos) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+/// LCM asks for the receive buffer that any user may have. That buffer holds a hundred datagrams
+/// (rmem_max of a plain system): 5 ms of a flood of 20,000 a second. A process with CAP_NET_ADMIN
+/// may have more: it gets room for the messages that come while a busy machine does something else.
+void WidenBuffer(int socket) {
+  constexpr int kBytes = 8 * 1024 * 1024;
+  setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
+}
+
+/// errno if this process cannot open as many descriptors as LCM needs for a network, otherwise 0.
+int LackOfDescriptors() {
+  // LCM uses at most ten: sockets, pipes and those of its self-test.
+  std::array<int, 16> descriptors{};
+  int error = 0;
+  for (int& descriptor : descriptors) {
+    descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (descriptor < 0) error = errno;
+  }
+  for (const int descriptor : descriptors) {
+    if (descriptor >= 0) close(descriptor);
+  }
+  return error;
+}
+
+// A bus that hears nothing for this long (five signs of life of a run) joins its group again.
+constexpr Duration kJoinAgainEvery = milliseconds(1000);
+
+}  // namespace
+
+Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+  if (url_.starts_with("tcpq://")) {
+    tcpq_ = std::make_unique<tcpq::Client>(url_);
+    url_ = tcpq_->url();
+    fd_ = tcpq_->fd();
+    return;
+  }
+  // LCM would use its own default URL, which Fogline has not checked.
+  if (url_.empty()) throw InputError("error: the LCM URL is empty");
+  if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
+    throw InputError(fmt::format("error: {}", why));
+  }
+  bool routed = false;
+  {
+    // From its first datagram on, a socket takes only LCM's self-test. This does not hold for
+    // mpudpm, which announces its ports on a channel of its own.
+    std::optional<LcmSockets> sockets;
+    if (url_.starts_with("udpm://")) {
+      const LcmSockets::Reach reach = ReachOf(url_);
+      routed = reach == LcmSockets::Reach::kRoute;
+      sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), reach);
+    }
+    lcm_ = lcm_create(url_.c_str());
+    if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
+    if (sockets) {
+      sockets_ = sockets->receiving();
+      filtered_ = sockets->filtered();
+      if (routed) membership_.emplace(sockets->members(), url_);
+    }
+  }
+  for (const int socket : sockets_) WidenBuffer(socket);
+  if (fd_ < 0) {
+    if (lcm_ != nullptr) lcm_destroy(lcm_);
+    ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
+    throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
+  }
+  // LCM's self-test is over. The filter keeps channels without a subscription from LCM's parser.
+  Filter(ChannelFilter({}));
+  static bool warned = false;
+  if (!filtered_ && !std::exchange(warned, true)) {
+    Notice(fmt::format(
+        "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
+        "parser (`fogline doctor` says more)",
+        url_));
+  }
+}
+
+Bus::~Bus() {
+  if (lcm_ != nullptr) lcm_destroy(lcm_);
+}
+
+void Bus::Secure(const MessageSigner& seal) {
+  if (url_.starts_with("mpudpm://")) {
+    throw InputError(
+        "error: --key: with mpudpm nothing filters what reaches LCM's parser; use udpm");
+  }
+  if (!filtered_) {
+    throw InputError(
+        "error: --key: the kernel takes no socket filter, so strangers reach LCM's parser before "
+        "the signature is looked at; `fogline doctor` says more");
+  }
+  seal_ = seal;
+}
+
+Bus::Topic& Bus::TopicOf(std::string_view channel) {
+  const auto found = std::ranges::find(topics_, channel, &Topic::channel);
+  if (found != topics_.end()) return *found;
+  return topics_.emplace_back(Topic{.bus = this, .channel = std::string(channel)});
+}
+
+void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& contents) {
+  Topic& topic = TopicOf(channel);
+  topic.handlers.push_back(std::move(handler));
+  if (topic.handlers.size() > 1) {
+    topic.wanted = {};  // several readers: take the whole channel
+    return FilterSockets();
+  }
+  topic.wanted = contents;
+  if (tcpq_) {
+    return tcpq_->Subscribe(channel, Escaped(channel),
+                            [&topic](Bytes bytes) { Deliver(bytes, topic); });
+  }
+  lcm_subscription_t* handle =
+      lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
+  if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  FilterSockets();
+}
+
+void Bus::SetSampleRate(std::string_view channel, double share) {
+  TopicOf(channel).share = share;
+  FilterSockets();
+}
+
+void Bus::FilterSockets() {
+  if (watcher_) return;  // the watcher takes every channel
+  std::vector<Wanted> wanted;
+  for (const Topic& topic : topics_) {
+    if (!topic.handlers.empty()) wanted.push_back({topic.channel, topic.wanted, topic.share});
+  }
+  Filter(ChannelFilter(wanted));
+}
+
+void Bus::Filter(const std::vector<sock_filter>& program) {
+  if (!filtered_) return;
+  for (const int socket : sockets_) {
+    if (AttachFilter(socket, program)) continue;
+    throw std::runtime_error(fmt::format("the kernel refuses a filter of {} instructions: {}",
+                                         program.size(), std::strerror(errno)));
+  }
+}
+
+void Bus::SubscribeAll(Watcher watcher) {
+  watcher_ = std::move(watcher);
+  if (tcpq_) {
+    return tcpq_->SubscribeAll(
+        [this](std::string_view channel, Bytes bytes) { Watch(channel, bytes); });
+  }
+  lcm_subscription_t* handle = lcm_subscribe(lcm_, ".*", &Bus::OnAnything, this);
+  if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
+  lcm_subscription_set_queue_capacity(handle, 0);
+  Filter(AnyChannelFilter());
+}
+
+void Bus::Publish(const Topic& topic, Bytes bytes) {
+  if (bytes.size() > kMaxMessageBytes) {
+    throw std::runtime_error(fmt::format("{} takes {} bytes, at most {} fit", topic.channel,
+                                         bytes.size(), kMaxMessageBytes));
+  }
+  if (seal_) bytes = seal_->Sign(topic.channel, bytes);
+  errno = 0;
+  const bool sent = tcpq_ ? tcpq_->Publish(topic.channel, bytes)
+                          : lcm_publish(lcm_, topic.channel.c_str(), bytes.data(),
+                                        static_cast<unsigned>(bytes.size())) == 0;
+  if (!sent) return OnFailedSend(errno);
+  if (failed_sends_.since) OnSentAgain();
+  if (in_memory_ && !topic.handlers.empty()) ++waiting_;
+}
+
+void Bus::OnFailedSend(int error) {
+  ++failed_sends_.count;
+  failed_sends_.error = tcpq_ ? tcpq_->trouble() : std::strerror(error);
+  if (!failed_sends_.since) failed_sends_.since = Clock::now();
+}
+
+void Bus::OnSentAgain() {
+  failed_sends_.since.reset();
+  if (membership_) membership_->Renew();
+}
+
+void Bus::JoinAgainIfSilent() {
+  const TimePoint now = Clock::now();
+  if (now - std::max(now_, joined_) < kJoinAgainEvery) return;
+  joined_ = now;
+  membership_->Renew();
+}
+
+bool Bus::Wait(Duration timeout) {
+  if (faults_) {
+    if (HandleDue()) return true;
+    timeout = std::min(timeout, faults_->NextDue() - Clock::now());
+  }
+  if (waiting_ == 0 && !Readable(timeout)) {
+    if (membership_) JoinAgainIfSilent();
+    return faults_ && HandleDue();
+  }
+  now_ = Clock::now();
+  Handle();
+  return true;
+}
+
+void Bus::Handle() {
+  if (waiting_ > 0) --waiting_;
+  if (tcpq_) {
+    tcpq_->Handle();
+  } else if (lcm_handle(lcm_) != 0) {
+    throw std::runtime_error(fmt::format("LCM lost {}", url_));
+  }
+  if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
+}
+
+bool Bus::HandleDue() {
+  now_ = Clock::now();
+  const auto message = faults_->Due(now_);
+  if (message) CallHandlers(TopicOf(message->channel), message->bytes);
+  return message.has_value();
+}
+
+bool Bus::Readable(Duration timeout) {
+  if (tcpq_) return tcpq_->Readable(timeout);
+  const int ready = PollFor(fd_, POLLIN, timeout);
+  if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
+  return ready > 0;
+}
+
+void Bus::Drain() {
+  for (int i = 0; i < kDrained; ++i) {
+    if (waiting_ > 0) {
+      Handle();  // no need to ask the kernel, nor to look at the clock
+    } else if (!Wait(Duration::zero())) {
+      return;
+    }
+  }
+}
+
+void Bus::OnMessage(const _lcm_recv_buf_t* buffer, const char* /*channel*/, void* topic) {
+  Deliver({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
+          *static_cast<Topic*>(topic));
+}
+
+void Bus::Deliver(Bytes bytes, Topic& topic) {
+  Bus& bus = *topic.bus;
+  try {
+    if (bus.faults_) {
+      bus.faults_->Take(topic.channel, bytes, bus.now_);
+    } else {
+      bus.CallHandlers(topic, bytes);
+    }
+  } catch (...) {
+    bus.parked_ = std::current_exception();
+  }
+}
+
+void Bus::OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus) {
+  static_cast<Bus*>(bus)->Watch(
+      channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+}
+
+void Bus::Watch(std::string_view channel, Bytes bytes) {
+  try {
+    watcher_(channel, bytes);
+  } catch (...) {
+    parked_ = std::current_exception();
+  }
+}
+
+void Bus::CallHandlers(Topic& topic, Bytes bytes) {
+  if (seal_ || LooksSigned(bytes)) {
+    const auto verified = Verified(topic, bytes);
+    if (!verified) return;
+    bytes = *verified;
+  }
+  topic.arrival.Renew(bytes, now_);
+  for (const Handler& handler : topic.handlers) handler(topic.arrival);
+}
+
+std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
+  const auto count = [this](std::int64_t Unverified::*kind) {
+    ++(unverified_.*kind);
+    ++(not_taken_.*kind);
+  };
+  if (!seal_) {
+    // The bytes go to the decoder as they are. It refuses a message with a signature behind its
+    // payload. An unsigned payload may by chance end like a signature, and must still be read.
+    count(&Unverified::no_key);
+    return bytes;
+  }
+  const MessageSigner::Opened opened = seal_->Open(topic.channel, bytes);
+  if (opened.verdict == MessageSigner::Verdict::kGood) return opened.payload;
+  count(opened.verdict == MessageSigner::Verdict::kNotSigned ? &Unverified::not_signed
+                                                             : &Unverified::badly_signed);
+  return std::nullopt;
+}
+
+std::string SignatureTrouble(const Bus::Unverified& unverified) {
+  if (unverified.badly_signed > 0) {
+    return fmt::format(
+        "{} messages with a wrong signature were refused: do all processes have the same key?",
+        unverified.badly_signed);
+  }
+  if (unverified.not_signed > 0) {
+    return fmt::format(
+        "{} messages without a signature were refused: do all processes have the key?",
+        unverified.not_signed);
+  }
+  if (unverified.no_key > 0) return "traffic on this network is signed; give --key";
+  return "";
+}
+
+std::string FreshMulticastUrl() {
+  // The registered and dynamic ports above LCM's own 7667. The group is LCM's.
+  constexpr std::uint32_t kFirstPort = 20000;
+  constexpr std::uint32_t kPorts = 40000;
+  return fmt::format("udpm://239.255.76.67:{}?ttl=0", kFirstPort + randombytes_uniform(kPorts));
+}
+
+}  // namespace fogline

@@ -1,0 +1,178 @@
+// LCM behind one small class: the URL gets safe options, channel names are taken literally, receive
+// queues do not have LCM's limit of 30, and handlers may throw. On request it signs messages or
+// simulates a bad network.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/transport/faults.h"
+#include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/wire/arrival.h"
+#include "services/runtime/wire/channel_filter.h"
+#include "services/runtime/wire/message_signer.h"
+
+struct _lcm_t;
+struct _lcm_recv_buf_t;
+
+namespace fogline {
+
+namespace tcpq {
+class Client;
+}
+
+/// One connection to an LCM network, for one thread. With memq:// a message reaches only the
+/// subscribers of the same object.
+class Bus {
+ public:
+  using Handler = std::function<void(Arrival&)>;
+
+  /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and asks for a receive buffer
+  ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise. tcpq's host
+  ///     may be a name; url() then gives its address in numbers.
+  /// @throws InputError when LCM cannot open it, std::runtime_error if there is no tcpq relay
+  explicit Bus(const std::string& url);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// From now on signs the messages that it sends, and refuses messages without a correct
+  /// signature.
+  /// @throws InputError if the kernel does not filter the messages that reach LCM's parser, which
+  ///     runs before the signature is checked: with mpudpm, or if the kernel takes no filter
+  void Secure(const MessageSigner& seal);
+  bool secured() const { return seal_.has_value(); }
+  /// From now on receives messages as over a bad network.
+  void Impair(const Faults& faults) { faults_ = faults; }
+
+  /// Calls `handler` from Wait() for every message on exactly this channel. Handlers of one channel
+  /// are called in the order of their subscription. The message is valid during the call. An
+  /// exception of a handler comes out of Wait().
+  /// @param contents the messages that `handler` needs; if the kernel can, it drops the other
+  ///     messages of the channel
+  void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
+
+  /// Takes only a share of a channel's messages, in [0, 1], if the kernel can choose; 1: all of
+  /// them.
+  void SetSampleRate(std::string_view channel, double share);
+
+  /// Calls `watcher` from Wait() for every message on any channel that is no larger than Fogline's
+  /// messages may be. May be called once at most.
+  using Watcher = std::function<void(std::string_view channel, Bytes)>;
+  void SubscribeAll(Watcher watcher);
+
+  /// Sends bytes; they are copied before it returns. A message that cannot be sent is lost, as on a
+  /// bad network, and counted.
+  /// @throws std::runtime_error if there are more than kMaxMessageBytes
+  void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
+
+  /// A channel on this bus, for callers that publish often: a search by name takes time.
+  struct Topic;
+  Topic& TopicOf(std::string_view channel);
+  void Publish(const Topic& topic, Bytes bytes);
+
+  /// Messages that could not be sent.
+  struct FailedSends {
+    std::int64_t count = 0;  // since the beginning
+    std::string error;       // why the last of these could not
+    // Since then nothing could be sent; nullopt if the last message was sent.
+    std::optional<TimePoint> since;
+  };
+  const FailedSends& failed_sends() const { return failed_sends_; }
+
+  /// Handles one message, waiting for it up to `timeout`. @return whether there was one.
+  bool Wait(Duration timeout);
+
+  /// Handles the messages that are there, but at most kDrained. The limit is for memq: the messages
+  /// that its handlers publish are there at once, so without it a run in memory would never let its
+  /// caller look at the clock.
+  void Drain();
+  static constexpr int kDrained = 1000;
+
+  /// Messages whose signature was not verified.
+  struct Unverified {
+    std::int64_t not_signed = 0;    // refused: there is a key here
+    std::int64_t badly_signed = 0;  // refused
+    std::int64_t no_key = 0;        // signed, but this process has no key: the decoder refuses them
+  };
+  /// Since the beginning.
+  const Unverified& unverified() const { return unverified_; }
+  /// Since the last call: for several users of a bus whose counts are added up.
+  Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
+
+  /// Readable when Wait(0) would handle a message; with tcpq only once all earlier messages are
+  /// handled.
+  int fd() const { return fd_; }
+  const std::string& url() const { return url_; }
+
+ private:
+  bool Readable(Duration timeout);
+  void OnFailedSend(int error);
+  void OnSentAgain();
+  void JoinAgainIfSilent();
+  void Handle();
+  bool HandleDue();
+  /// The bytes to be decoded: the signed payload, or, without a key, the message as it is; nullopt
+  /// if the message is refused.
+  std::optional<Bytes> Verified(const Topic& topic, Bytes bytes);
+  void CallHandlers(Topic& topic, Bytes bytes);
+  void FilterSockets();
+  /// @throws std::runtime_error if the kernel refuses a filter although it took earlier ones
+  void Filter(const std::vector<sock_filter>& program);
+  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
+  static void Deliver(Bytes bytes, Topic& topic);
+  static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
+  void Watch(std::string_view channel, Bytes bytes);
+
+  std::string url_;
+  _lcm_t* lcm_ = nullptr;               // nullptr with tcpq
+  std::unique_ptr<tcpq::Client> tcpq_;  // instead of lcm_, with tcpq
+  int fd_ = -1;
+  std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
+  bool filtered_ = true;      // the kernel filters what reaches LCM's parser
+  // Where the group is heard and reached as the route leads, which may change; and when it was seen
+  // to last that it is joined there.
+  std::optional<GroupMembership> membership_;
+  TimePoint joined_{};
+  FailedSends failed_sends_;
+  // With memq only this object publishes: waiting_ counts its messages that wait to be handled.
+  bool in_memory_;
+  std::int64_t waiting_ = 0;
+  TimePoint now_{};            // when Wait() last handled a message
+  std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
+  Watcher watcher_;            // of all channels, if there is one
+  std::exception_ptr parked_;  // an exception of a handler; it may not pass through LCM's C code
+  std::optional<MessageSigner> seal_;
+  std::optional<Faults> faults_;
+  Unverified unverified_;
+  Unverified not_taken_;
+};
+
+/// What the user of a process should know about keys and signatures; "" if there is nothing.
+std::string SignatureTrouble(const Bus::Unverified& unverified);
+
+/// LCM has one subscription for all handlers of a channel: a message is dispatched once and decoded
+/// once.
+struct Bus::Topic {
+  Bus* bus;
+  std::string channel;
+  Arrival arrival;
+  std::vector<Handler> handlers;
+  Contents wanted;  // the messages that the handlers need
+  double share = 1;
+};
+
+/// A multicast URL of this machine only, on a port drawn at random, so that two runs hardly ever
+/// share one.
+std::string FreshMulticastUrl();
+
+}  // namespace fogline

@@ -1,0 +1,64 @@
+// A bad network on request. Messages that a process receives are lost, doubled, delayed, overtaken
+// or damaged before the process reads them. It works on any bus, in memory too. It is seeded: the
+// fate of the n-th message that a role receives depends only on the seed, the role and n.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/graph.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// How bad the network is: the probability of each fault for each message, independently.
+struct FaultRates {
+  double loss = 0;
+  double duplicate = 0;
+  double reorder = 0;   // held back for 2 ms, so that later messages overtake it
+  double truncate = 0;  // cut off at a random place
+  double flip = 0;      // one bit of it is wrong
+  double delay_ms = 0;  // of every message
+  std::int64_t seed = 1;
+
+  /// Whether messages may arrive with changed contents. Only a signature detects that.
+  bool Damage() const { return truncate > 0 || flip > 0; }
+};
+
+/// "loss=0.3,delay_ms=5,seed=7": any of the members of FaultRates by name. @throws InputError
+FaultRates ParseFaults(std::string_view text);
+
+class Faults {
+ public:
+  Faults(const FaultRates& rates, Role role) : rates_(rates), role_(role) {}
+
+  /// A message has come.
+  void Take(std::string_view channel, Bytes bytes, TimePoint now);
+
+  struct Message {
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
+  /// The next message whose delivery is due by now; nullopt if there is none.
+  std::optional<Message> Due(TimePoint now);
+  /// When the next delivery is due; TimePoint::max() if no message waits.
+  TimePoint NextDue() const;
+
+ private:
+  enum class Draw : std::uint8_t { kLossOrDuplicate, kReorderOrTruncate, kFlip, kPlaces };
+  /// Two uniform random numbers for the message that has just come.
+  std::array<double, 2> Uniform2(Draw draw) const;
+
+  FaultRates rates_;
+  Role role_;
+  std::int64_t count_ = 0;                     // messages taken
+  std::multimap<TimePoint, Message> waiting_;  // by the time when they are due
+};
+
+}  // namespace fogline

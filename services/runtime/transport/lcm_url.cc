@@ -1,0 +1,153 @@
+#include "services/runtime/transport/lcm_url.h"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+
+#include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/transport/tcpq_url.h"
+
+namespace fogline {
+namespace {
+
+constexpr std::string_view kUdpm = "udpm://";
+constexpr std::string_view kTcpq = "tcpq://";
+constexpr std::uint16_t kLcmPort = 7667;
+// The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
+constexpr std::size_t kMaxAnnounced = 200;
+
+template <class Integer>
+std::optional<Integer> ParseNumber(std::string_view text) {
+  Integer value{};
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return value;
+}
+
+std::optional<in_addr> ParseAddress(std::string_view text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, std::string(text).c_str(), &address) != 1) return std::nullopt;
+  return address;
+}
+
+/// Removes the text before `separator`, and the separator, from the front of `text`.
+/// @return that text
+std::string_view TakeUntil(char separator, std::string_view& text) {
+  const std::string_view part = text.substr(0, text.find(separator));
+  text.remove_prefix(std::min(text.size(), part.size() + 1));
+  return part;
+}
+
+bool ReadOptions(std::string_view options, MulticastAddress& address) {
+  while (!options.empty()) {
+    std::string_view value = TakeUntil('&', options);
+    const std::string_view name = TakeUntil('=', value);
+    const auto number = ParseNumber<int>(value);
+    if (!number || *number < 0) return false;
+    if (name == "ttl") {
+      address.ttl = *number;
+    } else if (name != "recv_buf_size") {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether an address belongs to one of this machine's interfaces or to loopback: all of
+/// 127.0.0.0/8 is this machine.
+bool IsOfThisMachine(in_addr numeric) {
+  if (ntohl(numeric.s_addr) >> 24 == IN_LOOPBACKNET) return true;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == numeric.s_addr;
+  }
+  freeifaddrs(interfaces);
+  return found;
+}
+
+/// The place of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
+struct RelayPlace {
+  std::string_view host;
+  std::optional<std::uint16_t> port;  // nullopt if it is no number
+
+  bool operator==(const RelayPlace&) const = default;
+};
+
+std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
+  if (!url.starts_with(kTcpq)) return std::nullopt;
+  url.remove_prefix(kTcpq.size());
+  if (url.empty()) url = "127.0.0.1";
+  RelayPlace place{.host = TakeUntil(':', url), .port = tcpq::kDefaultPort};
+  if (!url.empty()) place.port = ParseNumber<std::uint16_t>(url);
+  return place;
+}
+
+bool IsRelayOfThisMachine(std::string_view url) {
+  const auto place = ParseRelayUrl(url);
+  if (!place || !place->port || *place->port == 0) return false;
+  const auto address = ParseAddress(place->host);
+  return address && address->s_addr != htonl(INADDR_ANY) && IsOfThisMachine(*address);
+}
+
+}  // namespace
+
+std::optional<std::string> UrlOfEnvironment() {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  if (url == nullptr || *url == '\0') return std::nullopt;
+  return url;
+}
+
+std::string NetworkUrl(const std::string& given) {
+  if (!given.empty()) return given;
+  return UrlOfEnvironment().value_or(std::string(kLcmDefaultUrl));
+}
+
+bool IsLcmUrl(std::string_view url) {
+  constexpr std::array<std::string_view, 4> kProviders{kUdpm, "mpudpm://", kTcpq, "memq://"};
+  return std::ranges::any_of(
+      kProviders, [url](std::string_view provider) { return url.starts_with(provider); });
+}
+
+std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
+  if (!url.starts_with(kUdpm)) return std::nullopt;
+  std::string_view options = url.substr(kUdpm.size());
+  std::string_view place = TakeUntil('?', options);
+  // LCM's own ttl is 0, as is ours (bus.h).
+  MulticastAddress address{.group = *GroupOf(url), .port = kLcmPort, .ttl = 0};
+  TakeUntil(':', place);
+  if (!place.empty()) {
+    const auto port = ParseNumber<std::uint16_t>(place);
+    if (!port) return std::nullopt;
+    address.port = *port;
+  }
+  if (!ParseAddress(address.group) || !ReadOptions(options, address)) return std::nullopt;
+  return address;
+}
+
+bool SameNetwork(std::string_view a, std::string_view b) {
+  const auto one = ParseMulticastUrl(a);
+  const auto other = ParseMulticastUrl(b);
+  if (one && other) return one->group == other->group && one->port == other->port;
+  const auto relay = ParseRelayUrl(a);
+  if (relay && relay->port) return relay == ParseRelayUrl(b);
+  return TakeUntil('?', a) == TakeUntil('?', b);
+}
+
+bool MayBeAnnounced(std::string_view url) {
+  if (url.size() > kMaxAnnounced) return false;
+  if (url.starts_with(kTcpq)) return url != kTcpq && IsRelayOfThisMachine(url);
+  const auto address = ParseMulticastUrl(url);
+  return address && IsMulticast(address->group) && address->port != 0 && address->ttl <= 1;
+}
+
+}  // namespace fogline

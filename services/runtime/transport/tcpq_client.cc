@@ -1,0 +1,270 @@
+#include "services/runtime/transport/tcpq_client.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "common/file.h"
+#include "common/process/poll.h"
+
+namespace fogline::tcpq {
+namespace {
+
+// How long a relay may take to answer, and how long it may accept no byte.
+constexpr Duration kAnswerLimit = milliseconds(5000);
+constexpr Duration kStallLimit = milliseconds(5000);
+// kAnswerLimit for a relay that the client connects to again. The process does nothing else
+// meanwhile.
+constexpr Duration kSecondAnswerLimit = milliseconds(200);
+constexpr std::size_t kReadBytes = 64 << 10;
+// The most bytes from the relay that are kept while the relay takes nothing.
+constexpr std::size_t kMaxReceived = 64 << 20;
+// After publishing this many bytes without reading, the client reads: a relay disconnects clients
+// that read nothing.
+constexpr std::size_t kReadEvery = 256 << 10;
+
+/// A file that is never readable: polled in place of a lost connection, it wakes no program.
+int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
+
+}  // namespace
+
+/// The connection is lost.
+class Client::Lost : public std::runtime_error {
+ public:
+  Lost(const Endpoint& relay, std::string_view why)
+      : std::runtime_error(fmt::format("lost the relay {}: {}", relay.Url(), why)) {}
+};
+
+Client::Client(const std::string& url, const Limits& limits)
+    : endpoint_(ResolveUrl(url)),
+      limits_(limits),
+      parser_(kRelayMagic, limits),
+      chunk_(kReadBytes) {
+  try {
+    fd_ = Connect(kAnswerLimit);
+    Greet(kAnswerLimit);
+  } catch (...) {
+    if (fd_ >= 0) close(fd_);
+    throw;
+  }
+}
+
+Client::~Client() {
+  if (fd_ >= 0) close(fd_);
+}
+
+int Client::Connect(Duration limit) const {
+  const int connection = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (connection < 0) {
+    ThrowIfExhausted(errno, endpoint_.ToString());
+    throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
+  }
+  const int on = 1;  // sends each message at once, not after the previous packet is acknowledged
+  setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(endpoint_.port);
+  inet_pton(AF_INET, endpoint_.address.c_str(), &address.sin_addr);
+  int error = 0;
+  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    error = errno;
+  }
+  if (error == EINPROGRESS) {
+    socklen_t size = sizeof(error);
+    error = ETIMEDOUT;
+    if (PollFor(connection, POLLOUT, limit) > 0) {
+      getsockopt(connection, SOL_SOCKET, SO_ERROR, &error, &size);
+    }
+  }
+  if (error == 0) return connection;
+  close(connection);
+  throw std::runtime_error(
+      error == ECONNREFUSED
+          ? fmt::format("nobody listens on {}; start fogline-relay there", endpoint_.ToString())
+          : fmt::format("cannot reach {}: {}", endpoint_.ToString(), std::strerror(error)));
+}
+
+void Client::Greet(Duration limit) {
+  frame_.clear();
+  AppendHello(kClientMagic, frame_);
+  for (const std::string& pattern : patterns_) {
+    AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
+  }
+  SendFrame();
+  const TimePoint end = Clock::now() + limit;
+  while (!parser_.Greeted()) {
+    if (!Ready(POLLIN, end - Clock::now())) {
+      if (Clock::now() < end) continue;  // a signal
+      throw std::runtime_error(
+          fmt::format("{} takes connections but does not answer: is it a fogline-relay?",
+                      endpoint_.ToString()));
+    }
+    Receive();
+    parser_.Append(received_);
+    received_.clear();
+    if (!parser_.Greeted() && !parser_.error().empty()) {
+      throw Lost(endpoint_, parser_.error());
+    }
+  }
+}
+
+void Client::Subscribe(std::string_view channel, std::string_view pattern, Handler handler) {
+  handlers_.emplace_back(channel, std::move(handler));
+  Subscribe(pattern);
+}
+
+void Client::SubscribeAll(Watcher watcher) {
+  watcher_ = std::move(watcher);
+  Subscribe(".*");
+}
+
+void Client::Subscribe(std::string_view pattern) {
+  patterns_.emplace_back(pattern);
+  if (lost_) return;  // Greet() subscribes when the relay is back
+  frame_.clear();
+  AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
+  try {
+    SendFrame();
+  } catch (const Lost& lost) {
+    Lose(lost);
+  }
+}
+
+bool Client::Publish(std::string_view channel, Bytes bytes) {
+  if (channel.size() > limits_.channel || bytes.size() > limits_.payload) {
+    throw std::runtime_error(
+        fmt::format("{} bytes on \"{}\" are too many for tcpq", bytes.size(), channel));
+  }
+  if (lost_) return false;
+  frame_.clear();
+  AppendFrame(FrameType::kPublish, channel, bytes, frame_);
+  try {
+    SendFrame();
+    return true;
+  } catch (const Lost& lost) {
+    Lose(lost);
+    return false;
+  }
+}
+
+void Client::SendFrame() {
+  std::optional<TimePoint> stalled;
+  for (std::size_t sent = 0; sent < frame_.size();) {
+    const ssize_t size = send(fd_, frame_.data() + sent, frame_.size() - sent, MSG_NOSIGNAL);
+    if (size > 0) {
+      sent += static_cast<std::size_t>(size);
+      stalled.reset();
+      continue;
+    }
+    if (size < 0 && errno != EAGAIN && errno != EINTR) throw Lost(endpoint_, std::strerror(errno));
+    const TimePoint now = Clock::now();
+    if (!stalled) stalled = now;
+    if (now - *stalled >= kStallLimit) {
+      throw Lost(endpoint_,
+                 fmt::format("it has taken nothing for {} s", Milliseconds(kStallLimit) / 1000));
+    }
+    const bool room = received_.size() < kMaxReceived;
+    if (Ready(room ? POLLOUT | POLLIN : POLLOUT, *stalled + kStallLimit - now) && room) Receive();
+  }
+  sent_unread_ += frame_.size();
+  if (sent_unread_ < kReadEvery) return;
+  sent_unread_ = 0;
+  while (received_.size() < kMaxReceived && Ready(POLLIN, Duration::zero())) Receive();
+}
+
+bool Client::Readable(Duration timeout) {
+  if (Parse()) return true;
+  if (lost_) return ConnectAgain(timeout) && Parse();
+  try {
+    if (received_.empty()) {
+      if (!Ready(POLLIN, timeout)) return false;
+      Receive();
+      sent_unread_ = 0;
+    }
+    parser_.Append(received_);
+    received_.clear();
+    const bool there = Parse();
+    if (!parser_.error().empty()) {
+      throw Lost(endpoint_, "it " + parser_.error());
+    }
+    return there;
+  } catch (const Lost& lost) {
+    Lose(lost);
+    return false;
+  }
+}
+
+bool Client::Parse() {
+  if (!next_) next_ = parser_.Next();
+  return next_.has_value();
+}
+
+void Client::Handle() {
+  if (!Parse()) return;
+  const Frame frame = *next_;  // its bytes stay valid until Readable() appends others
+  next_.reset();
+  for (const auto& [channel, handler] : handlers_) {
+    if (channel == frame.name) handler(frame.payload);
+  }
+  if (watcher_) watcher_(frame.name, frame.payload);
+}
+
+bool Client::Ready(short events, Duration timeout) const {
+  return PollFor(fd_, events, timeout) > 0;
+}
+
+void Client::Receive() {
+  const ssize_t size = recv(fd_, chunk_.data(), chunk_.size(), 0);
+  if (size > 0) received_.insert(received_.end(), chunk_.begin(), chunk_.begin() + size);
+  if (size > 0 || (size < 0 && (errno == EAGAIN || errno == EINTR))) return;
+  throw Lost(endpoint_, size == 0 ? "it has closed the connection" : std::strerror(errno));
+}
+
+void Client::Lose(const Lost& lost) {
+  lost_ = true;
+  trouble_ = lost.what();
+  tries_ = 0;
+  try_at_ = Clock::now();
+  BeReplacedBy(QuietFile());
+}
+
+void Client::BeReplacedBy(int file) {
+  dup3(file, fd_, O_CLOEXEC);
+  close(file);
+}
+
+bool Client::ConnectAgain(Duration timeout) {
+  const TimePoint now = Clock::now();
+  if (tries_ > kTries || try_at_ - now > timeout) {
+    PollFor(-1, 0, timeout);
+    return false;
+  }
+  PollFor(-1, 0, try_at_ - now);
+  try_at_ = Clock::now() + kTryEvery;
+  if (++tries_ > kTries) throw ConnectionLost(trouble_);
+  parser_ = FrameParser(kRelayMagic, limits_);
+  received_.clear();
+  next_.reset();
+  try {
+    BeReplacedBy(Connect(kSecondAnswerLimit));
+    Greet(kSecondAnswerLimit);
+  } catch (const std::runtime_error&) {  // the relay is not back yet
+    BeReplacedBy(QuietFile());
+    return false;
+  }
+  lost_ = false;
+  return true;
+}
+
+}  // namespace fogline::tcpq

@@ -1,0 +1,117 @@
+// A client of a tcpq relay, in place of LCM's own client. LCM's client aborts when the relay ends,
+// waits without limit for a server that says nothing, takes five system calls and packets for a
+// message, and loses its connection to a signal. This one speaks the same protocol with the same
+// relays.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/transport/tcpq_url.h"
+#include "services/runtime/wire/tcpq_frame.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::tcpq {
+
+/// The relay has ended or stopped working, and does not come back.
+class ConnectionLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One connection, for one thread.
+///
+/// Readable() makes a lost connection again as soon as the relay is back. All messages in the
+/// meantime are lost, those of this process and those of others. If the relay is not back after
+/// kTries, Readable() throws ConnectionLost once. After that it only waits, so that the process can
+/// end a run in order.
+class Client {
+ public:
+  using Handler = std::function<void(Bytes)>;
+
+  /// How often, and how many times, a lost connection is tried again: 10 s in all. A killed relay
+  /// of a run is started again within a second, unless the machine is short of processes. A person
+  /// who restarts a relay takes longer than any role waits.
+  static constexpr Duration kTryEvery = milliseconds(50);
+  static constexpr int kTries = 200;
+
+  /// Connects to the relay of a tcpq URL. A message above `limits` ends the connection.
+  /// @throws InputError for a bad URL or an unknown host, std::runtime_error if there is no relay
+  explicit Client(const std::string& url, const Limits& limits = {});
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Calls `handler` from Handle() for every message on exactly this channel that is published
+  /// after the relay has got the subscription. The relay gives a publisher its own messages, too.
+  /// @param pattern the regular expression for this channel
+  void Subscribe(std::string_view channel, std::string_view pattern, Handler handler);
+
+  /// Calls `watcher` from Handle() for every message on any channel that is published after the
+  /// relay has got the subscription. May be called once at most.
+  using Watcher = std::function<void(std::string_view channel, Bytes)>;
+  void SubscribeAll(Watcher watcher);
+
+  /// Sends a message. While the relay takes nothing, the client keeps the bytes that the relay
+  /// sends, so that the two do not wait for each other. @return false if the connection is lost
+  bool Publish(std::string_view channel, Bytes bytes);
+
+  /// Waits up to `timeout` for a message, or less if only a part of a message comes.
+  /// @return whether a message is there
+  bool Readable(Duration timeout);
+
+  /// Handles the message that is there, if any.
+  void Handle();
+
+  /// The descriptor stays the same when the connection is made again.
+  int fd() const { return fd_; }
+  /// Why the connection was last lost.
+  const std::string& trouble() const { return trouble_; }
+  /// The URL with its address in numbers, as LCM's programs need it.
+  std::string url() const { return endpoint_.Url(); }
+
+ private:
+  class Lost;
+  /// A socket that is connected to the relay.
+  int Connect(Duration limit) const;
+  /// Sends the client's greeting and its subscriptions, and waits until the relay has answered.
+  void Greet(Duration limit);
+  void Subscribe(std::string_view pattern);
+  bool Ready(short events, Duration timeout) const;
+  void SendFrame();
+  void Receive();
+  bool Parse();
+  /// Tries to connect again if a try is due. @return whether the relay is back
+  bool ConnectAgain(Duration timeout);
+  /// Marks the connection as lost: nothing is sent or received until the relay is back.
+  void Lose(const Lost& lost);
+  /// Makes fd_ refer to this file.
+  void BeReplacedBy(int file);
+
+  Endpoint endpoint_;
+  int fd_ = -1;
+  Limits limits_;
+  FrameParser parser_;
+  std::optional<Frame> next_;        // the frame to be handled next
+  std::vector<std::uint8_t> chunk_;  // buffer for a read from the kernel
+  // Not yet parsed, because a handler may still use the last frame.
+  std::vector<std::uint8_t> received_;
+  std::vector<std::uint8_t> frame_;    // being sent
+  std::size_t sent_unread_ = 0;        // bytes sent since the last read
+  std::vector<std::string> patterns_;  // subscriptions for the relay
+  std::vector<std::pair<std::string, Handler>> handlers_;
+  Watcher watcher_;
+  bool lost_ = false;
+  std::string trouble_;
+  int tries_ = 0;  // to connect again
+  TimePoint try_at_{};
+};
+
+}  // namespace fogline::tcpq

@@ -1,0 +1,65 @@
+#include "services/runtime/transport/tcpq_url.h"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+
+#include <array>
+#include <charconv>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+
+namespace fogline::tcpq {
+namespace {
+
+constexpr std::string_view kScheme = "tcpq://";
+
+std::uint16_t ParsePort(std::string_view text, std::string_view what) {
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, port);
+  if (error != std::errc{} || rest != end) {
+    throw InputError(fmt::format("error: {}: \"{}\" is no port (0 to 65535)", what, text));
+  }
+  return port;
+}
+
+std::string AddressOf(const std::string& host, std::string_view what) {
+  // "localhost" is always this machine (RFC 6761, section 6.3), even if /etc/hosts does not say so.
+  if (host == "localhost") return "127.0.0.1";
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (const int error = getaddrinfo(host.c_str(), nullptr, &hints, &found); error != 0) {
+    throw InputError(
+        fmt::format("error: {}: no IPv4 address for \"{}\": {}", what, host, gai_strerror(error)));
+  }
+  const in_addr address = reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr;
+  freeaddrinfo(found);
+  std::array<char, INET_ADDRSTRLEN> text{};
+  inet_ntop(AF_INET, &address, text.data(), text.size());
+  return text.data();
+}
+
+}  // namespace
+
+Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
+  const std::size_t colon = host_and_port.find(':');
+  const std::string host(host_and_port.substr(0, colon));
+  Endpoint endpoint{.address = "127.0.0.1", .port = kDefaultPort};
+  if (colon != std::string_view::npos) {
+    endpoint.port = ParsePort(host_and_port.substr(colon + 1), what);
+  }
+  if (!host.empty()) endpoint.address = AddressOf(host, what);
+  return endpoint;
+}
+
+Endpoint ResolveUrl(std::string_view url) {
+  const Endpoint endpoint = Resolve(url.substr(kScheme.size()), url);
+  if (endpoint.port == 0) throw InputError(fmt::format("error: {}: nobody listens on port 0", url));
+  return endpoint;
+}
+
+}  // namespace fogline::tcpq

@@ -1,0 +1,37 @@
+// The options for a process's traffic: a key, faults. They are the same for `fogline run` and for
+// every service.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/runtime/transport/bus.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fogline {
+
+struct TrafficOptions {
+  std::string key_file;  // "": unsigned
+  std::string faults;    // text for ParseFaults(); "": none
+};
+
+/// Adds --key and --faults to a command line.
+void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
+
+/// The key; nullopt if the options name none.
+/// @throws InputError when its file is wrong, or FOGLINE_KEY is set but empty
+std::optional<SigningKey> KeyOf(const TrafficOptions& options);
+
+/// Applies the options to a bus.
+/// @param role of this process; nullopt when the process has every role
+/// @throws InputError when the options, or the key's file, are wrong
+void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus);
+
+/// The options as arguments for another process.
+std::vector<std::string> ToArguments(const TrafficOptions& options);
+
+}  // namespace fogline

@@ -1,0 +1,69 @@
+// A message that has come. All its readers on one bus share it.
+#pragma once
+
+#include <any>
+
+#include "common/clock.h"
+#include "services/runtime/wire/refusals.h"
+
+namespace fogline {
+
+/// The bytes of a message and the decoded message. The bytes are decoded and checked when the first
+/// reader asks, and only once for all readers. One object serves all messages of a channel, so only
+/// the first message allocates memory.
+class Arrival {
+ public:
+  /// Another message has come. Its bytes stay valid while its readers are being called.
+  void Renew(Bytes bytes, TimePoint time) {
+    bytes_ = bytes;
+    time_ = time;
+    examined_ = false;
+  }
+
+  Bytes bytes() const { return bytes_; }
+  /// When the message was handled. The bus does not read its clock for every message, so the time
+  /// may be that of a message shortly before.
+  TimePoint time() const { return time_; }
+  /// For readers that need only the bytes.
+  operator Bytes() const { return bytes_; }
+
+  /// The message; nullptr if the bytes are not exactly one M, or a value is not finite.
+  template <class M>
+  const M* As() {
+    const Reading<M>& reading = Read<M>();
+    return reading.wrong == nullptr ? &reading.message : nullptr;
+  }
+  /// Why the bytes are not a valid M; nullptr if they are.
+  template <class M>
+  RefusalCounter Wrong() {
+    return Read<M>().wrong;
+  }
+
+ private:
+  template <class M>
+  struct Reading {
+    M message{};
+    RefusalCounter wrong = nullptr;
+  };
+
+  template <class M>
+  const Reading<M>& Read() {
+    auto* reading = std::any_cast<Reading<M>>(&reading_);
+    if (reading == nullptr) {
+      reading = &reading_.emplace<Reading<M>>();
+      examined_ = false;
+    }
+    if (!examined_) {
+      reading->wrong = Examine(bytes_, reading->message);
+      examined_ = true;
+    }
+    return *reading;
+  }
+
+  Bytes bytes_;
+  TimePoint time_{};
+  std::any reading_;       // a Reading<M>
+  bool examined_ = false;  // whether reading_ belongs to bytes_
+};
+
+}  // namespace fogline

@@ -1,0 +1,31 @@
+// Which build of a program a process is. The linker writes a hash of everything that it links into
+// the program (its GNU build id). So two programs of one name have the same build id only if their
+// code is the same. The build id distinguishes builds but proves nothing: a process may report any
+// number.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// The first 8 bytes of a program's GNU build id.
+using BuildId = std::int64_t;
+/// The build id of a program that has none or does not report one.
+inline constexpr BuildId kUnknownBuild = 0;
+
+/// The build id in the first bytes of a program's file (ELF, of this machine's byte order); the
+/// bytes must include its notes.
+BuildId BuildIdIn(Bytes file);
+/// The build id of a program's file.
+BuildId BuildIdOf(const std::filesystem::path& program);
+/// The build id of this process, even if its file has been replaced since its start.
+BuildId OwnBuildId();
+
+/// 16 hexadecimal digits, or "unknown".
+std::string BuildText(BuildId build);
+
+}  // namespace fogline

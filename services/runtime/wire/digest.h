@@ -1,0 +1,49 @@
+// The digest of a run. Equal digests mean that two runs are equal bit by bit.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// BLAKE2b-256 of bytes that come in pieces.
+class Hash {
+ public:
+  Hash();
+  ~Hash();
+  Hash(Hash&&) noexcept;
+  Hash& operator=(Hash&&) noexcept;
+
+  void Add(Bytes piece);
+  /// 64 hexadecimal digits, of everything added so far.
+  std::string Hex() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// BLAKE2b-256 over the payloads of all kStep channels in the order of the graph table, step by
+/// step, with the run id left out: it names a run, it does not describe one.
+class Digest {
+ public:
+  /// Adds one encoded message (at least kHeaderEnd bytes).
+  void Add(Bytes message) {
+    hash_.Add(message.first(kRunIdOffset));
+    hash_.Add(message.subspan(kStepOffset));
+  }
+
+  /// 64 hexadecimal digits, of everything added so far.
+  std::string Hex() const { return hash_.Hex(); }
+
+ private:
+  Hash hash_;
+};
+
+/// BLAKE2b-256 of a text, 64 hexadecimal digits.
+std::string HashOf(std::string_view text);
+
+}  // namespace fogline

@@ -1,0 +1,36 @@
+// Whether the roles of a run are of the runner's build. Programs built from other sources may
+// compute other results, even if their message types agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "fogline/status_t.hpp"
+#include "services/graph.h"
+#include "services/runtime/wire/build_id.h"
+
+namespace fogline {
+
+/// The build of each role's program in the runner's folder, by place in kRoles.
+using RoleBuilds = std::array<BuildId, kRoles.size()>;
+
+/// A process whose build is not the runner's or is not known.
+struct OtherBuild {
+  Role role;
+  std::int32_t pid;
+  std::string host;
+  BuildId build;  // the build that it reports
+  BuildId ours;   // build of the role's program in the runner's folder
+
+  /// "driver (pid 4711 on lab2) is of build 1f..., that of the runner is 2e...", or what is not
+  /// known.
+  std::string Text() const;
+};
+
+/// The build of a role's process if it differs from the expected one or is unknown; nullopt if they
+/// are equal.
+std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const RoleBuilds& ours);
+
+}  // namespace fogline

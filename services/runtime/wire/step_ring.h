@@ -1,0 +1,83 @@
+// The last steps of one channel as encoded bytes, by step.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+
+/// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder.
+/// So a step that a role may still ask for is in the ring of its producer, or it is older than
+/// kRingSteps. Then it is on disk, and the recorder answers for it.
+inline constexpr std::int64_t kRingSteps = 64;
+inline constexpr std::int64_t kMaxAhead = 32;
+static_assert(2 * kMaxAhead <= kRingSteps, "there would be steps that nobody answers for");
+
+/// Far beyond any run. Arithmetic on steps up to here does not overflow.
+inline constexpr std::int64_t kMaxStep = 1'000'000'000'000;
+
+/// Steps `first` to `first + count - 1`.
+struct StepRange {
+  std::int64_t first;
+  std::int64_t count;
+};
+
+/// The slot of a step in any ring.
+inline constexpr std::size_t RingSlot(std::int64_t step) {
+  return static_cast<std::size_t>(step % kRingSteps);
+}
+
+/// Ring of messages. Buffers are reused: once they have grown, nothing is allocated.
+class StepRing {
+ public:
+  /// What to do with a message that arrives.
+  enum class Verdict {
+    kNew,        // Store() it
+    kDuplicate,  // known already, or so old that it is not needed
+    // The same step with other bytes: two producers, or a producer whose output is not a function
+    // of its inputs.
+    kConflict,
+    kOutOfWindow,  // so far ahead that it cannot belong to a run in lockstep
+    kElsewhere,    // of no use here, but known to be under way
+    kLate,         // came after the end of its step
+  };
+
+  /// @param needed the next step that the reader of this ring needs
+  Verdict Classify(std::int64_t step, Bytes bytes, std::int64_t needed) const {
+    const Slot& slot = slots_[RingSlot(step)];
+    if (slot.step == step) {
+      return std::ranges::equal(slot.bytes, bytes) ? Verdict::kDuplicate : Verdict::kConflict;
+    }
+    if (slot.step > step || step < needed) return Verdict::kDuplicate;
+    return step < needed + kRingSteps ? Verdict::kNew : Verdict::kOutOfWindow;
+  }
+
+  void Store(std::int64_t step, Bytes bytes) {
+    Slot& slot = slots_[RingSlot(step)];
+    slot.step = step;
+    slot.bytes.assign(bytes.begin(), bytes.end());
+    newest_ = std::max(newest_, step);
+  }
+
+  bool Has(std::int64_t step) const { return step >= 0 && slots_[RingSlot(step)].step == step; }
+
+  /// Bytes of a step that the ring has.
+  Bytes Get(std::int64_t step) const { return slots_[RingSlot(step)].bytes; }
+
+  /// Highest step stored, -1 if none.
+  std::int64_t newest() const { return newest_; }
+
+ private:
+  struct Slot {
+    std::int64_t step = -1;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::array<Slot, kRingSteps> slots_;
+  std::int64_t newest_ = -1;
+};
+
+}  // namespace fogline

@@ -1,0 +1,105 @@
+// Checks that the posterior of the LiDAR's modes is a probability: in a world that follows the
+// model, a share p of the steps with posterior p is deceived.
+#include "services/decision/conflict/over_time/lidar_modes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "common/random.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kRadarStd_m = 0.8;
+constexpr double kLidarStd_m = 0.03;
+constexpr std::int64_t kSequences = 50'000;
+constexpr std::int64_t kLength = 12;  // steps; only the last one counts
+
+/// A LiDAR that behaves as the model says. It draws the gap of each step independently.
+class Lidar {
+ public:
+  Lidar(const ConflictParameters& model, const Random& random) : model_(model), random_(random) {}
+
+  bool deceived() const { return mode_ != LidarMode::kClean; }
+
+  Evidence At(std::int64_t step) {
+    const auto [change, echo] = random_.Uniform2(step, 0);
+    const auto [stray, place] = random_.Uniform2(step, 1);
+    const auto [radar, lidar] = random_.Normal2(step, 2);
+    const double gap_m = model_.fog_return_m + 10 * random_.Uniform2(step, 3)[0] - 5;
+    const auto& next = model_.mode_transition[static_cast<std::size_t>(mode_)];
+    mode_ = change < next[0]             ? LidarMode::kClean
+            : change < next[0] + next[1] ? LidarMode::kFogReturn
+                                         : LidarMode::kDropout;
+    Evidence evidence{.radar = {true, gap_m + kRadarStd_m * radar, kRadarStd_m},
+                      .lidar = {false, 0, kLidarStd_m},
+                      .prediction = {}};
+    if (echo >= model_.echo_probability[static_cast<std::size_t>(mode_)]) return evidence;
+    evidence.lidar.valid = true;
+    evidence.lidar.range_m = Range(gap_m, stray, place, lidar);
+    return evidence;
+  }
+
+ private:
+  double Range(double gap_m, double stray, double place, double noise) const {
+    const double anywhere_m = place * model_.stray_range_m;
+    switch (mode_) {
+      case LidarMode::kClean:
+        return gap_m + kLidarStd_m * noise;
+      case LidarMode::kDropout:
+        return anywhere_m;
+      case LidarMode::kFogReturn:
+        break;
+    }
+    if (stray < model_.stray_share) return anywhere_m;
+    // The distribution Beta(2, 20) has mean 1/11 and variance 40/(22^2 23).
+    const double scatter_m2 = model_.fog_scatter_m * model_.fog_scatter_m * 40 / (22 * 22 * 23);
+    return model_.fog_return_m + model_.fog_scatter_m / 11 +
+           std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;
+  }
+
+  ConflictParameters model_;
+  Random random_;
+  LidarMode mode_ = LidarMode::kClean;
+};
+
+/// Posteriors and deceived steps of one class. The difference of their sums has mean 0.
+struct Claims {
+  double said = 0;
+  double variance = 0;  // variance of the number of deceived steps
+  int were_so = 0;
+  int count = 0;
+};
+
+TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
+  // GIVEN many LiDARs with a fog return near the car, so that all probabilities occur
+  ConflictParameters model;
+  model.fog_return_m = 40;
+  constexpr std::array kEdges{0.02, 0.5, 0.98};  // most steps are almost certain
+  std::array<Claims, kEdges.size() + 1> claims{};
+  for (std::int64_t sequence = 0; sequence < kSequences; ++sequence) {
+    Lidar lidar(model, Random(sequence, Stream::kLidar));
+    LidarModeConflict posterior(model);
+    double p = 0;
+    for (std::int64_t step = 0; step < kLength; ++step) p = posterior.Step(lidar.At(step));
+    Claims& claim = claims[static_cast<std::size_t>(
+        std::ranges::count_if(kEdges, [p](double edge) { return p >= edge; }))];
+    claim.said += p;
+    claim.variance += p * (1 - p);
+    claim.were_so += lidar.deceived() ? 1 : 0;
+    ++claim.count;
+  }
+  // THEN in each class the number of deceived steps is the sum of the posteriors
+  for (const Claims& claim : claims) {
+    EXPECT_GT(claim.count, 100) << claim.said;
+    EXPECT_NEAR(claim.were_so, claim.said, 4 * std::sqrt(claim.variance)) << claim.count;
+  }
+}
+
+}  // namespace
+}  // namespace fogline

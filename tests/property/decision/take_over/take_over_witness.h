@@ -1,0 +1,229 @@
+// Random events for the fallback, and an independent computation of what the fallback must do. It
+// uses the inputs alone, not services/decision/take_over/take_over.cc. Both share the drawn
+// take-over time and the course of a manoeuvre, which have tests of their own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "common/random.h"
+#include "services/decision/take_over/take_over.h"
+
+namespace fogline::test {
+
+/// Rounding of sums of seconds and of accelerations.
+inline constexpr double kTolerance = 1e-9;
+
+/// The random numbers of one sequence. No other object draws from them.
+class Dice {
+ public:
+  explicit Dice(std::int64_t sequence) : random_(sequence, Stream::kFaults) {}
+  double Between(double low, double high) {
+    return low + (high - low) * random_.Uniform2(draw_++, 0)[0];
+  }
+  bool Chance(double probability) { return Between(0, 1) < probability; }
+
+ private:
+  Random random_;
+  std::int64_t draw_ = 0;
+};
+
+inline Scenario AnyScenario(Dice& dice) {
+  Scenario scenario;
+  constexpr std::array kSteps_s{0.1, 0.2, 0.5};
+  scenario.step_s = kSteps_s[static_cast<std::size_t>(dice.Between(0, 3))];
+  scenario.seed = static_cast<std::int64_t>(dice.Between(1, 1e6));
+  scenario.arbitrator.take_over = {
+      .mode = TakeOverMode::kRequested,
+      .lead_s = dice.Between(10, 14),
+      .escalation_s = dice.Between(0.1, 14),
+      .time = {.mean_s = dice.Between(0.3, 14), .std_s = dice.Between(0.1, 5)},
+      .absent_probability = dice.Chance(0.3) ? 1.0 : 0.0,
+      .required_readiness = dice.Between(0, 1),
+      .recovery_s = dice.Between(0, 3),
+      .severe_ttc_s = dice.Between(0.5, 3),
+      .comfort_deceleration_mps2 = dice.Between(0.5, 3),
+      .emergency_deceleration_mps2 = dice.Between(3.2, 4),
+      .jerk_mps3 = dice.Between(0.5, 20)};
+  return scenario;
+}
+
+/// Random inputs of the state machine: offers, wishes and cars ahead, and a car of its own. The
+/// brake of this car may fail for a while.
+class Events {
+ public:
+  explicit Events(Dice& dice, double step_s)
+      : dice_(dice), step_s_(step_s), brakes_(!dice.Chance(0.15)) {
+    track_.valid = true;
+    inputs_.speed_mps = dice.Chance(0.5) ? dice.Between(0, 5) : dice.Between(5, 40);
+    inputs_.applied_mps2 = dice.Between(-6, 2);
+    danger_ = dice.Chance(0.3) ? 0.05 : 0.002;
+  }
+
+  const TakeOverInputs& Next() {
+    if (dice_.Chance(0.03)) inputs_.human_wanted = !inputs_.human_wanted;
+    inputs_.automation_mps2 = dice_.Between(-6, 2);
+    inputs_.human_mps2 = dice_.Between(-8, 3);
+    inputs_.readiness = dice_.Between(0, 1);
+    track_.state[0] = dice_.Chance(danger_) ? dice_.Between(-1, 20) : dice_.Between(80, 200);
+    track_.state[1] = dice_.Between(-20, 20);
+    track_.valid = dice_.Chance(0.95);
+    inputs_.track = dice_.Chance(0.95) ? &track_ : nullptr;
+    return inputs_;
+  }
+
+  /// Draws other offers. They have no influence on the events.
+  void OtherOffers() {
+    const bool eager = dice_.Chance(0.5);
+    inputs_.automation_mps2 =
+        eager ? std::max(0.0, inputs_.applied_mps2) + dice_.Between(0.1, 1) : dice_.Between(-6, 2);
+    inputs_.human_mps2 = dice_.Between(-8, 3);
+  }
+  const TakeOverInputs& inputs() const { return inputs_; }
+
+  void Apply(double acceleration_mps2) {
+    inputs_.applied_mps2 = acceleration_mps2;
+    if (dice_.Chance(0.005)) brakes_ = true;
+    if (brakes_) {
+      inputs_.speed_mps = std::clamp(inputs_.speed_mps + step_s_ * acceleration_mps2, 0.0, 60.0);
+    }
+  }
+
+ private:
+  Dice& dice_;
+  double step_s_;
+  bool brakes_;
+  double danger_;
+  track_t track_{};
+  TakeOverInputs inputs_;
+};
+
+/// The independent computation: it finds from the inputs alone which events hold, and which command
+/// each source would give.
+class Witness {
+ public:
+  explicit Witness(const Scenario& scenario)
+      : section_(scenario.arbitrator.take_over),
+        step_s_(scenario.step_s),
+        random_(scenario.seed, Stream::kTakeOver),
+        time_(section_.time, section_.lead_s),
+        manoeuvre_({.deceleration_mps2 = section_.emergency_deceleration_mps2,
+                    .jerk_mps3 = section_.jerk_mps3},
+                   scenario.step_s) {}
+
+  TakeOverEvents EventsOf(std::int64_t step, const TakeOverInputs& inputs) const {
+    TakeOverEvents events =
+        Bit(inputs.human_wanted ? TakeOverEvent::kWanted : TakeOverEvent::kCalm);
+    const auto set = [&events](TakeOverEvent event, bool holds) {
+      if (holds) events = static_cast<TakeOverEvents>(events | Bit(event));
+    };
+    set(TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
+    set(TakeOverEvent::kStandstill, inputs.speed_mps < 0.01 && inputs.applied_mps2 <= 0);
+    set(TakeOverEvent::kOverdue, stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
+    if (!requested_) return events;
+    const double t = Since(step, *requested_);
+    const bool answered = section_.absent_probability < 1 && t + kTolerance >= time_s_;
+    set(TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
+    set(TakeOverEvent::kAcknowledged, answered && time_s_ <= section_.lead_s);
+    set(TakeOverEvent::kReady, answered && inputs.readiness >= section_.required_readiness);
+    set(TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
+    set(TakeOverEvent::kRecovered,
+        transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
+    return events;
+  }
+
+  /// The command of `authority` in this step. For a manoeuvre it may be called only once per step.
+  double Source(Authority authority, const TakeOverInputs& inputs) {
+    const double least =
+        std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
+    switch (authority) {
+      case Authority::kAutomation:
+        return inputs.automation_mps2;
+      case Authority::kEasing:
+        return std::min(inputs.automation_mps2,
+                        std::max(0.0, inputs.applied_mps2 - section_.jerk_mps3 * step_s_));
+      case Authority::kHuman:
+        return inputs.human_mps2;
+      case Authority::kComfort:
+        return manoeuvre_.Step(inputs.speed_mps, std::clamp(-inputs.automation_mps2, least,
+                                                            section_.emergency_deceleration_mps2));
+      case Authority::kHard:
+        return manoeuvre_.Step(inputs.speed_mps);
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
+  void Note(const TakeOverOutcome& out, TakeOverState before, std::int64_t step,
+            const TakeOverInputs& inputs) {
+    using enum TakeOverState;
+    if (out.state == kDemand && before == kAutomated) {
+      requested_ = step;
+      transferred_.reset();
+      time_s_ = time_.Draw(random_, step);
+    }
+    if (out.state == kRecovering && before != kRecovering) transferred_ = step;
+    if (out.authority >= Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
+    if (out.state == before) return;
+    stage_.reset();
+    if (out.state != kMrmComfort && out.state != kMrmEmergency) return;
+    stage_ = step;
+    overdue_s_ =
+        2 * LongestStop_s(inputs, out.state == kMrmComfort ? section_.comfort_deceleration_mps2
+                                                           : section_.emergency_deceleration_mps2);
+  }
+
+  /// The command that `authority` would give in this step if it had control.
+  double Would(Authority authority, const TakeOverInputs& inputs) const {
+    Witness other = *this;
+    if (authority >= Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
+    return other.Source(authority, inputs);
+  }
+  /// The command of a manoeuvre without a limit of deceleration: only the jerk or the stop limits
+  /// it.
+  double WouldAtMost(const TakeOverInputs& inputs) const {
+    Witness other = *this;
+    other.manoeuvre_.Begin(inputs.applied_mps2);
+    return other.manoeuvre_.Step(inputs.speed_mps, std::numeric_limits<double>::infinity());
+  }
+
+  double SinceRequest(std::int64_t step) const { return Since(step, *requested_); }
+  static double Ttc_s(const TakeOverInputs& inputs) {
+    const bool closing =
+        inputs.track != nullptr && inputs.track->valid && inputs.track->state[1] < 0;
+    return closing ? inputs.track->state[0] / -inputs.track->state[1]
+                   : std::numeric_limits<double>::infinity();
+  }
+  bool manoeuvred() const { return manoeuvre_.begun(); }
+
+ private:
+  /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
+  /// road: apply the brake, slow down, release the brake, and three steps.
+  double LongestStop_s(const TakeOverInputs& inputs, double deceleration_mps2) const {
+    const double push = std::max(inputs.applied_mps2, 0.0);
+    const double jerk = section_.jerk_mps3;
+    return std::abs(inputs.applied_mps2 + deceleration_mps2) / jerk +
+           (inputs.speed_mps + push * push / (2 * jerk) + push * step_s_) / deceleration_mps2 +
+           deceleration_mps2 / jerk + 3 * step_s_;
+  }
+  double Since(std::int64_t step, std::int64_t begin) const {
+    return static_cast<double>(step - begin) * step_s_;
+  }
+
+  TakeOverSection section_;
+  double step_s_;
+  Random random_;
+  TakeOverTime time_;
+  MinimalRisk manoeuvre_;
+  std::optional<std::int64_t> requested_;
+  std::optional<std::int64_t> transferred_;
+  double time_s_ = 0;
+  std::optional<std::int64_t> stage_;  // first step of the current stage of the manoeuvre
+  double overdue_s_ = 0;               // the stage is overdue after this time
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,52 @@
+// The scenarios that Fogline ships, and the digest of a scenario when it runs in this process.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/runtime/wire/digest.h"
+
+namespace fogline::test {
+
+/// A recorded leader drives for many minutes. So many steps of it prove as much.
+inline constexpr std::int64_t kMostSteps = 1000;
+
+struct Shipped {
+  std::string name;
+  Scenario scenario;
+};
+
+/// Every scenario in a folder, by name, at most kMostSteps long.
+inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder) {
+  std::vector<Shipped> shipped;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path& file = entry.path();
+    if (file.extension() != ".json" || file.stem().extension() == ".schema") continue;
+    const std::int64_t steps = std::min(LoadScenario(file).steps, kMostSteps);
+    shipped.push_back(
+        {file.stem().string(), LoadScenario(file, {"/steps=" + std::to_string(steps)})});
+  }
+  std::ranges::sort(shipped, {}, &Shipped::name);
+  return shipped;
+}
+
+/// Runs to the end. @return the digest. @pre `loop` is new or restarted
+inline std::string DigestOf(ClosedLoop& loop) {
+  Digest digest;
+  std::vector<std::uint8_t> buffer;
+  loop.Run(0, [&](const StepView& step) {
+    step.ForEachMessage([&](const auto& message) {
+      Encode(message, buffer);
+      digest.Add(buffer);
+    });
+  });
+  return digest.Hex();
+}
+
+}  // namespace fogline::test

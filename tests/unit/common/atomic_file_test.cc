@@ -1,0 +1,229 @@
+// Files that exist either completely or not at all, and checks whether they could be written.
+#include "common/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include "common/errors.h"
+#include "tests/support/command.h"
+
+namespace fogline {
+namespace {
+
+class WholeFileTest : public testing::Test {
+ protected:
+  static std::string Content(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  bool IsEmpty() const { return std::filesystem::is_empty(folder_.path()); }
+
+  /// The error text for a file that cannot be written.
+  template <class Call>
+  static std::string ErrorOf(const Call& call) {
+    try {
+      call();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const test::ScratchFolder folder_;
+  const std::string file_ = folder_.File("result.csv");
+};
+
+TEST_F(WholeFileTest, HasItsNameOnlyWhenItIsFinished) {
+  {
+    AtomicFile file(file_);
+    file.Write("half");
+    EXPECT_FALSE(std::filesystem::exists(file_));
+  }
+  EXPECT_TRUE(IsEmpty());
+  AtomicFile file(file_);
+  file.Write("whole");
+  file.Finish();
+  EXPECT_EQ(Content(file_), "whole");
+}
+
+TEST_F(WholeFileTest, ReplacesNoFolder) {
+  const std::string folder = folder_.path().string();
+  EXPECT_EQ(ErrorOf([&] { AtomicFile file(folder); }),
+            folder + ": error: cannot write: it is a folder");
+}
+
+TEST_F(WholeFileTest, FollowsNoLinkThatLiesWhereItWrites) {
+  // GIVEN links with the names that an attacker could predict
+  const std::string precious = folder_.File("precious");
+  std::ofstream(precious) << "precious";
+  for (const char* ending : {".part", ".tmp", "~"}) {
+    std::filesystem::create_symlink(precious, file_ + ending);
+  }
+  AtomicFile file(file_);
+  file.Write("page");
+  file.Finish();
+  EXPECT_EQ(Content(precious), "precious");
+  EXPECT_EQ(Content(file_), "page");
+}
+
+TEST_F(WholeFileTest, TwoAtOnceEachWriteAWholeFile) {
+  AtomicFile one(file_);
+  AtomicFile two(file_);
+  one.Write("one, ");
+  two.Write("two, ");
+  one.Write("whole");
+  two.Write("whole");
+  one.Finish();
+  EXPECT_EQ(Content(file_), "one, whole");
+  two.Finish();
+  EXPECT_EQ(Content(file_), "two, whole");
+}
+
+TEST_F(WholeFileTest, HasTheRightsOfAnyNewFile) {
+  const mode_t before = umask(027);
+  {
+    AtomicFile file(file_);
+    file.Finish();
+  }
+  umask(before);
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0640));
+}
+
+TEST_F(WholeFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
+  std::filesystem::create_directory(folder_.File("elsewhere"));
+  const std::string target = folder_.File("elsewhere/target.csv");
+  std::ofstream(target) << "old";
+  std::filesystem::create_symlink("elsewhere/target.csv", file_);
+  {
+    EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+    AtomicFile file(file_);
+    file.Write("new");
+    file.Finish();
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(file_));
+  EXPECT_EQ(Content(target), "new");
+  std::filesystem::remove(target);
+  EXPECT_THAT(ErrorOf([&] { AtomicFile file(file_); }), testing::EndsWith(", which is not there"));
+}
+
+TEST_F(WholeFileTest, HandsEverythingToADeviceAtTheEnd) {
+  AtomicFile nothing("/dev/null");
+  nothing.Write("page");
+  nothing.Finish();
+  AtomicFile full("/dev/full");
+  full.Write("page");
+  EXPECT_THROW(full.Finish(), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(WholeFileTest, HandsEverythingToThePipeThatAProcessReads) {
+  const std::string pipe = folder_.File("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(ErrorOf([&] { AtomicFile file(pipe); }),
+            pipe + ": error: cannot write: no process reads this pipe");
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  {
+    EXPECT_EQ(ErrorOf([&] { RequireWritable(pipe, "--out"); }), "");
+    AtomicFile file(pipe);
+    file.Write("page");
+    char byte = 0;
+    EXPECT_EQ(read(reader, &byte, 1), -1) << "half of it is not to be seen";
+    file.Finish();
+  }
+  std::array<char, 8> page{};
+  EXPECT_EQ(read(reader, page.data(), page.size()), 4);
+  EXPECT_EQ(std::string(page.data()), "page");
+  close(reader);
+}
+
+TEST_F(WholeFileTest, GoesOnBehindWhatAnOpenDescriptorHasWritten) {
+  const int out = open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(write(out, "before ", 7), 7);
+  {
+    AtomicFile file("/dev/fd/" + std::to_string(out));
+    file.Write("page");
+    file.Finish();
+  }
+  ASSERT_EQ(write(out, " after", 6), 6);
+  close(out);
+  EXPECT_EQ(Content(file_), "before page after");
+}
+
+TEST_F(WholeFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
+  const auto is_page = [](const std::filesystem::path& file) {
+    return Content(file.string()).starts_with("page");
+  };
+  const auto error = [&](bool force) {
+    return ErrorOf([&] { RefuseToReplace(file_, "--out", force, "page", is_page); });
+  };
+  EXPECT_EQ(error(false), "");
+  std::ofstream(file_) << "page one";
+  EXPECT_EQ(error(false), file_ + ": error: --out: the file exists; --force replaces it");
+  EXPECT_EQ(error(true), "");
+  std::ofstream(file_) << "thesis";
+  EXPECT_EQ(error(true),
+            file_ + ": error: --out: the file is no page and stays as it is, --force or not");
+  EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/dev/null", "--out", false, "page", is_page); }), "");
+}
+
+TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+  EXPECT_TRUE(IsEmpty());
+  std::ofstream(file_) << "of before";
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+  EXPECT_EQ(Content(file_), "of before");
+  // A missing folder for files is made.
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures"), "--png"); }), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
+}
+
+TEST_F(WholeFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
+  const std::string slip = folder_.File("nonexist/dir");
+  const std::string none = ": error: --out: there is no folder " + slip;
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(slip + "/result.csv", "--out"); }),
+            slip + "/result.csv" + none);
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures", "--out"); }),
+            slip + "/figures" + none);
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures/", "--out"); }),
+            slip + "/figures" + none);
+  EXPECT_TRUE(IsEmpty());
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures/"), "--out"); }), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
+}
+
+TEST_F(WholeFileTest, IsTriedBeforehandWithoutTouchingTheHalfThatSomebodyElseWrites) {
+  const std::string part = file_ + ".part";
+  std::ofstream(part) << "half of another's";
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
+  EXPECT_EQ(Content(part), "half of another's");
+}
+
+TEST_F(WholeFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
+  std::ofstream(file_) << "no folder";
+  const std::string folder = folder_.path().string();
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(file_ + "/below", "--out"); }),
+            file_ + "/below: error: --out: cannot write: Not a directory");
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(folder, "--out"); }),
+            folder + ": error: --out: cannot write: it is a folder");
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(file_, "--png"); }),
+            file_ + ": error: --png: cannot write: Not a directory");
+  // In this folder no user can make a file.
+  EXPECT_EQ(ErrorOf([&] { RequireWritable("/proc/result.csv", "--out"); }),
+            "/proc/result.csv: error: --out: cannot write: No such file or directory");
+  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder("/proc", "--logs"); }),
+            "/proc: error: --logs: cannot write: No such file or directory");
+}
+
+}  // namespace
+}  // namespace fogline

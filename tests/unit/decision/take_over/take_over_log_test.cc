@@ -1,0 +1,156 @@
+#include "services/decision/take_over/take_over_log.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include "services/models/minimal_risk/modes.h"
+
+namespace fogline {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_mps2 = 0) {
+  arbitration_t command{};
+  command.header.step = step;
+  command.header.utime = step * 100'000;
+  command.mode = mode;
+  command.acceleration_mps2 = acceleration_mps2;
+  command.lambda_human = HumanDrives(mode) ? 1 : 0;
+  return command;
+}
+
+/// The same command with another authority of the human.
+arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
+                     double acceleration_mps2 = 0) {
+  arbitration_t command = Command(step, mode, acceleration_mps2);
+  command.lambda_human = lambda_human;
+  return command;
+}
+
+/// Adds the command of a side that drives alone, so its offer is the command.
+void Add(TakeOverLog& log, const arbitration_t& command) {
+  log.Add(command, command.acceleration_mps2);
+}
+
+std::vector<std::int64_t> Transfers(const TakeOverLog& log) {
+  std::vector<std::int64_t> steps;
+  for (const TakeOverEntry& entry : log.entries()) {
+    if (entry.transfer) steps.push_back(entry.step);
+  }
+  return steps;
+}
+
+std::vector<std::string_view> Texts(const TakeOverLog& log) {
+  std::vector<std::string_view> texts;
+  for (const TakeOverEntry& entry : log.entries()) texts.push_back(entry.logged);
+  return texts;
+}
+
+TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION, 0.3));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  Add(log, Command(2, arbitration_t::REQUEST_URGENT));
+  Add(log, Command(3, arbitration_t::HANDOVER, 0.3));
+  Add(log, Command(4, arbitration_t::RECOVERING, 0.305));
+  Add(log, Command(5, arbitration_t::RECOVERING, 0.315));
+  Add(log, Command(6, arbitration_t::HUMAN));
+  Add(log, Command(7, arbitration_t::AUTOMATION));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
+                                      "escalation", "acknowledgement", "transfer to the driver",
+                                      "first effective input of the driver", "driver recovered",
+                                      "return to automation"));
+  EXPECT_THAT(
+      log.requests(),
+      ElementsAre(TakeOverRequest{
+          .requested = 1, .escalated = 2, .acknowledged = 3, .transferred = 4, .effective = 5}));
+  EXPECT_EQ(log.entries()[5].utime, 500'000);
+}
+
+TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::MRM_COMFORT));
+  Add(log, Command(2, arbitration_t::MRM_EMERGENCY));
+  Add(log, Command(3, arbitration_t::MRM_DONE));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "request to take over",
+                          "comfortable manoeuvre", "emergency manoeuvre", "standstill, locked"));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(TakeOverRequest{.requested = 0, .manoeuvre = 1, .standstill = 3}));
+}
+
+TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION, 1));
+  Add(log, Command(1, arbitration_t::HUMAN, 1));
+  Add(log, Command(2, arbitration_t::HUMAN, 1.5));
+  Add(log, Command(3, arbitration_t::AUTOMATION, 1));
+  Add(log, Command(4, arbitration_t::MINIMAL_RISK, -1));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the driver",
+                                      "first effective input of the driver", "return to automation",
+                                      "manoeuvre begins: inputs have failed"));
+  EXPECT_THAT(log.requests(), IsEmpty());
+}
+
+TEST(TakeOverLogTest, DoesNotCountAnInputOfADriverWhomNobodyAskedForTheLastRequest) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed
+  Add(log, Command(2, arbitration_t::HUMAN, 2));
+  EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0}));
+  EXPECT_THAT(log.entries(), SizeIs(4));
+}
+
+TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST, 0.3));
+  Add(log, Command(1, arbitration_t::HANDOVER, 0.3));
+  log.Add(Shared(2, arbitration_t::RECOVERING, 0.4, 0.3), 0.3);
+  log.Add(Shared(3, arbitration_t::RECOVERING, 0.8, 0.3), 0.3);
+  log.Add(Shared(4, arbitration_t::HUMAN, 1, 0.5), 0.5);
+  log.Add(Shared(5, arbitration_t::AUTOMATION, 0.6), 0);
+  log.Add(Shared(6, arbitration_t::AUTOMATION, 0.2), 0);
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "request to take over", "acknowledgement",
+                          "driver takes part", "transfer to the driver", "driver recovered",
+                          "first effective input of the driver", "driver is released",
+                          "return to automation"));
+  EXPECT_THAT(Transfers(log), ElementsAre(3, 6));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(TakeOverRequest{
+                  .requested = 0, .acknowledged = 1, .transferred = 3, .effective = 4}));
+}
+
+TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithoutAShare) {
+  TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::HANDOVER));
+  log.Add(Shared(2, arbitration_t::RECOVERING, 0, -2), 1);
+  log.Add(Shared(3, arbitration_t::RECOVERING, 0.1, -3), 0.09);
+  log.Add(Shared(4, arbitration_t::HUMAN, 0.1, -3), std::nullopt);
+  EXPECT_THAT(Transfers(log), IsEmpty());
+  EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1}));
+  // With a tenth of the authority, a change of the offer counts by a tenth.
+  log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
+  EXPECT_THAT(log.requests(),
+              ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1, .effective = 5}));
+  EXPECT_THAT(Transfers(log), IsEmpty());
+}
+
+TEST(TakeOverLogTest, GivesAModeThatIsNoneANameOfItsOwn) {
+  EXPECT_EQ(NameOfMode(arbitration_t::MINIMAL_RISK), "MINIMAL_RISK");
+  EXPECT_EQ(NameOfMode(arbitration_t::HUMAN), "MANUAL");
+  EXPECT_EQ(NameOfMode(77), "UNKNOWN");
+}
+
+}  // namespace
+}  // namespace fogline

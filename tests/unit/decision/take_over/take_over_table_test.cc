@@ -1,0 +1,77 @@
+#include "services/decision/take_over/take_over_table.h"
+
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+using enum TakeOverState;
+using Change = std::pair<TakeOverState, TakeOverState>;
+
+constexpr unsigned kEventSets = 1U << 10;
+
+// A second list of the allowed changes of state, without their events.
+const std::set<Change> kChanges{
+    {kAutomated, kDemand},        {kDemand, kUrgentDemand},       {kDemand, kHandover},
+    {kDemand, kMrmComfort},       {kDemand, kMrmEmergency},       {kUrgentDemand, kHandover},
+    {kUrgentDemand, kMrmComfort}, {kUrgentDemand, kMrmEmergency}, {kHandover, kRecovering},
+    {kHandover, kMrmComfort},     {kHandover, kMrmEmergency},     {kRecovering, kManual},
+    {kManual, kAutomated},        {kMrmComfort, kMrmDone},        {kMrmComfort, kRecovering},
+    {kMrmComfort, kMrmEmergency}, {kMrmEmergency, kMrmDone},      {kMrmEmergency, kRecovering},
+    {kMrmEmergency, kMrmFailed},  {kMrmFailed, kMrmDone},         {kMrmFailed, kRecovering}};
+
+TEST(TakeOverTableTest, HasTheseChangesOfStateAndNoOtherWhateverHappens) {
+  std::set<Change> seen;
+  std::set<const TakeOverRow*> taken;
+  for (const TakeOverStateInfo& info : kTakeOverStates) {
+    for (unsigned events = 0; events < kEventSets; ++events) {
+      for (const bool manoeuvred : {false, true}) {
+        const TakeOverRow* row =
+            TakeOverRowOf(info.state, static_cast<TakeOverEvents>(events), manoeuvred);
+        if (row == nullptr) continue;
+        ASSERT_EQ(row->state, info.state);
+        ASSERT_NE(events & Bit(row->event), 0U);
+        seen.emplace(row->state, row->next);
+        taken.insert(row);
+      }
+    }
+  }
+  EXPECT_EQ(seen, kChanges);
+  EXPECT_EQ(taken.size(), kTakeOverTable.size()) << "a row that nothing leads to";
+}
+
+TEST(TakeOverTableTest, NeverLeavesTheLock) {
+  for (unsigned events = 0; events < kEventSets; ++events) {
+    EXPECT_EQ(TakeOverRowOf(kMrmDone, static_cast<TakeOverEvents>(events), true), nullptr);
+  }
+}
+
+TEST(TakeOverTableTest, NeverReturnsToTheAutomationAfterAManoeuvre) {
+  for (const TakeOverStateInfo& info : kTakeOverStates) {
+    for (unsigned events = 0; events < kEventSets; ++events) {
+      const TakeOverRow* row = TakeOverRowOf(info.state, static_cast<TakeOverEvents>(events), true);
+      EXPECT_TRUE(row == nullptr || row->next != kAutomated);
+    }
+  }
+}
+
+TEST(TakeOverTableTest, GivesEachStateAModeOfItsOwnAndThePapersTheirs) {
+  std::set<std::int8_t> modes;
+  std::set<std::string_view> names;
+  for (const TakeOverStateInfo& info : kTakeOverStates) {
+    modes.insert(info.mode);
+    names.insert(info.name);
+    EXPECT_NE(info.mode, arbitration_t::MINIMAL_RISK) << "failed inputs are another matter";
+  }
+  EXPECT_EQ(modes.size(), kTakeOverStates.size());
+  EXPECT_EQ(names.size(), kTakeOverStates.size());
+  EXPECT_EQ(InfoOf(kAutomated).mode, 0);
+  EXPECT_EQ(InfoOf(kManual).mode, 1);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,284 @@
+#include "services/decision/take_over/take_over.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+using enum TakeOverState;
+
+constexpr double kStep_s = 0.1;
+
+/// A scenario whose driver takes over after `time_s`, within a few milliseconds.
+Scenario Answering(double time_s) {
+  Scenario scenario;
+  scenario.step_s = kStep_s;
+  scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
+  scenario.arbitrator.take_over.time = {
+      .model = TakeOverModel::kLogNormal, .mean_s = time_s, .std_s = 1e-4};
+  return scenario;
+}
+
+Scenario Absent() {
+  Scenario scenario = Answering(2);
+  scenario.arbitrator.take_over.absent_probability = 1;
+  return scenario;
+}
+
+track_t Ahead(double distance_m, double closing_mps) {
+  track_t track{};
+  track.valid = true;
+  track.state[0] = distance_m;
+  track.state[1] = -closing_mps;
+  return track;
+}
+
+/// The state machine, and a car that carries out its commands.
+class TakeOverTest : public testing::Test {
+ protected:
+  void Begin(const Scenario& scenario) { take_over_.emplace(scenario); }
+
+  const TakeOverOutcome& Step() {
+    inputs_.track = &track_;
+    const TakeOverOutcome& out = take_over_->Step(Header(step_++), inputs_);
+    inputs_.applied_mps2 = out.acceleration_mps2;
+    if (brakes_) {
+      inputs_.speed_mps = std::max(0.0, inputs_.speed_mps + kStep_s * out.acceleration_mps2);
+    }
+    return out;
+  }
+
+  /// Steps until the state changes, or until this time. @return seconds since the start of the run
+  double StepWhile(TakeOverState state, double limit_s = 100) {
+    while (take_over_->outcome().state == state && Now() < limit_s) Step();
+    return Now();
+  }
+
+  TakeOverState state() const { return take_over_->outcome().state; }
+  double Now() const { return static_cast<double>(step_ - 1) * kStep_s; }
+
+  static header_t Header(std::int64_t step) {
+    header_t header{};
+    header.step = step;
+    return header;
+  }
+
+  std::optional<TakeOver> take_over_;
+  TakeOverInputs inputs_{.human_wanted = true,
+                         .automation_mps2 = 0.5,
+                         .human_mps2 = -0.7,
+                         .readiness = 1,
+                         .speed_mps = 20};
+  track_t track_ = Ahead(50, 0);
+  bool brakes_ = true;
+  std::int64_t step_ = 0;
+};
+
+TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
+  Begin(Answering(2));
+  EXPECT_EQ(Step().state, kDemand);
+  EXPECT_NEAR(StepWhile(kDemand), 2.0, 1.5 * kStep_s);
+  EXPECT_EQ(state(), kHandover);
+  const TakeOverOutcome& out = Step();
+  EXPECT_EQ(out.state, kRecovering);
+  EXPECT_EQ(out.acceleration_mps2, -0.7);
+}
+
+// The log (TakeOverLog) determines the fourth time, that of the first effective input.
+TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
+  Begin(Answering(2.05));
+  inputs_.human_wanted = false;
+  for (int k = 0; k < 5; ++k) Step();
+  inputs_.human_wanted = true;
+  while (step_ < 32) Step();
+  const TakeOverRequest& request = *take_over_->request();
+  EXPECT_EQ(request.requested, 5);
+  EXPECT_EQ(request.acknowledged, 26);
+  EXPECT_EQ(request.transferred, 27);
+  EXPECT_EQ(request.escalated, std::nullopt);
+  EXPECT_EQ(request.manoeuvre, std::nullopt);
+}
+
+TEST_F(TakeOverTest, EscalatesAfterFourSeconds) {
+  Begin(Answering(6));
+  Step();
+  EXPECT_NEAR(StepWhile(kDemand), 4.0, 1e-9);
+  EXPECT_EQ(state(), kUrgentDemand);
+  StepWhile(kUrgentDemand);
+  EXPECT_EQ(state(), kHandover);
+}
+
+TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestThatNobodyAnswers) {
+  Begin(Absent());
+  Step();
+  StepWhile(kDemand);
+  EXPECT_NEAR(StepWhile(kUrgentDemand), 10.0, 1e-9);
+  EXPECT_EQ(state(), kMrmComfort);
+  // 20 m/s at 1.5 m/s2 take 13.3 s, and 0.6 s for each end.
+  EXPECT_NEAR(StepWhile(kMrmComfort), 10.0 + 13.3 + 0.6, 0.5);
+  EXPECT_EQ(state(), kMrmDone);
+  EXPECT_EQ(take_over_->request()->manoeuvre, 100);
+}
+
+TEST_F(TakeOverTest, StaysLockedInStandstillWhoeverComes) {
+  Begin(Absent());
+  inputs_.speed_mps = 1;
+  while (state() != kMrmDone && Now() < 60) Step();
+  inputs_.human_wanted = false;
+  inputs_.human_mps2 = 2;
+  for (int k = 0; k < 1000; ++k) {
+    const TakeOverOutcome& out = Step();
+    ASSERT_EQ(out.state, kMrmDone);
+    ASSERT_LE(out.acceleration_mps2, 0);
+  }
+  EXPECT_EQ(inputs_.speed_mps, 0);
+}
+
+TEST_F(TakeOverTest, StopsHardAtOnceWhenACollisionIsNear) {
+  Begin(Answering(2));
+  Step();
+  track_ = Ahead(14.9, 10);  // 1.49 s
+  EXPECT_EQ(Step().state, kMrmEmergency);
+  EXPECT_NEAR(take_over_->outcome().acceleration_mps2, -0.25, 1e-12) << "2.5 m/s3, one step";
+  for (int k = 0; k < 16; ++k) Step();
+  EXPECT_NEAR(take_over_->outcome().acceleration_mps2, -4, 1e-12);
+}
+
+TEST_F(TakeOverTest, DoesNotCallACollisionNearBeforeItIs) {
+  Begin(Answering(2));
+  Step();
+  track_ = Ahead(15.1, 10);
+  EXPECT_EQ(Step().state, kDemand);
+  track_ = Ahead(3, -10);
+  EXPECT_EQ(Step().state, kDemand);
+  track_ = Ahead(1, 10);
+  track_.valid = false;
+  EXPECT_EQ(Step().state, kDemand);
+}
+
+TEST_F(TakeOverTest, WithoutARequestLeavesANearCollisionToTheAutomation) {
+  Begin(Answering(2));
+  inputs_.human_wanted = false;
+  track_ = Ahead(5, 10);
+  inputs_.automation_mps2 = -5;
+  const TakeOverOutcome& out = Step();
+  EXPECT_EQ(out.state, kAutomated);
+  EXPECT_EQ(out.acceleration_mps2, -5);
+}
+
+TEST_F(TakeOverTest, GivesTheWheelOnlyToADriverWhoIsReady) {
+  Begin(Answering(2));
+  inputs_.readiness = 0.29;
+  Step();
+  StepWhile(kDemand);
+  EXPECT_EQ(state(), kHandover);
+  for (int k = 0; k < 20; ++k) ASSERT_EQ(Step().state, kHandover);
+  inputs_.readiness = 0.3;
+  EXPECT_EQ(Step().state, kRecovering);
+}
+
+TEST_F(TakeOverTest, StopsForADriverWhoAnswersButIsNeverReady) {
+  Begin(Answering(2));
+  inputs_.readiness = 0;
+  Step();
+  StepWhile(kDemand);
+  EXPECT_NEAR(StepWhile(kHandover), 10.0, 1e-9);
+  EXPECT_EQ(state(), kMrmComfort);
+}
+
+TEST_F(TakeOverTest, GivesTheWheelToALateDriverAndNeverBackToTheAutomation) {
+  Begin(Answering(12));
+  while (state() != kMrmComfort) Step();
+  EXPECT_NEAR(StepWhile(kMrmComfort), 12.0, 1.5 * kStep_s);
+  EXPECT_EQ(state(), kRecovering);
+  EXPECT_EQ(take_over_->outcome().acceleration_mps2, -0.7);
+  EXPECT_EQ(take_over_->request()->acknowledged, take_over_->request()->transferred);
+  inputs_.human_wanted = false;
+  StepWhile(kRecovering);
+  for (int k = 0; k < 1000; ++k) ASSERT_EQ(Step().state, kManual);
+}
+
+TEST_F(TakeOverTest, DoesNotWithdrawARequestThatIsNotWantedAnyMore) {
+  Begin(Absent());
+  Step();
+  inputs_.human_wanted = false;
+  StepWhile(kDemand);
+  StepWhile(kUrgentDemand);
+  EXPECT_EQ(state(), kMrmComfort);
+}
+
+TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndTheWishIsGone) {
+  Begin(Answering(2));
+  Step();
+  StepWhile(kDemand);
+  StepWhile(kHandover);
+  const double transfer_s = Now();
+  inputs_.human_wanted = false;
+  EXPECT_NEAR(StepWhile(kRecovering), transfer_s + 5, 1e-9);
+  EXPECT_EQ(state(), kManual);
+  const TakeOverOutcome& out = Step();
+  EXPECT_EQ(out.state, kAutomated);
+  EXPECT_EQ(out.acceleration_mps2, 0.5);
+}
+
+TEST_F(TakeOverTest, StaysWithTheDriverWhileHeIsWanted) {
+  Begin(Answering(2));
+  for (int k = 0; k < 2000; ++k) Step();
+  EXPECT_EQ(state(), kManual);
+}
+
+TEST_F(TakeOverTest, DoesNotAccelerateWhileARequestStands) {
+  Begin(Absent());
+  inputs_.human_wanted = false;
+  inputs_.automation_mps2 = 1;
+  Step();
+  inputs_.human_wanted = true;
+  // The acceleration decreases at 2.5 m/s3.
+  for (const double expected : {0.75, 0.5, 0.25, 0.0, 0.0}) {
+    EXPECT_NEAR(Step().acceleration_mps2, expected, 1e-12);
+  }
+  inputs_.automation_mps2 = -2;
+  EXPECT_EQ(Step().acceleration_mps2, -2) << "but it brakes as it likes";
+}
+
+TEST_F(TakeOverTest, BrakesNoLessThanTheAutomationWould) {
+  Begin(Absent());
+  inputs_.automation_mps2 = -2.5;
+  inputs_.speed_mps = 60;
+  while (state() != kMrmComfort) Step();
+  for (int k = 0; k < 20; ++k) EXPECT_NEAR(Step().acceleration_mps2, -2.5, 1e-12);
+  inputs_.automation_mps2 = -9;
+  for (int k = 0; k < 20; ++k) EXPECT_GE(Step().acceleration_mps2, -4 - 1e-12);
+  EXPECT_NEAR(take_over_->outcome().acceleration_mps2, -4, 1e-12);
+}
+
+TEST_F(TakeOverTest, BrakesHarderAndAtLastReportsFailureOfABrakeThatDoesNotStopTheCar) {
+  Begin(Absent());
+  brakes_ = false;
+  while (state() != kMrmComfort) Step();
+  // A stage is overdue after twice its longest stop. Without the jerk's part this is 2 * 13.3 s (20
+  // m/s at 1.5 m/s2) for the comfortable stage, and 2 * 5 s (at 4 m/s2) for the hard one.
+  EXPECT_GT(StepWhile(kMrmComfort), 10 + 2 * 13.3);
+  EXPECT_EQ(state(), kMrmEmergency);
+  EXPECT_GT(StepWhile(kMrmEmergency), 10 + 2 * (13.3 + 5));
+  EXPECT_EQ(state(), kMrmFailed);
+  EXPECT_NEAR(Step().acceleration_mps2, -4, 1e-12) << "it goes on trying";
+  brakes_ = true;
+  StepWhile(kMrmFailed);
+  EXPECT_EQ(state(), kMrmDone);
+}
+
+TEST_F(TakeOverTest, DecidesTheSameWhenStepsAreLeftOut) {
+  Begin(Absent());
+  Step();
+  step_ = 99;
+  EXPECT_EQ(Step().state, kUrgentDemand) << "the escalation only";
+  EXPECT_EQ(Step().state, kMrmComfort);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,262 @@
+// The seal of a log: the changes that it shows, and those that it cannot show.
+#include "services/log/log_seal.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "common/errors.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/digest.h"
+#include "services/runtime/wire/scenario_parts.h"
+#include "tests/support/command.h"
+
+namespace fogline {
+namespace {
+
+using test::Content;
+using testing::HasSubstr;
+
+constexpr std::int64_t kRunId = 7;
+constexpr std::int64_t kSteps = 3;
+constexpr std::int64_t kStep_us = 100'000;
+// The shortest scenario. A longer one would only have more bits to flip.
+constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
+
+void Write(const std::string& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+/// The result of reading a log.
+struct Reading {
+  bool readable = true;
+  RunLog run;
+};
+
+Reading Read(const std::string& file,
+             RunLogReader::Compared compared = RunLogReader::Compared::kFile) {
+  Reading reading;
+  try {
+    RunLogReader reader(file, compared);
+    while (reader.Next() != nullptr) {
+    }
+    reading.run = reader.run();
+  } catch (const InputError&) {
+    reading.readable = false;
+  }
+  return reading;
+}
+
+class LogSealTest : public testing::Test {
+ protected:
+  LogSealTest() {
+    EventLogWriter writer(log_);
+    std::vector<std::uint8_t> bytes;
+    const std::vector<std::string> parts = SplitScenario(std::string(kScenario));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Encode(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenario), parts, i), bytes);
+      writer.Write(ChannelOf<run_t>().name, 0, bytes);
+    }
+    for (std::int64_t step = 0; step < kSteps; ++step) {
+      ForEachStepChannel([&]<class M>(std::size_t) {
+        M message{};
+        message.header = {.run_id = kRunId, .step = step, .utime = step * kStep_us};
+        if constexpr (std::is_same_v<M, truth_t>) message.last = step == kSteps - 1;
+        Encode(message, bytes);
+        writer.Write(ChannelOf<M>().name, message.header.utime, bytes);
+      });
+    }
+    writer.Flush();
+    head_ = writer.head();
+  }
+
+  log_seal_t SealOfLog() const {
+    const RunLog run = Read(log_).run;
+    log_seal_t seal{};
+    seal.header = {.run_id = kRunId, .step = kSteps - 1, .utime = (kSteps - 1) * kStep_us};
+    seal.digest = run.digest;
+    seal.steps = run.steps;
+    seal.complete = run.complete;
+    seal.scenario_hash = run.scenario_hash;
+    seal.file_hash = HashOf(Content(log_).substr(0, static_cast<std::size_t>(head_.bytes)));
+    seal.num_roles = 1;
+    seal.role = {"world"};
+    seal.build_id = {4711};
+    return seal;
+  }
+  void SealIt(const SigningKey* key = nullptr) const { SealLog(log_, head_, SealOfLog(), key); }
+
+  test::ScratchFolder folder_;
+  const std::string log_ = folder_.File("log");
+  LogHead head_;
+};
+
+TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
+  const std::string before = Read(log_).run.digest;
+  EXPECT_FALSE(Read(log_).run.seal);
+  SealIt();
+  const RunLog run = Read(log_).run;
+  ASSERT_TRUE(run.seal);
+  EXPECT_TRUE(run.seal->whole);
+  EXPECT_TRUE(run.complete);
+  EXPECT_FALSE(run.altered) << run.note;
+  EXPECT_EQ(run.note, "");
+  EXPECT_EQ(run.digest, before);
+  EXPECT_EQ(run.seal->says.build_id, std::vector<std::int64_t>{4711});
+}
+
+TEST_F(LogSealTest, ShowsABitThatIsFlippedInAnyByteOfTheFile) {
+  SealIt();
+  const std::string sealed = Content(log_);
+  // One bit of each byte, another one than in the bytes beside it.
+  for (std::size_t at = 0; at < sealed.size(); ++at) {
+    std::string altered = sealed;
+    altered[at] = static_cast<char>(altered[at] ^ (1 << (at % 8)));
+    Write(folder_.File("altered"), altered);
+    const Reading reading = Read(folder_.File("altered"));
+    EXPECT_FALSE(reading.readable && reading.run.complete)
+        << "byte " << at << " of " << sealed.size();
+  }
+}
+
+TEST_F(LogSealTest, ShowsStepsThatWereChangedToAReaderOfTheRunAlone) {
+  SealIt();
+  std::string altered = Content(log_);
+  const std::size_t radar = altered.find("RADAR");
+  altered[radar + 5 + kHeaderEnd + 8] ^= 1;
+  Write(log_, altered);
+  const RunLog run = Read(log_, RunLogReader::Compared::kRun).run;
+  EXPECT_TRUE(run.altered);
+  EXPECT_FALSE(run.complete);
+  EXPECT_THAT(run.note, HasSubstr("altered: sealed with digest "));
+}
+
+TEST_F(LogSealTest, ThatDoesNotFitLeavesTheLogAsItWas) {
+  const std::string before = Content(log_);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit shorter{.rlim_cur = before.size() + 20, .rlim_max = limit.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &shorter), 0);
+  std::string error;
+  try {
+    SealIt();
+  } catch (const std::runtime_error& thrown) {
+    error = thrown.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(error, HasSubstr("cannot seal " + log_ + ": "));
+  EXPECT_THAT(error, HasSubstr("the log is as the run left it, without a seal"));
+  EXPECT_EQ(Content(log_), before);
+}
+
+TEST_F(LogSealTest, ShowsWhatWasAddedBehindIt) {
+  SealIt();
+  std::ofstream(log_, std::ios::app | std::ios::binary) << Content(log_).substr(0, 200);
+  EXPECT_TRUE(Read(log_).run.altered);
+}
+
+TEST_F(LogSealTest, HoldsInACopyWhoseEventsHaveOtherTimes) {
+  SealIt();
+  // GIVEN the log as lcm-logger records it while lcm-logplayer plays it
+  const std::string copy = folder_.File("copy");
+  {
+    EventLogReader reader(log_);
+    EventLogWriter writer(copy);
+    std::int64_t now_us = 1'700'000'000'000'000;
+    while (const auto event = reader.Next()) {
+      writer.Write(event->channel, ++now_us, event->data);
+    }
+  }
+  const RunLog run = Read(copy).run;
+  ASSERT_TRUE(run.seal);
+  EXPECT_TRUE(run.seal->copied);
+  EXPECT_TRUE(run.complete) << run.note;
+  EXPECT_EQ(run.note, "");
+}
+
+TEST_F(LogSealTest, OfAnotherRunSaysNothingOfThisOne) {
+  SealIt();
+  log_seal_t others = SealOfLog();
+  others.header.run_id = kRunId + 1;
+  others.digest = HashOf("another run");
+  Write(folder_.File("others"), "");
+  SealLog(folder_.File("others"), {}, others, nullptr);
+  // GIVEN a log of lcm-logger that contains both seals
+  const std::string copy = folder_.File("copy");
+  {
+    EventLogReader others_reader(folder_.File("others"));
+    EventLogReader reader(log_);
+    EventLogWriter writer(copy);
+    constexpr std::int64_t kNow_us = 1'700'000'000'000'000;
+    while (const auto event = reader.Next()) {
+      if (IsLogSeal(*event)) writer.Write(kLogSealChannel, kNow_us, others_reader.Next()->data);
+      writer.Write(event->channel, kNow_us, event->data);
+    }
+  }
+  const RunLog run = Read(copy).run;
+  EXPECT_TRUE(run.complete);
+  EXPECT_EQ(run.note, "1 messages of other runs ignored");
+}
+
+TEST_F(LogSealTest, IsSignedWithAKeyAndWithNoOther) {
+  SigningKey::Create(folder_.File("key"));
+  SigningKey::Create(folder_.File("other"));
+  const SigningKey key = SigningKey::Load(folder_.File("key"));
+  SealIt(&key);
+  const RunLog run = Read(log_).run;
+  ASSERT_TRUE(run.seal && run.seal->whole);
+  EXPECT_FALSE(run.altered) << run.note;
+  EXPECT_EQ(VerifySeal(*run.seal, key), SealSignature::kHolds);
+  EXPECT_EQ(VerifySeal(*run.seal, SigningKey::Load(folder_.File("other"))), SealSignature::kWrong);
+}
+
+TEST_F(LogSealTest, MadeAnewWithoutTheKeyIsNotSigned) {
+  SigningKey::Create(folder_.File("key"));
+  const SigningKey key = SigningKey::Load(folder_.File("key"));
+  SealIt();
+  EXPECT_EQ(VerifySeal(*Read(log_).run.seal, key), SealSignature::kNone);
+}
+
+TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
+  const test::ScratchFolder folder;
+  WrittenLog first;
+  WrittenLog last;
+  {
+    EventLogWriter writer(folder.File("log"));
+    writer.Write("FIRST", 0, std::vector<std::uint8_t>(100, 1));
+    writer.Flush();
+    first = writer.written();
+    writer.Write("SECOND", 0, std::vector<std::uint8_t>(100, 2));
+    writer.Flush();
+    last = writer.written();
+  }
+  std::string content = Content(folder.File("log"));
+  const auto why = [&](const std::vector<WrittenLog>& written) {
+    std::ofstream(folder.File("log"), std::ios::binary) << content;
+    return WhyNotWritten(EventLogReader(folder.File("log")), written);
+  };
+  EXPECT_EQ(why({}), "");
+  EXPECT_EQ(why({first, last}), "");
+  EXPECT_EQ(why({last, first}), "") << "in whatever order";
+  // A change before the end that the first writer has reported. The second writer has relied on
+  // that part.
+  content[50] ^= 1;
+  EXPECT_THAT(why({first}), HasSubstr("the log on disk is not what the recorder wrote: 133 bytes"));
+  // A change behind that end.
+  content[50] ^= 1;
+  content[200] ^= 1;
+  EXPECT_EQ(why({first}), "");
+  EXPECT_THAT(why({first, last}), HasSubstr("267 bytes with checksum "));
+  // A shorter file.
+  content.resize(200);
+  EXPECT_THAT(why({first, last}), HasSubstr(", on disk 200 with "));
+}
+
+}  // namespace
+}  // namespace fogline

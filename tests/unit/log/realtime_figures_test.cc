@@ -1,0 +1,113 @@
+#include "services/log/realtime_figures.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace fogline {
+namespace {
+
+constexpr std::int64_t kStep_us = 100'000;
+
+status_t Said(const std::string& role, std::int64_t instance, std::int64_t sequence) {
+  status_t status{};
+  status.role = role;
+  status.instance = instance;
+  status.sequence = sequence;
+  return status;
+}
+
+TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
+  RealtimeAccumulator figures(1, kStep_us, 1000);
+  for (const std::int64_t sequence : {1, 3, 2}) {  // the second message has overtaken the last one
+    status_t world = Said("world", 1, sequence);
+    world.ticks = 10 * sequence;
+    figures.Add(world);
+  }
+  status_t second = Said("world", 2, 1);
+  second.ticks = 7;
+  figures.Add(second);
+  EXPECT_EQ(figures.Result().ticks, 37);
+}
+
+/// A log of ten steps. Some of them lack messages that the radar or the world has published.
+class UnloggedMessagesTest : public testing::Test {
+ protected:
+  void AddSteps(int steps, const ChannelSet& there) {
+    for (int i = 0; i < steps; ++i) figures_.AddStep(there);
+  }
+  static ChannelSet AllBut(std::initializer_list<std::size_t> channels) {
+    ChannelSet there;
+    there.set();
+    for (const std::size_t channel : channels) there.reset(channel);
+    return there;
+  }
+  void AddRadar(std::int64_t instance, std::int64_t ticks) {
+    status_t radar = Said("radar", instance, 1);
+    radar.ticks = ticks;
+    figures_.Add(radar);
+  }
+  RealtimeAccumulator figures_{1, kStep_us, 10};
+};
+
+TEST_F(UnloggedMessagesTest, AreThoseThatTheirProducerHasCountedAndTheLogHasNot) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>()}));
+  AddRadar(1, 9);
+  EXPECT_EQ(figures_.Result().missed_messages, 4);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 3) << "one was never published";
+}
+
+TEST_F(UnloggedMessagesTest, AreNotThoseThatCameWhenTheirStepWasWritten) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>()}));
+  AddRadar(1, 9);
+  status_t recorder = Said("recorder", 1, 1);
+  recorder.num_inputs = 1;
+  recorder.input = {"RADAR"};
+  recorder.input_state = {status_t::INPUT_OK};
+  recorder.input_age_us = {0};
+  recorder.input_rate_hz = {0};
+  recorder.input_late = {2};
+  figures_.Add(recorder);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 1);
+}
+
+TEST_F(UnloggedMessagesTest, CannotBeCountedOfARoleThatWasStartedAgainUnlessItIsTheWorld) {
+  AddSteps(6, AllBut({}));
+  AddSteps(4, AllBut({IndexOf<radar_t>(), IndexOf<truth_t>()}));
+  AddRadar(1, 9);
+  AddRadar(2, 5);
+  EXPECT_EQ(figures_.Result().unlogged_messages, 4) << "the world leaves no step out";
+}
+
+TEST(RealtimeFiguresTest, IgnoresNumbersThatNoProcessCanHaveCounted) {
+  constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
+  RealtimeAccumulator figures(1, kStep_us, 1000);
+  status_t world = Said("world", 1, 1);
+  world.ticks = 5;
+  world.deadline_misses = 2;
+  figures.Add(world);
+  for (std::int64_t instance = 2; instance < 5; ++instance) {
+    status_t absurd = Said("world", instance, 1);
+    absurd.deadline_misses = kHuge;
+    figures.Add(absurd);
+    absurd = Said("acc", instance, 1);
+    absurd.num_inputs = 1;
+    absurd.input = {"TRACK"};
+    absurd.input_state = {status_t::INPUT_OK};
+    absurd.input_age_us = {0};
+    absurd.input_rate_hz = {0};
+    absurd.input_late = {kHuge};
+    figures.Add(absurd);
+    absurd = Said("radar", instance, 1);
+    absurd.ticks = std::numeric_limits<std::int64_t>::min();
+    figures.Add(absurd);
+  }
+  EXPECT_EQ(figures.Result().ticks, 5);
+  EXPECT_EQ(figures.Result().deadline_misses, 2);
+  EXPECT_EQ(figures.Result().late_messages, 0);
+}
+
+}  // namespace
+}  // namespace fogline

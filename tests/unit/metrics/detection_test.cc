@@ -1,0 +1,117 @@
+#include "services/metrics/detection.h"
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kStep_s = 0.5;
+
+// A run in clear air. The LiDAR is right, and the automation drives.
+std::vector<Sample> QuietRun(std::size_t steps) {
+  std::vector<Sample> run(steps);
+  for (std::size_t k = 0; k < steps; ++k) {
+    run[k].time_s = kStep_s * static_cast<double>(k);
+    run[k].host_gap_m = run[k].lidar_range_m = run[k].fused_distance_m = 30;
+    run[k].threshold = 0.5;
+  }
+  return run;
+}
+
+void Deceive(Sample& sample) {
+  sample.fog_present = true;
+  sample.lidar_range_m = sample.fused_distance_m = 29;
+}
+
+void GiveToHuman(Sample& sample) {
+  sample.lambda_human = 1;
+  sample.lambda_automation = 0;
+}
+
+DetectionMeasures Collect(const std::vector<Sample>& run, const Scenario& scenario = {}) {
+  DetectionAccumulator accumulator(scenario);
+  for (const Sample& sample : run) accumulator.Add(sample);
+  return accumulator.Result();
+}
+
+TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileItIsDeceived) {
+  auto run = QuietRun(8);
+  for (const std::size_t k : {2, 3, 4}) Deceive(run[k]);
+  for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
+  const DetectionMeasures m = Collect(run);
+  EXPECT_EQ(m.wrong_automation_s, 2 * kStep_s);  // steps 2 and 3
+  EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; the last step, 7, has no duration
+}
+
+TEST(DetectionTest, AuthorityWeighsTheTime) {
+  auto run = QuietRun(3);
+  Deceive(run[0]);
+  for (Sample& sample : run) {
+    sample.lambda_human = 0.25;
+    sample.lambda_automation = 0.75;
+  }
+  const DetectionMeasures m = Collect(run);
+  EXPECT_EQ(m.wrong_automation_s, 0.75 * kStep_s);
+  EXPECT_EQ(m.wrong_human_s, 0.25 * kStep_s);
+}
+
+TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
+  auto run = QuietRun(3);
+  for (Sample& sample : run) {
+    Deceive(sample);
+    sample.fused_distance_m = 30.05;
+  }
+  EXPECT_EQ(Collect(run).wrong_automation_s, 0);
+}
+
+TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
+  Scenario scenario;
+  scenario.lidar.bias_m = 0.5;
+  scenario.lidar.lateral_offset_m = 1;
+  auto run = QuietRun(4);
+  run[0].lidar_range_m = 30.5166620396 + 0.09;  // sqrt(901) + 0.5
+  run[1].lidar_range_m = 30.5166620396 - 0.09;
+  run[2].lidar_range_m = std::numeric_limits<double>::quiet_NaN();
+  run[3].lidar_range_m = 30.5166620396;
+  for (Sample& sample : run) {
+    GiveToHuman(sample);
+    sample.doc = 0.9;
+  }
+  const DetectionMeasures m = Collect(run, scenario);
+  EXPECT_EQ(m.wrong_human_s, 3 * kStep_s);
+  EXPECT_EQ(m.deception_to_alarm_s, std::nullopt);
+}
+
+TEST(DetectionTest, DelayIsFromTheFirstDeceptionToTheAlarm) {
+  auto run = QuietRun(8);
+  for (const std::size_t k : {2, 3, 4, 5}) Deceive(run[k]);
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, std::nullopt);
+  run[5].doc = 0.5;  // a DoC at the threshold is an alarm
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, 3 * kStep_s);
+  run[1].doc = run[2].doc = 0.7;  // the alarm is already on
+  EXPECT_EQ(Collect(run).deception_to_alarm_s, 0);
+}
+
+TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
+  auto run = QuietRun(9);
+  for (const std::size_t k : {6, 7}) Deceive(run[k]);
+  EXPECT_EQ(Collect(run).false_alarms_ph, 0);
+  // One alarm from the first step on, one of a single step. The alarm in fog is right, and lasts
+  // beyond the fog.
+  for (const std::size_t k : {0, 1, 3, 7, 8}) run[k].doc = 0.9;
+  EXPECT_EQ(Collect(run).false_alarms_ph, 2 * 3600 / (6 * kStep_s));
+}
+
+TEST(DetectionTest, WithoutClearAirThereIsNoRateOfFalseAlarms) {
+  auto run = QuietRun(3);
+  for (Sample& sample : run) sample.fog_present = true;
+  EXPECT_EQ(Collect(run).false_alarms_ph, std::nullopt);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,118 @@
+#include "services/models/driver/fog_sight.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kClearAir = std::numeric_limits<double>::infinity();
+
+Situation Behind(double speed_mps, double gap_m, double lead_mps) {
+  return {.speed_mps = speed_mps,
+          .ahead = CarAhead{.gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = -1}};
+}
+
+TEST(FogSightTest, SeesABlackOutlineAsFarAsTheVisibilityAndAGreyOneLess) {
+  FogSightParameters black;
+  black.contrast = 1;
+  EXPECT_NEAR(FogSight(black).OutlineRange(50), 50, 1e-9);
+  // ln 10 / ln 20 = 0.769.
+  EXPECT_NEAR(FogSight(FogSightParameters{}).OutlineRange(50), 0.7686 * 50, 0.005);
+}
+
+struct Lamp {
+  double intensity_cd;
+  double threshold_lx;
+  double range_m;
+};
+
+// A tail lamp and a rear fog lamp, by night, at dusk and by day, by Allard's law at a visibility of
+// 50 m. The ranges are rounded to metres, so the tolerance is half a metre.
+TEST(FogSightTest, SeesLampsAsFarAsAllardSays) {
+  for (const Lamp& lamp : {Lamp{5, 1e-6, 103}, Lamp{5, 1e-4, 50}, Lamp{5, 1e-3, 29},
+                           Lamp{200, 1e-6, 151}, Lamp{200, 1e-4, 91}, Lamp{200, 1e-3, 65}}) {
+    FogSightParameters p;
+    p.lamp_intensity_cd = lamp.intensity_cd;
+    p.illuminance_threshold_lx = lamp.threshold_lx;
+    EXPECT_NEAR(FogSight(p).LampRange(50), lamp.range_m, 0.5)
+        << lamp.intensity_cd << " cd, " << lamp.threshold_lx << " lx";
+  }
+}
+
+TEST(FogSightTest, FulfilsAllardsLawAtTheRange) {
+  const FogSightParameters p;
+  for (const double visibility_m : {20.0, 50.0, 300.0, 5000.0}) {
+    const double d = FogSight(p).LampRange(visibility_m);
+    EXPECT_NEAR(p.lamp_intensity_cd * std::exp(-std::log(20) / visibility_m * d) / (d * d) /
+                    p.illuminance_threshold_lx,
+                1, 1e-9);
+  }
+}
+
+TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
+  const FogSight sight{FogSightParameters{}};
+  EXPECT_EQ(sight.OutlineRange(kClearAir), kClearAir);
+  EXPECT_NEAR(sight.LampRange(kClearAir), std::sqrt(5 / 1e-4), 1e-9);
+  const Situation perceived = sight.Perceive(Behind(20, 60, 15), kClearAir);
+  EXPECT_EQ(perceived.ahead->gap_m, 60);
+}
+
+TEST(FogSightTest, LosesOutlineThenLamps) {
+  const FogSight sight{FogSightParameters{}};  // its two ranges at 50 m: 38.4 m and 50 m
+  EXPECT_EQ(sight.At(38, 50), Seen::kOutline);
+  EXPECT_EQ(sight.At(39, 50), Seen::kLamps);
+  EXPECT_EQ(sight.At(51, 50), Seen::kNothing);
+  EXPECT_FALSE(sight.Perceive(Behind(20, 51, 10), 50).ahead.has_value());
+  EXPECT_EQ(sight.Perceive(Behind(20, 51, 10), 50).speed_mps, 20);
+}
+
+TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
+  FogSightParameters p;
+  p.lamp_distance_factor = 1.4;
+  const FogSight sight(p);
+  const double outline_m = sight.OutlineRange(50);
+  const auto factor = [&](double gap_m) {
+    return sight.Perceive(Behind(20, gap_m, 10), 50).ahead->gap_m / gap_m;
+  };
+  EXPECT_EQ(factor(0.5 * outline_m), 1);
+  EXPECT_NEAR(factor(0.75 * outline_m), 1.2, 1e-12);
+  EXPECT_NEAR(factor(outline_m), 1.4, 1e-12);
+  EXPECT_NEAR(factor(45), 1.4, 1e-12);
+}
+
+TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
+  const FogSight sight{FogSightParameters{}};
+  // 1.8 dv / 30^2 = 0.003 at dv = 1.5 m/s.
+  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->speed_mps, 20);
+  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->acceleration_mps2, 0);
+  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);
+  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->acceleration_mps2, -1);
+  EXPECT_EQ(sight.Perceive(Behind(20, 30, 21.51), 1000).ahead->speed_mps, 21.51);
+  // Only the lamps are visible, at 45 m: 1.3 dv / 45^2 = 0.003 at dv = 4.67 m/s.
+  EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.34), 50).ahead->speed_mps, 20);
+  EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.32), 50).ahead->speed_mps, 15.32);
+}
+
+TEST(FogSightTest, LeavesAFreeRoadFree) {
+  EXPECT_FALSE(FogSight(FogSightParameters{}).Perceive({.speed_mps = 20}, 50).ahead.has_value());
+}
+
+TEST(FogSightTest, GivesTheSpeedFromWhichACarStopsWithinSight) {
+  // tau = 1 s, b = 3 m/s2.
+  EXPECT_NEAR(SpeedForSightDistance(50, 1, 3), 14.6, 0.05);
+  EXPECT_NEAR(SpeedForSightDistance(100, 1, 3), 21.7, 0.05);
+  EXPECT_NEAR(SpeedForSightDistance(200, 1, 3), 31.8, 0.05);
+}
+
+TEST(FogSightTest, RefusesAContrastBelowItsThreshold) {
+  FogSightParameters p;
+  p.contrast = 0.04;
+  EXPECT_THROW(FogSight{p}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,59 @@
+#include "services/models/follower/style.h"
+
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+TEST(StyleTest, KeepsMoreRoomTheMoreCautious) {
+  const StyleParameters aggressive = ParametersOf(Style::kAggressive);
+  const StyleParameters normal = ParametersOf(Style::kNormal);
+  const StyleParameters cautious = ParametersOf(Style::kCautious);
+  EXPECT_LT(aggressive.driver.headway_s, normal.driver.headway_s);
+  EXPECT_LT(normal.driver.headway_s, cautious.driver.headway_s);
+  EXPECT_GT(aggressive.driver.max_acceleration_mps2, normal.driver.max_acceleration_mps2);
+  EXPECT_GT(normal.driver.max_acceleration_mps2, cautious.driver.max_acceleration_mps2);
+  EXPECT_LT(aggressive.human.reaction_time_s, cautious.human.reaction_time_s);
+}
+
+TEST(StyleTest, DrawsOnlyWhatHasAShare) {
+  const Random random(9, Stream::kStyle);
+  for (std::int64_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(DrawStyle({1, 0, 0}, random, i), Style::kAggressive);
+    EXPECT_EQ(DrawStyle({0, 2, 0}, random, i), Style::kNormal);
+    EXPECT_EQ(DrawStyle({0, 0, 0.1}, random, i), Style::kCautious);
+  }
+}
+
+TEST(StyleTest, DrawsTheSameCarTheSameStyle) {
+  const Random random(9, Stream::kStyle);
+  for (std::int64_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(DrawStyle({}, random, i), DrawStyle({}, Random(9, Stream::kStyle), i));
+  }
+}
+
+TEST(StyleTest, DrawsInProportionToTheShares) {
+  const Random random(10, Stream::kStyle);
+  constexpr int kCars = 10'000;
+  int aggressive = 0;
+  int normal = 0;
+  for (int i = 0; i < kCars; ++i) {
+    const Style style = DrawStyle({.aggressive = 2, .normal = 5, .cautious = 3}, random, i);
+    aggressive += style == Style::kAggressive ? 1 : 0;
+    normal += style == Style::kNormal ? 1 : 0;
+  }
+  // Four standard deviations sqrt(n p (1 - p)), which are 40 and 50 cars.
+  EXPECT_NEAR(aggressive, 2000, 160);
+  EXPECT_NEAR(normal, 5000, 200);
+}
+
+TEST(StyleTest, RefusesNoShares) {
+  const Random random(9, Stream::kStyle);
+  EXPECT_THROW(DrawStyle({0, 0, 0}, random, 0), std::invalid_argument);
+  EXPECT_THROW(DrawStyle({1, -1, 1}, random, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fogline

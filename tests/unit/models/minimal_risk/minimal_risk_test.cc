@@ -1,0 +1,68 @@
+#include "services/models/minimal_risk/minimal_risk.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace fogline {
+namespace {
+
+constexpr double kStep_s = 0.1;
+constexpr MinimalRiskSection kLimits{.deceleration_mps2 = 3, .jerk_mps3 = 2};
+
+TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(0.5);
+  double expected = 0.5;
+  for (int k = 0; k < 30; ++k) {
+    expected = std::max(-3.0, expected - 2 * kStep_s);
+    EXPECT_NEAR(manoeuvre.Step(30), expected, 1e-12) << k;
+  }
+}
+
+// r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, so the brake is released in exactly 5 steps of 0.2.
+TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(-1.0);
+  double speed_mps = 0.3;
+  for (const double expected : {-1.0, -0.8, -0.6, -0.4, -0.2}) {
+    const double command = manoeuvre.Step(speed_mps);
+    EXPECT_NEAR(command, expected, 1e-12);
+    speed_mps += command * kStep_s;
+  }
+  EXPECT_NEAR(speed_mps, 0, 1e-12);
+}
+
+TEST(MinimalRiskTest, ReleasesABrakeThatIsHarderThanItsLimitGently) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(-9);
+  EXPECT_NEAR(manoeuvre.Step(30), -8.8, 1e-12);
+  for (int k = 0; k < 100; ++k) manoeuvre.Step(30);
+  EXPECT_NEAR(manoeuvre.Step(30), -3, 1e-12);
+}
+
+TEST(MinimalRiskTest, BeginsOnce) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  EXPECT_FALSE(manoeuvre.begun());
+  manoeuvre.Begin(0);
+  manoeuvre.Step(30);
+  manoeuvre.Begin(5);
+  EXPECT_TRUE(manoeuvre.begun());
+  EXPECT_NEAR(manoeuvre.Step(30), -0.4, 1e-12);
+}
+
+TEST(MinimalRiskTest, HoldsACarThatStands) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(0);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(manoeuvre.Step(0), 0);
+}
+
+TEST(MinimalRiskTest, BrakesACarThatRollsAgain) {
+  MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(0);
+  manoeuvre.Step(0);
+  EXPECT_LT(manoeuvre.Step(1), 0);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,185 @@
+#include "services/runtime/coordination/deaf_roles.h"
+
+#include <gtest/gtest.h>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+namespace {
+
+constexpr Duration kPeriod = milliseconds(100);
+
+class DeafRolesTest : public testing::Test {
+ protected:
+  /// What the radar's STATUS says of its input.
+  struct Ear {
+    std::int64_t age_ms;
+    std::int8_t state = status_t::INPUT_LOST;
+    std::int64_t late = 0;
+    std::int64_t step = 17;  // that it has computed last
+  };
+  void SayWorld() {
+    status_t status{};
+    status.header.step = world_step_;
+    deaf_.Heard(Role::kWorld, status, now_);
+  }
+  void SayRadar(const Ear& ear) {
+    status_t status{};
+    status.header.step = ear.step;
+    status.num_inputs = 1;
+    status.input = {"TRUTH"};
+    status.input_state = {ear.state};
+    status.input_age_us = {1000 * ear.age_ms};
+    status.input_rate_hz = {0};
+    status.input_late = {ear.late};
+    deaf_.Heard(Role::kRadar, status, now_);
+  }
+  /// So many STATUS messages of the world, which computes two steps between them, and of the radar.
+  /// The radar's input gets 200 ms older each time.
+  void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
+    for (int i = 0; i < signs; ++i) {
+      now_ += milliseconds(200);
+      world_step_ += 2;
+      age_ms_ += 200;
+      SayWorld();
+      SayRadar({.age_ms = age_ms_, .state = state});
+    }
+  }
+  bool IsDeaf() const { return deaf_.Of(Role::kRadar).has_value(); }
+
+  DeafRoles deaf_{kPeriod};
+  TimePoint now_{std::chrono::hours(5)};
+  std::int64_t world_step_ = 20;
+  std::int64_t age_ms_ = 0;
+};
+
+TEST_F(DeafRolesTest, ARoleIsDeafThatHearsNothingOfWhatIsPublishedForTwoSeconds) {
+  Pass(10);
+  EXPECT_FALSE(IsDeaf()) << "the first sign of life tells of no time";
+  Pass(1);
+  const auto deaf = deaf_.Of(Role::kRadar);
+  ASSERT_TRUE(deaf);
+  EXPECT_EQ(deaf->channel, IndexOf<truth_t>());
+  EXPECT_EQ(deaf->missed, milliseconds(2000));
+  EXPECT_EQ(Text(*deaf),
+            "has heard no TRUTH for 2.0 s, which the world has published all the while");
+  EXPECT_FALSE(deaf_.Of(Role::kWorld));
+}
+
+TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
+  Pass(5);
+  EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
+  Pass(1);
+  EXPECT_TRUE(deaf_.AtTheEnd(Role::kRadar));
+  // Time without a step does not count, because the world publishes nothing then.
+  for (int i = 0; i < 20; ++i) {
+    now_ += milliseconds(200);
+    age_ms_ += 200;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_TRUE(deaf_.AtTheEnd(Role::kRadar));
+}
+
+TEST_F(DeafRolesTest, ARoleThatWasStartedAgainAndHeardNothingYetIsDeafToo) {
+  for (int i = 0; i < 11; ++i) {
+    age_ms_ = -200;  // the age that it reports for an input that never came
+    Pass(1, status_t::INPUT_AWAITED);
+  }
+  EXPECT_TRUE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, AWorldThatStandsStillMakesNoRoleDeaf) {
+  for (int i = 0; i < 20; ++i) {
+    world_step_ = 20;
+    Pass(1);
+  }
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, AMessageNowAndThenOrALateOneIsHeard) {
+  for (int i = 0; i < 20; ++i) {
+    Pass(5);
+    age_ms_ = 50;
+    SayRadar({.age_ms = 50, .state = status_t::INPUT_LOST});
+  }
+  EXPECT_FALSE(IsDeaf());
+  for (int i = 1; i < 20; ++i) {
+    Pass(5);
+    SayRadar({.age_ms = age_ms_, .late = i});
+  }
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
+  // GIVEN a role that takes all that is genuine for late, since it has computed what was forged
+  const auto pass_ahead = [this](std::int64_t steps) {
+    for (int i = 1; i <= 12; ++i) {
+      now_ += milliseconds(200);
+      world_step_ += 2;
+      age_ms_ += 200;
+      SayWorld();
+      SayRadar({.age_ms = age_ms_, .late = 100 * steps + i, .step = world_step_ + steps});
+    }
+  };
+  pass_ahead(1);
+  EXPECT_FALSE(IsDeaf()) << "its producer is slow";
+  pass_ahead(12);
+  EXPECT_TRUE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, AtTheEndNothingIsMissedOfStepsThatNeverWere) {
+  Pass(3);
+  // WHEN the world has computed its last step, and the role is late
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(200);
+    age_ms_ += 200;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
+}
+
+TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {
+  Pass(2);
+  for (int i = 0; i < 20; ++i) {
+    now_ += milliseconds(3000);
+    world_step_ += 30;
+    age_ms_ += 3000;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, ItsSuccessorIsNot) {
+  Pass(20);
+  EXPECT_TRUE(IsDeaf());
+  deaf_.Forget(Role::kRadar);
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, InLockstepNoRoleIsDeaf) {
+  deaf_ = DeafRoles(Duration::zero());
+  Pass(20);
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, WhatIsNoInputIsIgnored) {
+  status_t status{};
+  status.num_inputs = 2;
+  status.input = {"RUN", "nothing"};
+  status.input_state = {status_t::INPUT_LOST, status_t::INPUT_LOST};
+  status.input_age_us = {std::numeric_limits<std::int64_t>::max(),
+                         std::numeric_limits<std::int64_t>::min()};
+  status.input_rate_hz = {0, 0};
+  status.input_late = {0, 0};
+  for (int i = 0; i < 20; ++i) {
+    now_ += milliseconds(200);
+    deaf_.Heard(Role::kRadar, status, now_);
+  }
+  EXPECT_FALSE(IsDeaf());
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,208 @@
+#include "services/runtime/transport/bus.h"
+
+#include <gtest/gtest.h>
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "common/errors.h"
+
+namespace fogline {
+namespace {
+
+std::vector<std::uint8_t> Payload(int number) { return {static_cast<std::uint8_t>(number)}; }
+
+TEST(BusTest, KeepsABurstFarLongerThanTheQueueOfLcm) {
+  for (const std::string& url : {std::string("memq://"), FreshMulticastUrl()}) {
+    Bus bus(url);
+    std::vector<int> received;
+    bus.Subscribe("BURST", [&received](Bytes bytes) { received.push_back(bytes[0]); });
+    constexpr int kBurst = 200;
+    for (int i = 0; i < kBurst; ++i) bus.Publish("BURST", Payload(i));
+    while (received.size() < kBurst && bus.Wait(std::chrono::seconds(5))) {
+    }
+    ASSERT_EQ(received.size(), kBurst) << url;
+    for (int i = 0; i < kBurst; ++i) EXPECT_EQ(received[static_cast<std::size_t>(i)], i);
+  }
+}
+
+TEST(BusTest, TakesChannelNamesLiterally) {
+  Bus bus("memq://");
+  int literal = 0;
+  int other = 0;
+  bus.Subscribe("A.C(1)", [&literal](Bytes) { ++literal; });
+  bus.Subscribe("ABC", [&other](Bytes) { ++other; });
+  bus.Publish("A.C(1)", Payload(0));
+  bus.Publish("ABC", Payload(0));
+  bus.Publish("ABC", Payload(0));
+  bus.Drain();
+  EXPECT_EQ(literal, 1);
+  EXPECT_EQ(other, 2);
+}
+
+TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
+  const std::string url = FreshMulticastUrl();
+  Bus sender(url);
+  Bus bus(url);
+  int subscribed = 0;
+  std::vector<std::string> watched;
+  bus.Subscribe("BEFORE", [&subscribed](Bytes) { ++subscribed; });
+  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
+  bus.Subscribe("AFTER", [&subscribed](Bytes) { ++subscribed; });
+  for (const char* channel : {"BEFORE", "OTHER", "AFTER", "LAST"}) {
+    sender.Publish(channel, Payload(0));
+  }
+  while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
+  }
+  std::erase(watched, "LCM_SELF_TEST");
+  EXPECT_EQ(watched, (std::vector<std::string>{"BEFORE", "OTHER", "AFTER", "LAST"}));
+  EXPECT_EQ(subscribed, 2);
+}
+
+/// Sends bytes, unchanged, to the group and port of a multicast URL.
+void SendRaw(const std::string& url, std::string_view bytes) {
+  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_addr.s_addr = inet_addr("239.255.76.67");
+  group.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
+  constexpr unsigned char kThisMachine = 0;
+  setsockopt(sender, IPPROTO_IP, IP_MULTICAST_TTL, &kThisMachine, sizeof(kThisMachine));
+  EXPECT_EQ(sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&group),
+                   sizeof(group)),
+            static_cast<ssize_t>(bytes.size()));
+  close(sender);
+}
+
+TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
+  using namespace std::string_literals;
+  const std::string url = FreshMulticastUrl();
+  Bus bus(url);
+  std::vector<std::string> watched;
+  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
+  // GIVEN a message of 4 bytes as one fragment, which LCM itself would accept
+  SendRaw(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
+  SendRaw(url, "LC02\0\0\0\2LAST\0abcd"s);
+  while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(watched, std::vector<std::string>{"LAST"});
+}
+
+TEST(BusTest, HandsAnExceptionOfAHandlerToTheCallerOfWait) {
+  Bus bus("memq://");
+  bus.Subscribe("C", [](Bytes) { throw std::runtime_error("from the handler"); });
+  bus.Publish("C", Payload(0));
+  EXPECT_THROW(bus.Wait(std::chrono::seconds(1)), std::runtime_error);
+  EXPECT_FALSE(bus.Wait(Duration::zero()));
+}
+
+TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
+  EXPECT_NE(Bus("udpm://239.255.76.67:23456").url().find("ttl=0"), std::string::npos);
+  EXPECT_NE(FreshMulticastUrl(), FreshMulticastUrl());
+}
+
+SigningKey KeyOf(std::uint8_t byte) {
+  SigningKey::Secret secret{};
+  secret.fill(byte);
+  return SigningKey(secret);
+}
+
+TEST(BusTest, SendsNothingThatDoesNotFitOneDatagram) {
+  Bus bus("memq://");
+  EXPECT_NO_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes)));
+  EXPECT_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes + 1)),
+               std::runtime_error);
+}
+
+TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
+  const std::string url = FreshMulticastUrl();
+  Bus receiver(url);
+  receiver.Secure(MessageSigner(KeyOf(1), Role::kFusion));
+  std::vector<int> received;
+  receiver.Subscribe("RADAR", [&received](Bytes bytes) {
+    EXPECT_EQ(bytes.size(), 1U);
+    received.push_back(bytes[0]);
+  });
+  // GIVEN a sender without a key, one with another key, and one that has the key but may not
+  // publish RADAR
+  Bus keyless(url);
+  Bus stranger(url);
+  stranger.Secure(MessageSigner(KeyOf(2), Role::kRadar));
+  Bus lidar(url);
+  lidar.Secure(MessageSigner(KeyOf(1), Role::kLidar));
+  Bus radar(url);
+  radar.Secure(MessageSigner(KeyOf(1), Role::kRadar));
+  for (int i = 0; i < 3; ++i) keyless.Publish("RADAR", Payload(1));
+  for (int i = 0; i < 2; ++i) stranger.Publish("RADAR", Payload(2));
+  lidar.Publish("RADAR", Payload(3));
+  radar.Publish("RADAR", Payload(4));
+  while (received.empty() && receiver.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(received, std::vector<int>{4});
+  EXPECT_EQ(receiver.unverified().not_signed, 3);
+  EXPECT_EQ(receiver.unverified().badly_signed, 3);
+  EXPECT_EQ(receiver.TakeUnverified().badly_signed, 3);
+  EXPECT_EQ(receiver.TakeUnverified().badly_signed, 0);
+  EXPECT_EQ(SignatureTrouble(receiver.unverified()),
+            "3 messages with a wrong signature were refused: do all processes have the same key?");
+}
+
+TEST(BusTest, TakesNoKeyWhereNothingFiltersWhatReachesLcmsParser) {
+  Bus bus("mpudpm://239.255.76.67:23457?ttl=0");
+  EXPECT_THROW(bus.Secure(MessageSigner(KeyOf(1), Role::kFusion)), InputError);
+}
+
+TEST(BusTest, KnowsThatAKeyIsWanting) {
+  const std::string url = FreshMulticastUrl();
+  Bus keyless(url);
+  bool heard = false;
+  keyless.Subscribe("RADAR",
+                    [&heard](Bytes bytes) { heard = bytes.size() == 1 + kSignatureBytes; });
+  Bus radar(url);
+  radar.Secure(MessageSigner(KeyOf(1), Role::kRadar));
+  EXPECT_EQ(SignatureTrouble(keyless.unverified()), "");
+  radar.Publish("RADAR", Payload(4));
+  EXPECT_TRUE(keyless.Wait(std::chrono::seconds(5)));
+  EXPECT_TRUE(heard) << "it is for the decoder to refuse";
+  EXPECT_EQ(SignatureTrouble(keyless.unverified()),
+            "traffic on this network is signed; give --key");
+}
+
+TEST(BusTest, HandsLateMessagesOnWhenTheirTimeHasCome) {
+  for (const std::string& url : {std::string("memq://"), FreshMulticastUrl()}) {
+    Bus bus(url);
+    bus.Impair(Faults({.delay_ms = 20}, Role::kAcc));
+    int received = 0;
+    bus.Subscribe("C", [&received](Bytes) { ++received; });
+    const TimePoint began = Clock::now();
+    bus.Publish("C", Payload(0));
+    while (received == 0 && bus.Wait(std::chrono::seconds(5))) {
+    }
+    EXPECT_EQ(received, 1) << url;
+    EXPECT_GE(Clock::now() - began, milliseconds(20)) << url;
+    EXPECT_FALSE(bus.Wait(Duration::zero()));
+  }
+}
+
+TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
+  Bus bus("memq://");
+  bus.Impair(Faults({.loss = 0.5, .seed = 3}, Role::kAcc));
+  int received = 0;
+  bus.Subscribe("C", [&received](Bytes) { ++received; });
+  for (int i = 0; i < 200; ++i) bus.Publish("C", Payload(0));
+  bus.Drain();
+  // The tolerance is five standard deviations.
+  EXPECT_NEAR(received, 100, 36);
+}
+
+TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
+  EXPECT_THROW(Bus("nonsense"), InputError);
+  EXPECT_THROW(Bus(""), InputError);
+  EXPECT_THROW(Bus("nosuchprovider://"), InputError);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,131 @@
+#include "services/runtime/transport/lcm_url.h"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <ifaddrs.h>
+
+#include <array>
+#include <cstdlib>
+#include <string>
+
+#include "services/graph.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+namespace {
+
+/// Sets LCM_DEFAULT_URL for a test. The destructor restores its old value.
+class EnvironmentUrl {
+ public:
+  EnvironmentUrl() {
+    if (const char* url = std::getenv(kName)) before_ = url;
+  }
+  ~EnvironmentUrl() {
+    if (before_) Set(*before_);
+    if (!before_) unsetenv(kName);
+  }
+  EnvironmentUrl(const EnvironmentUrl&) = delete;
+  EnvironmentUrl& operator=(const EnvironmentUrl&) = delete;
+
+  void Set(const std::string& url) const { setenv(kName, url.c_str(), 1); }
+  void Unset() const { unsetenv(kName); }
+
+ private:
+  static constexpr const char* kName = "LCM_DEFAULT_URL";
+  std::optional<std::string> before_;
+};
+
+TEST(LcmUrlTest, IsTheOneGivenThenThatOfTheEnvironmentThenLcmsOwn) {
+  const EnvironmentUrl environment;
+  environment.Set("udpm://239.1.2.3:4000");
+  EXPECT_EQ(NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
+  EXPECT_EQ(NetworkUrl(""), "udpm://239.1.2.3:4000");
+  EXPECT_EQ(MeetingUrl(), "udpm://239.1.2.3:4000");
+  for (const bool empty : {true, false}) {
+    if (empty) environment.Set("");
+    if (!empty) environment.Unset();
+    EXPECT_EQ(NetworkUrl(""), "udpm://239.255.76.67:7667?ttl=0");
+    EXPECT_EQ(NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
+  }
+}
+
+TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
+  const MulticastAddress lcms{.group = "239.255.76.67", .port = 7667, .ttl = 0};
+  EXPECT_EQ(ParseMulticastUrl("udpm://"), lcms);
+  EXPECT_EQ(ParseMulticastUrl("udpm://?recv_buf_size=100"), lcms);
+  EXPECT_EQ(ParseMulticastUrl("udpm://:7700?ttl=1"),
+            (MulticastAddress{.group = "239.255.76.67", .port = 7700, .ttl = 1}));
+  EXPECT_EQ(ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"),
+            (MulticastAddress{.group = "224.1.1.1", .port = 7667, .ttl = 3}));
+}
+
+TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
+  for (const char* url :
+       {"", "udpm", "udpm:/", "tcpq://", "mpudpm://239.1.1.1", "udpm://localhost:7700",
+        "udpm://239.1.1.1:x", "udpm://239.1.1.1:70000", "udpm://239.1.1.1:-1",
+        "udpm://239.1.1.1:1:2", "udpm://239.1.1.1 :1", "udpm://239.1.1.1?ttl",
+        "udpm://?ttl=", "udpm://?ttl=-1", "udpm://?ttl=1x", "udpm://?ttl=1;reboot",
+        "udpm://?interface=eth0", "udpm://239.1.1.256", "udpm://239.1.1.1\n"}) {
+    EXPECT_EQ(ParseMulticastUrl(url), std::nullopt) << url;
+  }
+}
+
+TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
+  EXPECT_TRUE(SameNetwork("udpm://239.255.76.67:7667?ttl=0", "udpm://?recv_buf_size=2097152"));
+  EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.67:7668"));
+  EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.68:7667"));
+  EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1:7700", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(SameNetwork("tcpq://", "tcpq://127.0.0.1:7700"));
+  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7701"));
+  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:x", "tcpq://127.0.0.1:y"));
+  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:7700", "udpm://"));
+}
+
+TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
+  for (const char* url : {"udpm://239.255.76.67:7700?ttl=0&recv_buf_size=2097152", "udpm://?ttl=1",
+                          "tcpq://127.0.0.1:7700", "tcpq://127.1.2.3"}) {
+    EXPECT_TRUE(MayBeAnnounced(url)) << url;
+  }
+  for (const std::string url :
+       {"", "memq://", "file://x", "mpudpm://239.255.76.67:7700", "udpm://10.0.0.1:7700",
+        "udpm://239.255.76.67:0", "udpm://239.255.76.67:7700?ttl=2", "tcpq://localhost:7700",
+        "tcpq://192.0.2.1:7700", "tcpq://0.0.0.0:7700", "tcpq://127.0.0.1:0", "tcpq://",
+        "tcpq://127.0.0.1:7700?x", "tcpq://127.0.0.1:7700 -x"}) {
+    EXPECT_FALSE(MayBeAnnounced(url)) << url;
+  }
+  EXPECT_FALSE(MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
+}
+
+TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
+  ifaddrs* interfaces = nullptr;
+  ASSERT_EQ(getifaddrs(&interfaces), 0);
+  int tried = 0;
+  for (const ifaddrs* one = interfaces; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    const auto& address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    inet_ntop(AF_INET, &address, text.data(), text.size());
+    const std::string url = std::string("tcpq://") + text.data() + ":7700";
+    EXPECT_TRUE(MayBeAnnounced(url)) << url;
+    ++tried;
+  }
+  freeifaddrs(interfaces);
+  EXPECT_GT(tried, 0);
+}
+
+// A part that was built without beacon_t can take part in a run.
+TEST(TypeFingerprintTest, IsOfTheTypesOfARunWithoutItsBeacon) {
+  std::uint64_t fingerprint = 0;
+  for (const std::int64_t hash :
+       {accel_command_t::getHash(), arbitration_t::getHash(), driver_command_t::getHash(),
+        ego_t::getHash(), follower_command_t::getHash(), header_t::getHash(), lidar_t::getHash(),
+        radar_t::getHash(), resend_t::getHash(), run_t::getHash(), status_t::getHash(),
+        track_t::getHash(), truth_t::getHash()}) {
+    fingerprint = ((fingerprint << 5) | (fingerprint >> 59)) ^ static_cast<std::uint64_t>(hash);
+  }
+  EXPECT_EQ(static_cast<std::uint64_t>(TypeFingerprint()), fingerprint);
+}
+
+}  // namespace
+}  // namespace fogline

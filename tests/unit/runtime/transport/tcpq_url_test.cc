@@ -1,0 +1,45 @@
+#include "services/runtime/transport/tcpq_url.h"
+
+#include <gtest/gtest.h>
+
+#include "common/errors.h"
+
+namespace fogline::tcpq {
+namespace {
+
+std::string ErrorOf(const std::string& url) {
+  try {
+    return "none: " + ResolveUrl(url).Url();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(TcpqUrlTest, HasLcmsDefaults) {
+  EXPECT_EQ(ResolveUrl("tcpq://").Url(), "tcpq://127.0.0.1:7700");
+  EXPECT_EQ(ResolveUrl("tcpq://10.1.2.3").Url(), "tcpq://10.1.2.3:7700");
+  EXPECT_EQ(ResolveUrl("tcpq://:7701").Url(), "tcpq://127.0.0.1:7701");
+}
+
+TEST(TcpqUrlTest, ResolvesHostNamesWhichLcmTakesForThisMachine) {
+  EXPECT_EQ(ResolveUrl("tcpq://localhost:7701").Url(), "tcpq://127.0.0.1:7701");
+  // RFC 6761: no name below "invalid" exists.
+  EXPECT_EQ(ErrorOf("tcpq://no-such-host.invalid:7701")
+                .find("error: tcpq://no-such-host.invalid:7701: no IPv4 address for "
+                      "\"no-such-host.invalid\": "),
+            0U);
+}
+
+TEST(TcpqUrlTest, RefusesWhatIsNoPort) {
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:http"),
+            "error: tcpq://127.0.0.1:http: \"http\" is no port (0 to 65535)");
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:65536"),
+            "error: tcpq://127.0.0.1:65536: \"65536\" is no port (0 to 65535)");
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:"), "error: tcpq://127.0.0.1:: \"\" is no port (0 to 65535)");
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:0"), "error: tcpq://127.0.0.1:0: nobody listens on port 0");
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:7700?ttl=1"),
+            "error: tcpq://127.0.0.1:7700?ttl=1: \"7700?ttl=1\" is no port (0 to 65535)");
+}
+
+}  // namespace
+}  // namespace fogline::tcpq

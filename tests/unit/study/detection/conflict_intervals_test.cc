@@ -1,0 +1,92 @@
+#include "tools/study/detection/conflict_intervals.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/random.h"
+
+namespace fogline {
+namespace {
+
+constexpr double kArlZero_s = 400;
+constexpr double kMissed_s = 11;
+constexpr std::size_t kSeeds = 60;
+
+/// Runs of 100 s with their greatest scores in the middle. These scores are uniform in (0, 1).
+std::vector<study::ClearRun> ClearAir() {
+  std::vector<study::ClearRun> runs;
+  const Random random(1, Stream{1'000'004});
+  for (std::uint32_t i = 0; i < kSeeds; ++i) {
+    runs.push_back({.records = {{0, 0}, {random.Uniform2(0, i)[0], 50}}, .duration_s = 100});
+  }
+  return runs;
+}
+
+/// Fog in which the score grows by `slope` in each second, the same for every seed.
+std::vector<study::ScoreRecords> Fog(double slope) {
+  study::ScoreRecords records;
+  for (int i = 0; i <= 1000; ++i) records.push_back({slope * 0.01 * i, 0.01 * i});
+  return std::vector(kSeeds, records);
+}
+
+TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
+  const std::vector<study::ClearRun> clear = ClearAir();
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(0.1)};
+  const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
+  const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
+  const study::Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
+  const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
+  EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
+  // All runs are equal, so only the threshold can vary. It is the quantile of the greatest scores
+  // that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). For runs of 100 s
+  // with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
+  const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
+  // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
+  // apart. The deviation of so many spacings is 28 %, because each spacing varies by its own
+  // length.
+  const double width_s = 2 * 1.96 * deviation_s;
+  EXPECT_NEAR(delay.high - delay.low, width_s, 2 * 0.28 * width_s);
+  EXPECT_FALSE(compared[0].delay_minus_other_s[0].has_interval()) << "there is no other";
+}
+
+TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
+  const std::vector<study::ClearRun> clear = ClearAir();
+  const std::vector<std::vector<study::ScoreRecords>> slow{Fog(0.1), Fog(0.2)};
+  const std::vector<std::vector<study::ScoreRecords>> fast{Fog(0.2), Fog(0.4)};
+  const std::array runs{study::DetectorRuns{.clear = clear, .fog = slow},
+                        study::DetectorRuns{.clear = clear, .fog = fast},
+                        study::DetectorRuns{.clear = clear, .fog = slow}};
+  const auto compared = study::CompareDetection(runs, 0, kArlZero_s, kMissed_s);
+  // The same measure again, with any threshold.
+  EXPECT_EQ(compared[2].mean_delay_minus_other_s.low, 0);
+  EXPECT_EQ(compared[2].mean_delay_minus_other_s.high, 0);
+  EXPECT_EQ(study::VerdictOf(compared[1].mean_delay_minus_other_s), study::Verdict::kLess);
+  EXPECT_NEAR(compared[1].delay_minus_other_s[0].mean,
+              -compared[1].detector.by_visibility[0].delay_s.mean, 0.021);
+  EXPECT_NEAR(compared[0].detector.delay_s.mean,
+              (compared[0].detector.by_visibility[0].delay_s.mean +
+               compared[0].detector.by_visibility[1].delay_s.mean) /
+                  2,
+              1e-12);
+}
+
+TEST(CompareDetectionTest, ACertainDetectionHasTheIntervalOfClopperAndPearson) {
+  const std::vector<study::ClearRun> clear = ClearAir();
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(1), Fog(0)};
+  const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
+  const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
+  const study::Estimate& all = compared[0].detector.by_visibility[0].detection;
+  const study::Estimate& none = compared[0].detector.by_visibility[1].detection;
+  EXPECT_EQ(all.mean, 1);
+  EXPECT_NEAR(all.low, std::pow(0.025, 1.0 / kSeeds), 1e-9);
+  EXPECT_EQ(all.high, 1);
+  EXPECT_EQ(none.mean, 0);
+  EXPECT_NEAR(none.high, 1 - std::pow(0.025, 1.0 / kSeeds), 1e-9);
+  EXPECT_EQ(compared[0].detector.by_visibility[1].delay_s.mean, kMissed_s);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,237 @@
+#include "tools/cli/arguments.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/atomic_file.h"
+#include "common/file.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "services/log/event_log.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "tools/report/measure_text.h"
+
+namespace fogline {
+
+namespace {
+
+/// Makes an empty file. @return false if a file of this name exists @throws InputError
+bool Reserve(const std::filesystem::path& log) {
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0 && errno == EEXIST) return false;
+  if (file < 0) ThrowIfExhausted(errno, PathText(log));
+  if (file < 0) {
+    throw InputError(
+        fmt::format("{}: error: --log: cannot write: {}", PathText(log), std::strerror(errno)));
+  }
+  close(file);
+  return true;
+}
+
+}  // namespace
+
+void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_view why) const {
+  for (const std::string& one : overrides_) {
+    if (std::string_view(one).substr(0, one.find('=')) != pointer) continue;
+    throw InputError(fmt::format("error: --set {}: {}", pointer, why));
+  }
+}
+
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
+  RequireFolderOf(log, "--log");
+  std::error_code ignored;
+  if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
+    throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
+  }
+  // Makes the file if it is missing. If two runs start at once, only one of them gets the lock,
+  // whichever made the file. --force does not help while another run is writing the file.
+  auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
+  if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
+  if (!force) {
+    throw InputError(
+        fmt::format("{}: error: --log: the file exists; --force replaces it", PathText(log)));
+  }
+  if (!IsEventLogOrEmpty(log)) {
+    throw InputError(
+        fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
+                    PathText(log)));
+  }
+  return LogOfRun::InPlaceOf(log, std::move(lock));
+}
+
+LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
+  const std::filesystem::path folder = kDefaultFolder;
+  std::error_code ignored;  // Reserve() reports the error
+  std::filesystem::create_directories(folder, ignored);
+  for (int number = 1;; ++number) {
+    std::filesystem::path log =
+        folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
+    if (Reserve(log)) return LogOfRun(log);
+  }
+}
+
+SeedRange ReadSeeds(const std::string& text) {
+  const SeedRange seeds = ParseSeeds(text);
+  if (seeds.count() == 1 && seeds.first > 1 && text.find(':') == std::string::npos) {
+    Notice(fmt::format("--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}",
+                       seeds.first));
+  }
+  return seeds;
+}
+
+void PrintJson(const nlohmann::ordered_json& json, int indent) {
+  PrintJson(json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text)); }
+
+void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json) {
+  std::error_code ignored;
+  // What nothing reads may have both.
+  if (!json || !IsStdout(document) ||
+      std::filesystem::canonical(document, ignored) == "/dev/null") {
+    return;
+  }
+  throw InputError(fmt::format("error: --json: stdout is taken by {0} {1}; give {0} a file", option,
+                               PathText(document)));
+}
+
+void PrintBeside(const std::filesystem::path& document, std::string_view text) {
+  if (!IsStdout(document)) return fmt::print("{}", text);
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  Complain(text);
+}
+
+nlohmann::ordered_json BuildJson(BuildId build) {
+  if (build == kUnknownBuild) return nullptr;
+  return BuildText(build);
+}
+
+NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
+  verb.add_option("--lcm-url", url_,
+                  fmt::format("LCM network {} (default: $LCM_DEFAULT_URL, else {}, and the runs "
+                              "announced there)",
+                              what, kLcmDefaultUrl));
+}
+
+std::string NetworkArguments::Url() const {
+  const std::string url = NetworkUrl(url_);
+  const std::string said = fmt::format("{} {}", Follows() ? "LCM_DEFAULT_URL" : "--lcm-url", url);
+  if (url.starts_with("memq:")) {
+    throw InputError(
+        fmt::format("error: {}: the memory of one process, which no other can look into; give the "
+                    "run a udpm:// URL",
+                    said));
+  }
+  if (!IsLcmUrl(url)) {
+    throw InputError(
+        fmt::format("error: {}: not an LCM network such as \"{}\"", said, kLcmDefaultUrl));
+  }
+  return url;
+}
+
+namespace {
+
+/// Returns a visitor that puts every measure into a JSON object.
+auto Into(nlohmann::ordered_json& json) {
+  return
+      [&json]<class V>(std::string_view name, const V& value, std::string_view, std::string_view) {
+        if constexpr (std::is_same_v<V, std::optional<double>>) {
+          json[std::string(name)] =
+              value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+        } else {
+          json[std::string(name)] = value;
+        }
+      };
+}
+
+std::string Cell(std::string_view name, std::optional<double> value, std::string_view unit) {
+  return value ? report::MeasureText(name, *value, unit) : "-";
+}
+
+/// A line of column names, then one line for each following car.
+std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
+  std::string text = fmt::format("  {:<10}", "follower");
+  VisitFollowerMeasures(FollowerMeasures(),
+                        [&text](std::string_view name, const auto&, std::string_view,
+                                std::string_view) { text += fmt::format("  {}", name); });
+  text += '\n';
+  for (std::size_t i = 0; i < followers.size(); ++i) {
+    text += fmt::format("  {:<10}", i + 1);
+    VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
+                                                std::string_view unit, std::string_view) {
+      text += fmt::format("  {:>{}}", Cell(name, value, unit), name.size());
+    });
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string MeasuresJson(const ExperimentResult& result) {
+  nlohmann::ordered_json json;
+  VisitMeasures(result.measures, Into(json));
+  if (result.followers.size() > 1) {
+    for (const FollowerMeasures& follower : result.followers) {
+      VisitFollowerMeasures(follower, Into(json["followers"].emplace_back()));
+    }
+  }
+  return json.dump();
+}
+
+std::string MeasuresText(const ExperimentResult& result) {
+  std::string text;
+  VisitMeasures(result.measures, [&text]<class V>(std::string_view name, const V& value,
+                                                  std::string_view unit, std::string_view) {
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
+    } else {
+      text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+    }
+  });
+  return result.followers.size() > 1 ? text + FollowersText(result.followers) : text;
+}
+
+nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {
+  nlohmann::ordered_json json;
+  VisitFigures(figures, [&json](std::string_view name, const auto& value, std::string_view,
+                                std::string_view) { json[std::string(name)] = value; });
+  json["fallbacks"] = nlohmann::ordered_json::array();
+  for (const Fallback& fallback : figures.fallbacks) {
+    nlohmann::ordered_json entry{
+        {"step", fallback.step}, {"role", fallback.role}, {"what", fallback.what}};
+    entry["culprit"] = nullptr;
+    if (!fallback.culprit.empty()) entry["culprit"] = fallback.culprit;
+    json["fallbacks"].push_back(std::move(entry));
+  }
+  json["fallbacks_left_out"] = figures.fallbacks_left_out;
+  return json;
+}
+
+std::string RealtimeText(const RealtimeFigures& figures) {
+  std::string text;
+  VisitFigures(figures, [&text](std::string_view name, const auto& value, std::string_view unit,
+                                std::string_view) {
+    text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+  });
+  for (const Fallback& fallback : figures.fallbacks) {
+    text += fmt::format("  {}\n", fallback.Text());
+  }
+  if (figures.fallbacks_left_out > 0) {
+    text += fmt::format("  ... and {} more\n", figures.fallbacks_left_out);
+  }
+  return text;
+}
+
+}  // namespace fogline

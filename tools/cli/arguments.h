@@ -1,0 +1,129 @@
+// Arguments that several verbs share.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/process/console.h"
+#include "scenario/io/loader.h"
+#include "services/log/log_of_run.h"
+#include "services/runtime/wire/build_id.h"
+#include "tools/runner/experiment.h"
+#include "tools/sweep/plan.h"
+
+namespace fogline {
+
+/// SCENARIO, --set and --seed.
+class ScenarioArguments {
+ public:
+  explicit ScenarioArguments(CLI::App& verb, bool with_seed = true) {
+    verb.add_option("SCENARIO", file_, "Scenario file")->required();
+    verb.add_option("--set", overrides_, "Override a field: /arbitrator/threshold=0.8 (repeatable)")
+        ->allow_extra_args(false);
+    if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
+  }
+
+  /// @throws InputError
+  Scenario Load() const {
+    std::vector<std::string> overrides = overrides_;
+    if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
+    Scenario scenario = LoadScenario(file_, overrides);
+    CheckPossible(scenario, file_);
+    return scenario;
+  }
+  const std::filesystem::path& file() const { return file_; }
+
+  /// For a verb that varies a field itself: refuses a --set of this field. `why` says what sets the
+  /// field.
+  /// @throws InputError
+  void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
+
+ private:
+  std::filesystem::path file_;
+  std::vector<std::string> overrides_;
+  std::string seed_;  // checked together with all other fields
+};
+
+/// Prepares a log file for writing. It refuses a log that another run is writing, and a non-empty
+/// file unless `force` is true. Even with `force` it refuses a file that is no event log. It
+/// requires the folder as RequireFolderOf() does.
+/// @throws InputError
+LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
+
+/// "logs/STEM-1.lcm", or the first number that is free.
+LogOfRun FreshLog(const std::filesystem::path& scenario_file);
+
+/// Calls `work(log)` for each log. A log that cannot be read is named on stderr and left out; the
+/// work continues with the others. @return whether all logs could be read
+template <class Work>
+bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work& work) {
+  bool readable = true;
+  for (const std::filesystem::path& log : logs) {
+    try {
+      work(log);
+    } catch (const InputError& error) {
+      Complain(error.what());
+      readable = false;
+    }
+  }
+  return readable;
+}
+
+/// The seeds of --seeds. A single number, which the user may have meant as a count, is explained on
+/// stderr.
+/// @throws InputError
+SeedRange ReadSeeds(const std::string& text);
+
+/// Prints --json output: a document and a newline on stdout. Names that are not UTF-8 contain
+/// U+FFFD, because JSON cannot carry them. Control characters for terminals are escaped.
+void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
+void PrintJson(const std::string& text);
+
+/// Refuses --json of a verb whose document goes to stdout itself: nothing could tell the two apart.
+/// @param option that says where the document goes, such as "--out"; "" for nowhere
+/// @throws InputError
+void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
+
+/// What a verb says of its result: on stdout, or on stderr if its document goes to stdout.
+void PrintBeside(const std::filesystem::path& document, std::string_view text);
+
+/// 16 hexadecimal digits, or null for an unknown build.
+nlohmann::ordered_json BuildJson(BuildId build);
+
+/// --lcm-url of a verb that observes a network from outside.
+class NetworkArguments {
+ public:
+  /// @param what completes "LCM network ..."
+  NetworkArguments(CLI::App& verb, std::string_view what);
+
+  /// The network to observe, by the rule that every program uses (lcm_url.h).
+  /// @throws InputError if other processes cannot observe the network of the URL
+  std::string Url() const;
+  /// Whether the verb should follow announced runs, because the command line names no network.
+  bool Follows() const { return url_.empty(); }
+
+ private:
+  std::string url_;
+};
+
+/// {"name": value, ...} of a run's measures, as part of a larger JSON text. With more than one
+/// following car, "followers" is the list of their measures.
+std::string MeasuresJson(const ExperimentResult& result);
+
+/// The measures of a run as lines "name  value unit". If there is more than one following car, a
+/// table of their measures follows.
+std::string MeasuresText(const ExperimentResult& result);
+
+/// The same for the figures of a run in real time, and its fallbacks.
+nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures);
+std::string RealtimeText(const RealtimeFigures& figures);
+
+}  // namespace fogline

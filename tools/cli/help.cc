@@ -1,0 +1,60 @@
+#include "tools/cli/help.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <fmt/core.h>
+
+namespace fogline {
+namespace {
+
+constexpr std::size_t kOptionColumns = 34;  // width of the column with the names of options
+
+}  // namespace
+
+CLI::Validator NumberIn(double least, double most) {
+  const CLI::Validator range =
+      CLI::Range(least, most);  // accepts NaN, because comparisons with NaN are false
+  CLI::Validator number = range;
+  number.operation([range, least, most](std::string& text) {
+    const std::string wrong = range(text);
+    double value = 0;
+    if (!wrong.empty() || (CLI::detail::lexical_cast(text, value) && !std::isnan(value))) {
+      return wrong;
+    }
+    return fmt::format("Value {} not in range [{:g} - {:g}]", text, least, most);
+  });
+  return number;
+}
+
+HelpFormatter::HelpFormatter() { column_width(kOptionColumns); }
+
+std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
+  const std::size_t width = kHelpColumns - get_column_width();
+  std::istringstream words(CLI::Formatter::make_option_desc(option));
+  std::string text;
+  std::size_t used = 0;
+  for (std::string word; words >> word;) {
+    const bool fits = used + 1 + word.size() <= width;
+    if (!text.empty()) text += fits ? ' ' : '\n';
+    used = fits && !text.empty() ? used + 1 + word.size() : word.size();
+    text += word;
+  }
+  return text;
+}
+
+void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
+  std::string text = fmt::format("Exit codes: 0 {}", meanings.done);
+  if (!meanings.check_failed.empty()) text += fmt::format(", 1 {}", meanings.check_failed);
+  text += ", 2 bad input, 3 failure at run time";
+  if (meanings.interruptible) text += ", 130 interrupted";
+  command.footer([text] { return text + ".\n"; });
+}
+
+std::string HelpText(const CLI::App& app, const CLI::App& of) {
+  // of.help() would print the verb of the command line.
+  const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
+  return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
+}
+
+}  // namespace fogline

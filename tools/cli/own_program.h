@@ -1,0 +1,28 @@
+// Verbs that are separate programs beside `fogline`: few people need them, and they take long to
+// build. `fogline VERB ...` is the same as `fogline-VERB ...`.
+#pragma once
+
+#include <array>
+
+#include "tools/cli/verbs.h"
+
+namespace fogline {
+
+struct OwnProgram {
+  const char* verb;
+  const char* purpose;  // one line in the list of verbs
+};
+
+inline constexpr OwnProgram kCalibrate{"calibrate", "Find values of fields that meet a table"};
+inline constexpr OwnProgram kStudy{"study", "Answer an open question with runs and intervals"};
+inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
+
+/// Adds these verbs to the list of verbs, for help and spelling hints. They have no action here.
+void AddOwnPrograms(CLI::App& app, Action& action);
+
+/// Replaces this process by the program of the verb argv[1], or argv[2] after "help". It returns if
+/// the verb is not one of these. If the program cannot be started, it prints an error on stderr and
+/// ends the process with kRunFailed.
+void BecomeOwnProgram(int argc, char** argv);
+
+}  // namespace fogline

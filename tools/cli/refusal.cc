@@ -1,0 +1,136 @@
+#include "tools/cli/refusal.h"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "scenario/io/catalogue.h"
+
+namespace fogline {
+namespace {
+
+std::vector<std::string> OptionsOf(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The verbs that have this option, such as "fogline run, table"; "" if there is none.
+std::string VerbsWith(const CLI::App& app, const std::string& option) {
+  std::string verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    if (verb->get_option_no_throw(option) == nullptr) continue;
+    verbs += (verbs.empty() ? app.get_name() + " " : ", ") + verb->get_name();
+  }
+  return verbs;
+}
+
+/// The value for `field` from the words "--threshold=0.8", or "--threshold" and "0.8"; "VALUE" if
+/// they have none.
+std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& words) {
+  const std::string& option = words.front();
+  if (const std::size_t at = option.find('='); at != std::string::npos) {
+    return Shown(option.substr(at + 1));
+  }
+  if (words.size() > 1) {
+    const std::string& word = words[1];
+    double ignored = 0;
+    const bool is_number = CLI::detail::lexical_cast(word, ignored);
+    if (is_number || std::ranges::find(field.choices, word) != field.choices.end()) return word;
+  }
+  return "VALUE";
+}
+
+/// A hint for an unknown option that resembles fields of the scenario: how to set them. "" if there
+/// is no such field.
+std::string FieldHint(const std::string& option, const std::vector<std::string>& words) {
+  std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  std::ranges::replace(word, '-', '_');
+  const auto name_of = [](const FieldInfo& field) {
+    return std::string_view(field.pointer).substr(field.pointer.rfind('/') + 1);
+  };
+  std::vector<const FieldInfo*> fields;
+  std::vector<std::string_view> names;
+  for (const FieldInfo& field : Catalogue()) {
+    if (field.is_section || field.pointer.find('*') != std::string::npos) continue;
+    fields.push_back(&field);
+    names.push_back(name_of(field));
+  }
+  const auto meant = Nearest(word, names);
+  if (!meant) return "";
+  std::string hint;
+  for (const FieldInfo* field : fields) {
+    if (name_of(*field) != *meant) continue;
+    hint += hint.empty() ? fmt::format("; a field of the scenario is set with --set {}={}",
+                                       field->pointer, ValueFor(*field, words))
+                         : fmt::format(" or {}", field->pointer);
+  }
+  return hint;
+}
+
+/// Explains the word that `command` does not accept. @param words the first one is this word
+std::string Misfit(const CLI::App& app, const CLI::App& command,
+                   const std::vector<std::string>& words) {
+  const std::string& word = words.front();
+  if (word.starts_with("-")) {
+    const std::vector<std::string> options = OptionsOf(command);
+    const std::vector<std::string_view> views(options.begin(), options.end());
+    const std::string name = word.substr(0, word.find('='));
+    std::string hint = DidYouMean(Nearest(name, views));
+    const std::string verbs = VerbsWith(app, name);
+    if (hint.empty() && !verbs.empty()) {
+      hint = &command == &app ? "; an option stands after its verb"
+                              : fmt::format("; it is an option of {}", verbs);
+    }
+    if (hint.empty() && command.get_option_no_throw("--set") != nullptr) {
+      hint = FieldHint(name, words);
+    }
+    return fmt::format("no option {}{}", QuoteShort(name), hint);
+  }
+  if (!command.get_subcommands({}).empty()) return NoSuchVerb(app, word);
+  return fmt::format("{} is one argument too many", QuoteShort(word));
+}
+
+std::string OneLine(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return EscapeControls(text);
+}
+
+}  // namespace
+
+std::string CommandName(const CLI::App& app) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return verbs.empty() ? app.get_name() : app.get_name() + " " + verbs.front()->get_name();
+}
+
+std::string NoSuchVerb(const CLI::App& app, const std::string& word) {
+  std::vector<std::string_view> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  return fmt::format("no verb {}{}", QuoteShort(word), DidYouMean(Nearest(word, verbs)));
+}
+
+std::string UnknownVerb(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (!app.get_subcommands().empty() || words.empty()) return "";
+  return fmt::format("{0}: error: {1} (see {0} --help)", app.get_name(), Misfit(app, app, words));
+}
+
+std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  // A wrong word before the verb is an error of the program's command line, not of the verb's.
+  const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
+  const CLI::App& command = is_verb ? *verbs.front() : app;
+  const std::vector<std::string> misfits = command.remaining();
+  const bool is_misfit = !misfits.empty() && (verbs.empty() || is_extra);
+  const std::string what = is_misfit ? Misfit(app, command, misfits) : OneLine(error.what());
+  const std::string name = is_verb ? CommandName(app) : app.get_name();
+  return fmt::format("{}: error: {} (see {} --help)", name, what, name);
+}
+
+}  // namespace fogline

@@ -1,0 +1,147 @@
+#include "tools/cli/run_outcome.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/report/measure_text.h"
+
+namespace fogline {
+namespace {
+
+nlohmann::ordered_json VerificationJson(const Verification& verification) {
+  nlohmann::ordered_json json{{"same", nullptr},
+                              {"roles", nlohmann::ordered_json::array()},
+                              {"left_out", nlohmann::ordered_json::array()},
+                              {"trouble", nullptr}};
+  if (!verification.roles.empty()) json["same"] = verification.Holds();
+  for (const Role role : verification.roles) json["roles"].push_back(NameOf(role));
+  for (const Verification::LeftOut& one : verification.left_out) {
+    json["left_out"].push_back({{"role", NameOf(one.role)}, {"why", one.why}});
+  }
+  if (verification.Holds()) return json;
+  json["trouble"] = verification.Trouble();
+  if (!verification.failure) return json;
+  const Difference& first = verification.failure->first;
+  json["first"] = {{"role", NameOf(verification.failure->role)},
+                   {"step", first.step},
+                   {"channel", first.channel},
+                   {"field", first.field},
+                   {"log", first.a},
+                   {"replay", first.b}};
+  return json;
+}
+
+/// The roles that were computed again, and those that were not.
+std::string VerificationText(const Verification& verification) {
+  std::string text;
+  for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));
+  text = fmt::format("verified:{}\n", text.empty() ? " nothing" : text);
+  for (const Verification::LeftOut& one : verification.left_out) {
+    text += fmt::format("not verified: {} ({})\n", NameOf(one.role), one.why);
+  }
+  return text;
+}
+
+/// Deviations of a run, and parts that were not checked; "" if there are none.
+std::string RemarksText(const RunOutcome& outcome) {
+  const ExperimentResult& result = outcome.result;
+  std::string text;
+  for (const OtherBuild& other : result.other_builds) {
+    text += fmt::format("another build: {}\n", other.Text());
+  }
+  if (result.verification) text += VerificationText(*result.verification);
+  if (outcome.computed && !result.checked) {
+    text += "the end of the log is not checked: what the recorder told of it was lost\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
+  const ExperimentResult& result = outcome.result;
+  nlohmann::ordered_json json;
+  json["scenario"] = outcome.file.string();
+  json["seed"] = result.seed;
+  json["transport"] = nullptr;
+  if (outcome.computed) json["transport"] = result.transport;
+  json["steps"] = result.steps;
+  json["resumed_steps"] = nullptr;
+  if (outcome.resumed) json["resumed_steps"] = *outcome.resumed;
+  json["digest"] = result.digest;
+  json["wall_s"] = result.wall_s;
+  json["log"] = nullptr;
+  if (!result.log.empty()) json["log"] = result.log.string();
+  json["repairs"] = result.repairs;
+  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+    json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
+  }
+  json["failed_sends"] = nlohmann::ordered_json::array();
+  for (const SendTrouble& one : result.send_troubles) {
+    json["failed_sends"].push_back(
+        {{"role", one.role}, {"count", one.count}, {"error", one.error}});
+  }
+  json["strangers"] = nlohmann::ordered_json::array();
+  for (const ForeignPeer& stranger : result.foreign_peers) {
+    json["strangers"].push_back({{"role", stranger.role},
+                                 {"pid", stranger.pid},
+                                 {"host", stranger.host},
+                                 {"run_id", stranger.run_id}});
+  }
+  json["restarts"] = nlohmann::ordered_json::array();
+  for (const Restarts& role : result.restarts) {
+    json["restarts"].push_back({{"role", role.role}, {"count", role.count}, {"last", role.last}});
+  }
+  json["log_checked"] = result.checked;
+  json["other_builds"] = nlohmann::ordered_json::array();
+  for (const OtherBuild& other : result.other_builds) {
+    json["other_builds"].push_back({{"role", NameOf(other.role)},
+                                    {"pid", other.pid},
+                                    {"host", other.host},
+                                    {"build", BuildJson(other.build)},
+                                    {"expected", BuildJson(other.ours)}});
+  }
+  json["verified"] = nullptr;
+  if (result.verification) json["verified"] = VerificationJson(*result.verification);
+  if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
+  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
+  return json;
+}
+
+std::string ToText(const RunOutcome& outcome) {
+  const ExperimentResult& result = outcome.result;
+  std::string text =
+      fmt::format("{}: {}{} steps", PathText(outcome.file), result.steps,
+                  result.steps < outcome.steps ? fmt::format(" of {}", outcome.steps) : "");
+  if (outcome.resumed) text += fmt::format(", {} of them from the log", *outcome.resumed);
+  if (outcome.computed) {
+    text += fmt::format(" in {:.2f} s over {}, {} repairs", result.wall_s, result.transport,
+                        result.repairs);
+  }
+  const std::string collision = report::CollisionText(result.measures);
+  if (!collision.empty()) text += ": " + collision;
+  text += '\n';
+  std::string refused;
+  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+    if (result.refused[i] == 0) continue;
+    refused +=
+        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
+  }
+  if (!refused.empty()) text += fmt::format("refused messages: {}\n", refused);
+  if (!result.send_troubles.empty()) {
+    text += fmt::format("messages that could not be sent: {}\n", Text(result.send_troubles));
+  }
+  for (const Restarts& role : result.restarts) {
+    text += fmt::format("{} was started again {}: {}\n", role.role,
+                        role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
+  }
+  text += RemarksText(outcome);
+  if (result.realtime) text += RealtimeText(*result.realtime);
+  text += fmt::format("digest {}\n", result.digest);
+  if (!result.log.empty()) text += fmt::format("log    {}\n", PathText(result.log));
+  return text + MeasuresText(result);
+}
+
+}  // namespace fogline

@@ -1,0 +1,27 @@
+// The result of a run, as `fogline run` prints it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/runner/experiment.h"
+
+namespace fogline {
+
+struct RunOutcome {
+  std::filesystem::path file;  // the file with the scenario
+  std::int64_t steps = 0;      // of the scenario; a collision ends a run earlier
+  ExperimentResult result;
+  std::optional<std::int64_t> resumed;  // number of steps that the log already had
+  bool computed = true;                 // whether this process computed the rest
+};
+
+nlohmann::ordered_json ToJson(const RunOutcome& outcome);
+/// Several lines, the most important one first.
+std::string ToText(const RunOutcome& outcome);
+
+}  // namespace fogline

@@ -1,0 +1,103 @@
+#include "tools/cli/transport_arguments.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "services/graph.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "tools/cli/help.h"
+
+namespace fogline {
+namespace {
+
+std::vector<std::string> RoleNames() {
+  std::vector<std::string> names;
+  for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+  return names;
+}
+
+}  // namespace
+
+TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
+    : transport_(std::move(transport)) {
+  said_ =
+      verb.add_option("--transport", transport_,
+                      "direct: one process, no messages; memq: one process, LCM in memory; udpm: "
+                      "one process per role on a multicast port of its own; tcpq: the same over "
+                      "TCP, through a fogline-relay of its own; or an LCM URL")
+          ->capture_default_str();
+  verb.add_option("--lcm-url", url_,
+                  fmt::format("The same as --transport URL (without either, processes{} go to "
+                              "$LCM_DEFAULT_URL, if set)",
+                              transport_ == "direct" ? " for --external" : ""))
+      ->excludes(said_);
+  verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(RoleNames()));
+  verb.add_option("--wait", wait_s_, "Wait so long for roles started elsewhere, in s (0: for ever)")
+      ->check(NumberIn(0, 1e6))
+      ->capture_default_str();
+  verb.add_flag(
+      "--same-build", same_build_,
+      "End the run if a role is of another build than this one, or does not say of which");
+  CLI::Option* verify = verb.add_flag(
+      "--verify", verify_,
+      "Compute every role's steps again from the log and compare (default with --external, and "
+      "for a run that goes on); roles of another build and runs in real time are left out");
+  verb.add_flag("--no-verify", no_verify_, "Do not in any case")->excludes(verify);
+  AddTrafficOptions(verb, traffic_);
+}
+
+std::string TransportArguments::Unsaid() const {
+  const auto url = UrlOfEnvironment();
+  const bool as_processes = transport_ != "direct" || !external_.empty();
+  if (!url || !as_processes) return transport_;
+  if (!IsLcmUrl(*url)) {
+    throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
+                                 *url, kLcmDefaultUrl));
+  }
+  return *url;
+}
+
+void TransportArguments::Apply(ExperimentOptions& options) const {
+  if (!url_.empty() && !IsLcmUrl(url_)) {
+    throw InputError(
+        fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_, kLcmDefaultUrl));
+  }
+  options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
+  options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
+  options.traffic = traffic_;
+  // A wrong key is refused even for a run that has no messages to sign.
+  KeyOf(traffic_);
+  if (options.transport == "direct" && !traffic_.faults.empty()) {
+    throw InputError("error: --faults: a run with --transport direct has no messages");
+  }
+  if (options.transport == "direct" && verify_) {
+    throw InputError(
+        "error: --verify: a run with --transport direct is one process, in which no message can be "
+        "altered on its way");
+  }
+  options.external.clear();
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(external_, info.name) != external_.end()) {
+      options.external.push_back(info.role);
+    }
+  }
+  options.verify = verify_ ? std::optional(true) : no_verify_ ? std::optional(false) : std::nullopt;
+  options.same_build = same_build_;
+  if (external_.empty()) return;
+  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+    throw InputError(
+        fmt::format("error: --external {}: no process can join a run with --transport {}, which is "
+                    "one process itself",
+                    external_.front(), options.transport));
+  }
+  if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
+    throw InputError("error: --external recorder: the run's result is read from its own log");
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,40 @@
+// Network and roles of a run: arguments of the verbs that make runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/runner/experiment.h"
+
+namespace fogline {
+
+/// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
+class TransportArguments {
+ public:
+  /// @param transport default transport. If it starts the roles as processes and $LCM_DEFAULT_URL
+  /// is
+  ///     set, that URL is the default instead.
+  TransportArguments(CLI::App& verb, std::string transport);
+
+  /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
+  /// @throws InputError for a contradiction between them
+  void Apply(ExperimentOptions& options) const;
+
+ private:
+  /// The transport of a run without --transport and --lcm-url.
+  std::string Unsaid() const;
+
+  std::string transport_;
+  CLI::Option* said_;  // --transport
+  std::string url_;
+  std::vector<std::string> external_;
+  double wait_s_ = 60;
+  bool same_build_ = false;
+  bool verify_ = false;
+  bool no_verify_ = false;
+  TrafficOptions traffic_;
+};
+
+}  // namespace fogline

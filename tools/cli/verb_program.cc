@@ -1,0 +1,112 @@
+#include "tools/cli/verb_program.h"
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/process/this_process.h"
+#include "common/text.h"
+#include "services/runtime/process/version.h"
+#include "tools/cli/help.h"
+#include "tools/cli/refusal.h"
+
+namespace fogline {
+namespace {
+
+/// Runs a verb and prints its error if there is one. @return its exit code
+int Run(const CLI::App& app, const Action& action) {
+  const std::string name = CommandName(app);
+  try {
+    const int code = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written, such as on a full disk");
+    }
+    return code;
+  } catch (const InputError& error) {
+    // An error in a file begins with its place, an error in the arguments with "error:".
+    const std::string_view what = error.what();
+    Complain(what.starts_with("error:") ? fmt::format("{}: {}", name, EscapeControls(what))
+                                        : std::string(what));
+    return kBadInput;
+  } catch (const Interrupted& interrupted) {
+    Complain(fmt::format("{}: {}", name, interrupted.what()));
+    return kInterrupted;
+  } catch (const CheckFailed& error) {
+    Complain(fmt::format("{}: error: {}", name, error.what()));
+    return kCheckFailed;
+  } catch (const std::exception& error) {
+    Complain(fmt::format("{}: error: {}", name, error.what()));
+    return kRunFailed;
+  }
+}
+
+/// @param arguments without the program's name, in reverse order
+int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
+  FailWritesBeyondTheSizeLimit();
+  CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
+  app.set_version_flag("--version", VersionText());
+  app.require_subcommand(0, 1);
+  app.formatter(std::make_shared<HelpFormatter>());
+  ShowExitCodes(app, {.check_failed = "a check failed", .interruptible = true});
+  app.footer(
+      "`fogline VERB --help` or `fogline help VERB` explains a verb, with examples.\n\n"
+      "Examples:\n"
+      "  fogline run scenario/paper.json\n"
+      "  fogline table --help");
+  Action action;
+  for (const AddVerb add : verbs) add(app, action);
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& asked) {  // --help, --version
+    if (const std::string misfit = UnknownVerb(app); !misfit.empty()) {
+      Complain(misfit);
+      return kBadInput;
+    }
+    action = [&app, asked] { return app.exit(asked); };
+  } catch (const CLI::ParseError& error) {
+    Complain(Refusal(app, error));
+    return kBadInput;
+  }
+  if (!action) {  // without a verb: the help, and exit code 0, as in cargo
+    action = [&app] {
+      fmt::print("{}", HelpText(app, app));
+      return kDone;
+    };
+  }
+  return Run(app, action);
+}
+
+std::vector<std::string> Reversed(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) arguments.emplace_back(argv[i]);
+  return arguments;
+}
+
+}  // namespace
+
+int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs) {
+  TakeStandardDescriptors();
+  return Main(Reversed(argc, argv), verbs);
+}
+
+int RunOneVerb(int argc, char** argv, AddVerb verb) {
+  TakeStandardDescriptors();
+  if (argc == 2 && std::string_view(argv[1]) == "--version") return RunVerbs(argc, argv, {verb});
+  CLI::App probe;
+  Action ignored;
+  verb(probe, ignored);
+  std::vector<std::string> arguments = Reversed(argc, argv);
+  arguments.push_back(probe.get_subcommands({}).front()->get_name());
+  return Main(std::move(arguments), {verb});
+}
+
+}  // namespace fogline

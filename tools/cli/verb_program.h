@@ -1,0 +1,21 @@
+// Shared code of the verbs' main programs: it parses the command line and turns errors into exit
+// codes.
+#pragma once
+
+#include <initializer_list>
+
+#include "tools/cli/verbs.h"
+
+namespace fogline {
+
+/// Adds a verb to the command line; see verbs.h.
+using AddVerb = void (*)(CLI::App& app, Action& action);
+
+/// Reads the command line "fogline VERB ...", runs the verb, and prints its error if there is one.
+/// @return the exit code
+int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs);
+
+/// The same for the program of a single verb: its command line has no VERB.
+int RunOneVerb(int argc, char** argv, AddVerb verb);
+
+}  // namespace fogline

@@ -1,0 +1,48 @@
+// Findings of `fogline doctor`, and the functions that make them. Each function examines one
+// subject and adds a finding, good or bad, for each item. No function changes anything on the
+// machine.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fogline::doctor {
+
+struct Finding {
+  enum class Level {
+    kOk,
+    kWarning,  // works, but slower, less exact or less convenient
+    kProblem,  // runs over this network will fail
+  };
+  std::string check;  // the examined item: a key for programs
+  Level level = Level::kOk;
+  std::string what;
+  std::string remedy;  // "" if no remedy is needed
+};
+using Findings = std::vector<Finding>;
+
+/// "ok", "warning" or "problem".
+std::string_view NameOf(Finding::Level level);
+
+/// Route, multicast on this machine, socket filter, receive buffer, or the relay of a tcpq:// URL.
+void ExamineNetwork(const std::string& url, Findings& findings);
+
+/// Traffic on the network within a second: runs there, and runs that are announced there.
+void ExamineTraffic(const std::string& url, Findings& findings);
+
+/// Clock, wake-up time, synchronisation, processors, disk.
+void ExamineMachine(Findings& findings);
+
+/// LCM's programs, Java and the message types for lcm-spy.
+/// @param programs folder of this program
+void ExamineTools(const std::filesystem::path& programs, Findings& findings);
+
+/// Whether fogline-ROLE programs exist beside this program and are of the same build.
+void ExaminePrograms(const std::filesystem::path& programs, Findings& findings);
+
+/// Processes of Fogline that run on this machine. It does not touch them.
+void ExamineProcesses(Findings& findings);
+
+}  // namespace fogline::doctor

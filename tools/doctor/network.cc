@@ -1,0 +1,303 @@
+// The network that LCM uses: route, multicast, buffers, and other processes on it.
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/text.h"
+#include "services/runtime/discovery/beacon.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/transport/tcpq_client.h"
+#include "services/runtime/wire/channel_filter.h"
+#include "tools/doctor/doctor_findings.h"
+#include "tools/watch/traffic_statistics.h"
+#include "tools/watch/traffic_text.h"
+
+namespace fogline::doctor {
+namespace {
+
+using Level = Finding::Level;
+
+std::string Content(const char* file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Value of a number among a URL's options; `otherwise` if the URL lacks it.
+int UrlOption(const std::string& url, const std::string& name, int otherwise) {
+  const std::size_t at = url.find(name + "=");
+  if (at == std::string::npos) return otherwise;
+  int value = otherwise;
+  const char* begin = url.data() + at + name.size() + 1;
+  std::from_chars(begin, url.data() + url.size(), value);
+  return value;
+}
+
+bool ExamineGroup(const std::string& url, const std::string& group, Findings& findings) {
+  if (IsMulticast(group)) return true;
+  findings.push_back({"multicast_group", Level::kProblem,
+                      fmt::format("{} is no multicast group (224.0.0.0 to 239.255.255.255)", group),
+                      InPlaceOfUnicast(url)});
+  return false;
+}
+
+std::string RouteRemedy() {
+  return fmt::format(
+      "as root: {} for this machine alone, or with the network's interface in place of lo",
+      kLoopbackRoute);
+}
+
+/// Traffic that stays on this machine. @return whether it can be sent
+bool ExamineOwnMachine(const std::string& url, const std::string& group, Findings& findings) {
+  if (const std::string why = WhyNoMulticast(url); !why.empty()) {
+    findings.push_back({"multicast_route", Level::kProblem, why, "as root: ip link set lo up"});
+    return false;
+  }
+  const std::string error = RouteError(group);
+  findings.push_back(
+      error.empty()
+          ? Finding{"multicast_route", Level::kOk,
+                    fmt::format("{} goes over loopback and stays on this machine (ttl=0)", group),
+                    ""}
+          : Finding{"multicast_route", Level::kWarning,
+                    fmt::format("{} goes over loopback and stays on this machine (ttl=0), but "
+                                "LCM's own programs need a route, and there is none: {}",
+                                group, error),
+                    RouteRemedy()});
+  return true;
+}
+
+bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
+  const std::string error = RouteError(group);
+  if (!error.empty()) {
+    findings.push_back({"multicast_route", Level::kProblem,
+                        fmt::format("no route to {}: {}", group, error), RouteRemedy()});
+    return false;
+  }
+  const std::string interface = RouteInterface(Content("/proc/net/route"), group);
+  const std::string through = interface.empty() ? "a route that is not in the main table"
+                                                : fmt::format("interface {}", interface);
+  if (ttl > 0 && interface == "lo") {
+    findings.push_back(
+        {"multicast_route", Level::kProblem,
+         fmt::format("{} goes through lo: with ttl={} no other machine hears it", group, ttl),
+         "as root: ip route replace 239.0.0.0/8 dev INTERFACE"});
+    return true;
+  }
+  findings.push_back({"multicast_route", Level::kOk,
+                      fmt::format("{} goes through {}, {}", group, through,
+                                  ttl > 0 ? fmt::format("to other machines (ttl={})", ttl)
+                                          : "and stays on this machine (ttl=0)"),
+                      ""});
+  return true;
+}
+
+/// Sends a message forth and back between two connections. @return the time that it took; zero if
+/// it was lost
+Duration RoundTrip(Bus& here, Bus& there, bool& back) {
+  constexpr Duration kLimit = milliseconds(300);
+  const std::vector<std::uint8_t> message(kHeaderEnd);
+  const TimePoint began = Clock::now();
+  back = false;
+  here.Publish("FOGLINE_PING", message);
+  while (!back && Clock::now() - began < kLimit) {
+    there.Wait(milliseconds(1));
+    here.Wait(milliseconds(1));
+  }
+  return back ? Clock::now() - began : Duration::zero();
+}
+
+/// Sends a real LCM message on a port that no other process uses, along the route of this ttl.
+void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
+  constexpr int kRounds = 50;
+  const MulticastAddress fresh = *ParseMulticastUrl(FreshMulticastUrl());
+  const std::string url = fmt::format("udpm://{}:{}?ttl={}", group, fresh.port, ttl);
+  Bus here(url);
+  Bus there(url);
+  bool back = false;
+  there.Subscribe("FOGLINE_PING",
+                  [&there](Arrival& arrival) { there.Publish("FOGLINE_PONG", arrival.bytes()); });
+  here.Subscribe("FOGLINE_PONG", [&back](Arrival&) { back = true; });
+  std::vector<double> times_us;
+  for (int i = 0; i < kRounds; ++i) {
+    const Duration time = RoundTrip(here, there, back);
+    if (time > Duration::zero()) {
+      times_us.push_back(std::chrono::duration<double, std::micro>(time).count());
+    } else if (times_us.empty()) {
+      break;
+    }
+  }
+  if (times_us.empty()) {
+    findings.push_back({"multicast_loopback", Level::kProblem,
+                        fmt::format("a message to {} does not come back to this machine", group),
+                        "let the firewall pass multicast (nft list ruleset; iptables -L)"});
+    return;
+  }
+  std::ranges::sort(times_us);
+  findings.push_back({"multicast_loopback", Level::kOk,
+                      fmt::format("LCM messages go to {} and back in {:.0f} us (median of {})",
+                                  group, times_us[times_us.size() / 2], times_us.size()),
+                      ""});
+}
+
+void ExamineReceiveBuffer(int wanted, Findings& findings) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  int granted = 0;
+  socklen_t size = sizeof(granted);
+  setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted));
+  getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  close(probe);
+  granted /= 2;  // the kernel reports twice the usable size, see socket(7)
+  if (granted >= wanted) {
+    findings.push_back({"receive_buffer", Level::kOk,
+                        fmt::format("the kernel grants receive buffers of {} bytes", granted), ""});
+    return;
+  }
+  findings.push_back(
+      {"receive_buffer", Level::kWarning,
+       fmt::format("receive buffers have {} bytes instead of {}: bursts are lost and sent again",
+                   granted, wanted),
+       fmt::format("as root: sysctl -w net.core.rmem_max={0}; to keep it, "
+                   "net.core.rmem_max={0} in /etc/sysctl.d/fogline.conf",
+                   wanted)});
+}
+
+/// Sends a fragment and then a message to a socket that has the filter of a Bus. @return the first
+/// bytes of the datagram that it receives first; "" if it receives none
+std::string FilteredFirst() {
+  constexpr std::string_view kFragment("LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1A\0", 22);
+  constexpr std::string_view kMessage("LC02\0\0\0\1A\0", 10);
+  const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  auto* here = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, 4> magic{};
+  ssize_t received = 0;
+  if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
+      AttachFilter(receiver, AnyChannelFilter())) {
+    // It sends to itself; on one machine a datagram arrives at once.
+    sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
+    sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
+    received = recv(receiver, magic.data(), magic.size(), 0);
+  }
+  close(receiver);
+  return {magic.data(), static_cast<std::size_t>(std::max<ssize_t>(received, 0))};
+}
+
+void ExamineFilter(const std::string& url, Findings& findings) {
+  if (!url.starts_with("udpm://")) {
+    findings.push_back({"socket_filter", Level::kWarning,
+                        "with mpudpm nothing filters what reaches LCM's parser, whose bounds are "
+                        "wrong for fragments; there is no --key",
+                        "udpm:// in place of mpudpm://"});
+  } else if (FilteredFirst() == "LC02") {
+    findings.push_back({"socket_filter", Level::kOk,
+                        "the kernel keeps fragments and noise from LCM's parser", ""});
+  } else {
+    findings.push_back({"socket_filter", Level::kWarning,
+                        "the kernel takes no socket filter: fragments reach LCM's parser, whose "
+                        "bounds are wrong for them; there is no --key",
+                        "allow setsockopt(SO_ATTACH_FILTER) in the sandbox or container, or use "
+                        "--transport tcpq"});
+  }
+}
+
+void ExamineRelay(const std::string& url, Findings& findings) {
+  try {
+    const tcpq::Client client(url);
+    findings.push_back(
+        {"relay", Level::kOk, fmt::format("the relay {} answers", client.url()), ""});
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    findings.push_back({"relay", Level::kProblem, error.what(), "fogline-relay --help"});
+  }
+}
+
+std::string DescribeRun(const RunView& run) {
+  std::string text = fmt::format("run {} at step {}", run.run_id, run.step);
+  for (const RoleView& role : run.roles) {
+    text += fmt::format("{} {} {}@{}", &role == run.roles.data() ? ":" : ",",
+                        Printable(role.status.role), role.status.pid, Printable(role.status.host));
+  }
+  return text;
+}
+
+void ReportAnnounced(const std::string& url, const BeaconListener& beacons, Findings& findings) {
+  for (const Announcement& run : beacons.Runs()) {
+    findings.push_back({"announced_runs", Level::kOk, run.Text(), ""});
+  }
+  if (beacons.refused() > 0) {
+    findings.push_back({"announced_runs", Level::kWarning,
+                        fmt::format("on {}: {} announcements that no run of this machine can have "
+                                    "made were refused",
+                                    url, beacons.refused()),
+                        "another port keeps a run apart"});
+  }
+}
+
+}  // namespace
+
+void ExamineNetwork(const std::string& url, Findings& findings) {
+  constexpr int kReceiveBuffer = 2 << 20;  // the size that a Bus asks for
+  if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
+  const auto group = GroupOf(url);
+  if (group && ExamineGroup(url, *group, findings)) {
+    const int ttl = UrlOption(url, "ttl", 0);
+    // mpudpm follows the route, whatever the ttl is.
+    const bool here = ttl == 0 && url.starts_with("udpm://");
+    if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
+      ExamineLoopback(*group, std::min(ttl, 1), findings);
+    }
+  }
+  ExamineFilter(url, findings);
+  ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);
+}
+
+void ExamineTraffic(const std::string& url, Findings& findings) {
+  constexpr Duration kListen = milliseconds(1000);
+  constexpr Duration kLookEvery = milliseconds(20);
+  Bus bus(url);
+  BeaconListener beacons(url);
+  const TimePoint end = Clock::now() + kListen;
+  TrafficStatistics statistics(Clock::now());
+  bus.SubscribeAll([&statistics](std::string_view channel, Bytes bytes) {
+    if (!IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
+  });
+  for (TimePoint now = Clock::now(); now < end; now = Clock::now()) {
+    bus.Wait(std::min(end - now, kLookEvery));
+    beacons.Look();
+  }
+  ReportAnnounced(url, beacons, findings);
+  const TrafficView view = statistics.Observe(Clock::now());
+  for (const RunView& run : view.runs) {
+    findings.push_back(
+        {"other_runs", Level::kOk, fmt::format("on {}: {}", url, DescribeRun(run)), ""});
+  }
+  for (const ChannelView& other : view.others) {
+    findings.push_back({"other_runs", Level::kWarning,
+                        fmt::format("on {}: {} messages of no run on channel {}", url,
+                                    other.arrivals.messages, Printable(other.channel)),
+                        "fogline top shows more; another port keeps a run apart"});
+  }
+  if (view.runs.empty() && view.others.empty()) {
+    findings.push_back({"other_runs", Level::kOk, fmt::format("nobody is heard on {}", url), ""});
+  }
+}
+
+}  // namespace fogline::doctor

@@ -1,0 +1,128 @@
+// Processes of Fogline on this machine, from /proc (proc(5)): runs, roles that wait for a run, and
+// processes that are left over from ended runs.
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "tools/doctor/doctor_findings.h"
+
+namespace fogline::doctor {
+namespace {
+
+using Level = Finding::Level;
+constexpr std::string_view kDeleted = " (deleted)";
+
+struct Process {
+  pid_t pid = 0;
+  pid_t parent = 0;
+  char state = '?';
+  std::string program;    // such as "fogline-radar"
+  bool replaced = false;  // the file of the program was removed or replaced
+  std::vector<std::string> arguments;
+
+  /// Value of an option; "" if the option is missing.
+  std::string Option(std::string_view name) const {
+    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+      if (arguments[i] == name) return arguments[i + 1];
+      if (arguments[i].starts_with(std::string(name) + "=")) {
+        return arguments[i].substr(name.size() + 1);
+      }
+    }
+    return "";
+  }
+  std::string Describe() const { return fmt::format("{} (pid {})", program, pid); }
+};
+
+std::optional<Process> ReadProcess(const std::filesystem::path& folder) {
+  Process process;
+  const std::string name = folder.filename().string();
+  const char* end = name.data() + name.size();
+  if (std::from_chars(name.data(), end, process.pid).ptr != end) return std::nullopt;
+  std::error_code error;  // the process may end meanwhile, or belong to another user
+  std::string program = std::filesystem::read_symlink(folder / "exe", error).string();
+  if (program.ends_with(kDeleted)) {
+    process.replaced = true;
+    program.resize(program.size() - kDeleted.size());
+  }
+  process.program = std::filesystem::path(program).filename().string();
+  if (process.program != "fogline" && !process.program.starts_with("fogline-")) return std::nullopt;
+  std::ifstream arguments(folder / "cmdline");
+  for (std::string word; std::getline(arguments, word, '\0');) process.arguments.push_back(word);
+  std::ifstream in(folder / "stat");
+  std::string stat;
+  std::getline(in, stat);
+  // "PID (NAME) STATE PARENT ...", where a name may contain parentheses.
+  std::istringstream fields(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)));
+  fields >> process.state >> process.parent;
+  return process;
+}
+
+std::map<pid_t, Process> ReadProcesses() {
+  std::map<pid_t, Process> processes;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+    auto process = ReadProcess(entry.path());
+    if (process && process->pid != getpid()) processes[process->pid] = std::move(*process);
+  }
+  return processes;
+}
+
+Finding AssessRole(const Process& role, bool has_runner) {
+  const std::string url = role.Option("--lcm-url");
+  const std::string where = url.empty() ? "" : " on " + url;
+  if (!has_runner && !role.Option("--run-id").empty()) {
+    return {"processes", Level::kWarning,
+            fmt::format("{}{} is left of a run whose runner is gone", role.Describe(), where),
+            fmt::format("kill {}", role.pid)};
+  }
+  if (role.state == 'T') {
+    return {"processes", Level::kWarning, fmt::format("{}{} is stopped", role.Describe(), where),
+            fmt::format("kill -CONT {}", role.pid)};
+  }
+  if (role.replaced) {
+    return {
+        "processes", Level::kWarning,
+        fmt::format("{}{} runs a program that has been built anew since", role.Describe(), where),
+        fmt::format("kill {}, and start it again", role.pid)};
+  }
+  return {"processes", Level::kOk, fmt::format("{}{} runs by itself", role.Describe(), where), ""};
+}
+
+}  // namespace
+
+void ExamineProcesses(Findings& findings) {
+  const std::map<pid_t, Process> processes = ReadProcesses();
+  std::map<pid_t, std::vector<const Process*>> runs;  // roles by runner
+  bool any = false;
+  for (const auto& [pid, process] : processes) {
+    if (process.program == "fogline") continue;
+    any = true;
+    const auto parent = processes.find(process.parent);
+    const bool has_runner = parent != processes.end() && parent->second.program == "fogline";
+    const Finding finding = AssessRole(process, has_runner);
+    if (has_runner) runs[process.parent].push_back(&process);
+    // Roles of a run without problems are named together below.
+    if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
+  }
+  for (const auto& [runner, roles] : runs) {
+    findings.push_back(
+        {"processes", Level::kOk,
+         fmt::format("{} has a run with {} processes on {}", processes.at(runner).Describe(),
+                     roles.size(), roles.front()->Option("--lcm-url")),
+         ""});
+  }
+  if (!any) {
+    findings.push_back({"processes", Level::kOk, "no role runs on this machine", ""});
+  }
+}
+
+}  // namespace fogline::doctor

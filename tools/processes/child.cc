@@ -1,0 +1,112 @@
+#include "tools/processes/child.h"
+
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/file.h"
+
+namespace fogline {
+namespace {
+
+/// Runs in the child between fork and exec, so it makes only async-signal-safe calls. If the
+/// program cannot be started, it writes errno to `failure`.
+[[noreturn]] void Become(const char* program, char* const* arguments, int output, int error_output,
+                         int failure, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  setpgid(0, 0);
+  dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  if (error_output >= 0) dup2(error_output, STDERR_FILENO);
+  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves them open.
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  execv(program, arguments);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t written = write(failure, &error, sizeof(error));
+  _exit(127);
+}
+
+/// The errno that Become() has written; 0 if the program runs.
+int FailureOf(int failure) {
+  int error = 0;
+  ssize_t size = 0;
+  do {
+    size = read(failure, &error, sizeof(error));
+  } while (size < 0 && errno == EINTR);
+  return size == sizeof(error) ? error : 0;
+}
+
+}  // namespace
+
+Pipe::Pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    ThrowIfExhausted(errno, "cannot make a pipe");
+    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+  }
+  read = ends[0];
+  write = ends[1];
+}
+
+Pipe::~Pipe() {
+  for (const int end : {read, write}) {
+    if (end >= 0) close(end);
+  }
+}
+
+pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                 int output, int error_output) {
+  // If SIGCHLD is inherited as ignored, waitpid() cannot report how processes end.
+  std::signal(SIGCHLD, SIG_DFL);
+  const auto fail = [&program](int error) {
+    throw std::runtime_error(
+        fmt::format("cannot start {}: {}", program.string(), std::strerror(error)));
+  };
+  const std::string path = program.string();
+  std::vector<char*> argv{const_cast<char*>(path.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  Pipe failure;
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    Become(path.c_str(), argv.data(), output, error_output, failure.write, parent);
+  }
+  if (pid < 0) fail(errno);
+  close(std::exchange(failure.write, -1));
+  if (const int error = FailureOf(failure.read); error != 0) {
+    waitpid(pid, nullptr, 0);
+    fail(error);
+  }
+  return pid;
+}
+
+std::string HowItEnded(int status) {
+  if (WIFSIGNALED(status)) {
+    return fmt::format("was killed by signal {} ({})", WTERMSIG(status),
+                       strsignal(WTERMSIG(status)));
+  }
+  return fmt::format("exited with code {}", WEXITSTATUS(status));
+}
+
+std::filesystem::path ProgramBeside(std::string_view name) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
+}
+
+std::filesystem::path ProgramOf(Role role) {
+  return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
+}
+
+}  // namespace fogline

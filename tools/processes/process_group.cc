@@ -1,0 +1,80 @@
+#include "tools/processes/process_group.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "tools/processes/child.h"
+
+namespace fogline {
+
+ProcessGroup::~ProcessGroup() {
+  Signal(SIGKILL);
+  for (const Process& process : processes_) {
+    waitpid(process.pid, nullptr, 0);
+    close(process.output);
+  }
+}
+
+pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
+                          const std::vector<std::string>& arguments) {
+  Pipe output;
+  fcntl(output.read, F_SETFL, O_NONBLOCK);
+  const pid_t pid = StartChild(program, arguments, output.write, output.write);
+  processes_.push_back(
+      {.role = role, .pid = pid, .output = std::exchange(output.read, -1), .printed = {}});
+  return pid;
+}
+
+std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
+  std::vector<Exit> exits;
+  for (auto process = processes_.begin(); process != processes_.end();) {
+    ReadOutput(*process);
+    int status = 0;
+    if (waitpid(process->pid, &status, WNOHANG) != process->pid) {
+      ++process;
+      continue;
+    }
+    ReadOutput(*process);
+    close(process->output);
+    exits.push_back({.role = process->role,
+                     .pid = process->pid,
+                     .how = HowItEnded(status),
+                     .killed = WIFSIGNALED(status),
+                     .lines = process->printed.Take()});
+    process = processes_.erase(process);
+  }
+  return exits;
+}
+
+std::string ProcessGroup::Describe() const {
+  std::string text;
+  for (const Process& process : processes_) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", NameOf(process.role), process.pid);
+  }
+  return text;
+}
+
+void ProcessGroup::Signal(int signal) {
+  for (const Process& process : processes_) kill(process.pid, signal);
+}
+
+void ProcessGroup::ReadOutput(Process& process) {
+  // Capacity of a pipe (see pipe(7)). The limit keeps a process that prints without end from
+  // blocking the runner.
+  constexpr int kReads = 16;
+  std::array<char, 4096> buffer{};
+  for (int i = 0; i < kReads; ++i) {
+    const ssize_t size = read(process.output, buffer.data(), buffer.size());
+    if (size <= 0) return;
+    process.printed.Append({buffer.data(), static_cast<std::size_t>(size)});
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,92 @@
+#include "tools/processes/relay_process.h"
+
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/clock.h"
+#include "tools/processes/child.h"
+
+namespace fogline {
+namespace {
+
+constexpr Duration kListenLimit = milliseconds(5000);
+
+constexpr std::string_view kHere = "127.0.0.1";
+
+/// The first line that the relay prints, when it listens; "" if it does not listen in time.
+std::string FirstLine(int output) {
+  std::string text;
+  const TimePoint end = Clock::now() + kListenLimit;
+  std::array<char, 256> buffer{};
+  while (text.find('\n') == std::string::npos) {
+    pollfd waited{.fd = output, .events = POLLIN, .revents = 0};
+    const auto left = Milliseconds(end - Clock::now());
+    if (left <= 0) return "";
+    if (poll(&waited, 1, static_cast<int>(left)) <= 0) continue;
+    const ssize_t size = read(output, buffer.data(), buffer.size());
+    if (size <= 0) return "";
+    text.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+RelayProcess::RelayProcess(int restarts)
+    : policy_(restarts), url_(Start(fmt::format("{}:0", kHere))) {}
+
+RelayProcess::~RelayProcess() { End(); }
+
+std::string RelayProcess::Start(const std::string& place) {
+  const std::filesystem::path program = ProgramBeside("fogline-relay");
+  Pipe output;
+  // The relay prints on the runner's stderr which clients it disconnects.
+  pid_ = StartChild(program, {"--listen", place, "--quiet"}, output.write);
+  close(std::exchange(output.write, -1));
+  std::string url = FirstLine(output.read);
+  if (!url.empty()) return url;
+  End();
+  throw std::runtime_error(fmt::format("cannot start {}: it does not listen", program.string()));
+}
+
+void RelayProcess::End() {
+  if (pid_ < 0) return;
+  kill(pid_, SIGKILL);  // the relay has no data to save
+  waitpid(pid_, nullptr, 0);
+  pid_ = -1;
+}
+
+std::string RelayProcess::Look(const RunCoordinator& run, TimePoint now) {
+  int status = 0;
+  if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+    dead_ = std::exchange(pid_, -1);
+    death_ = fmt::format("{} {}", HowItEnded(status), run.Where());
+    const auto wait = policy_.OnDeath(run.step());
+    if (!wait) {
+      throw std::runtime_error(fmt::format("relay (pid {}) {}, after {} restarts (--restarts)",
+                                           dead_, death_, policy_.restarts()));
+    }
+    start_at_ = now + *wait;
+  }
+  if (!start_at_ || now < *start_at_) return "";
+  try {
+    Start(url_.substr(url_.find("//") + 2));  // the address at which its clients look for it
+  } catch (const std::runtime_error&) {
+    start_at_ = now + policy_.OnFailedStart();
+    return "";
+  }
+  start_at_.reset();
+  return fmt::format("relay (pid {}) {}; started again as pid {} ({} of {})", dead_, death_, pid_,
+                     policy_.restarts(), policy_.limit());
+}
+
+}  // namespace fogline

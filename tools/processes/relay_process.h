@@ -1,0 +1,49 @@
+// A relay for one run: fogline-relay on a free port of this machine. It is restarted at the same
+// address when it dies. The destructor ends it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "services/runtime/coordination/restart_policy.h"
+#include "services/runtime/coordination/run_coordinator.h"
+
+namespace fogline {
+
+class RelayProcess {
+ public:
+  /// Starts the relay and waits until it listens.
+  /// @param restarts maximum number of restarts @throws std::runtime_error
+  explicit RelayProcess(int restarts);
+  ~RelayProcess();
+  RelayProcess(const RelayProcess&) = delete;
+  RelayProcess& operator=(const RelayProcess&) = delete;
+
+  const std::string& url() const { return url_; }
+
+  /// Checks whether the relay has died, and restarts it after its delay. Call it every few tens of
+  /// milliseconds.
+  /// @return a message for the user, "" if there is none
+  /// @throws std::runtime_error if the restarts are used up
+  std::string Look(const RunCoordinator& run, TimePoint now);
+
+  /// Number of restarts, and how the last dead process ended.
+  int restarts() const { return policy_.restarts(); }
+  const std::string& death() const { return death_; }
+
+ private:
+  /// @return the line that the relay prints when it listens
+  std::string Start(const std::string& place);
+  void End();
+
+  RestartPolicy policy_;
+  pid_t pid_ = -1;
+  pid_t dead_ = -1;  // process id of the last dead relay
+  std::string url_;
+  std::string death_{};
+  std::optional<TimePoint> start_at_{};
+};
+
+}  // namespace fogline

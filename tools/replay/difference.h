@@ -1,0 +1,29 @@
+// The first field in which two messages, or two runs, differ.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "services/log/run_log.h"
+
+namespace fogline {
+
+/// A difference, with its values in the shortest form that distinguishes any two values.
+struct Difference {
+  std::int64_t step = 0;
+  std::string channel;
+  std::string field;  // "name[index]"; text in parentheses is no field
+  std::string a;
+  std::string b;
+};
+
+/// The first difference between two messages of a channel (an index in kChannels). It ignores the
+/// run ids, as the digest does. Empty bytes stand for a missing message, which occurs in real time.
+std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, Bytes a, Bytes b);
+
+/// The same for all channels of a step, in the order of the graph table.
+std::optional<Difference> FirstDifference(std::int64_t step, const StepMessages& a,
+                                          const StepMessages& b);
+
+}  // namespace fogline

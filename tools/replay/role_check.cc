@@ -1,0 +1,92 @@
+#include "tools/replay/role_check.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "tools/processes/child.h"
+
+namespace fogline {
+
+std::vector<RoleCheck> MakeRoleChecks(const RunLog& run) {
+  std::vector<RoleCheck> roles;
+  for (const RoleInfo& info : kRoles) {
+    auto replay = MakeRoleReplay(info.role, run);
+    if (replay != nullptr) roles.push_back({.role = info.role, .replay = std::move(replay)});
+  }
+  return roles;
+}
+
+void CheckRoles(RunLogReader& reader, std::vector<RoleCheck>& roles) {
+  StepMessages before{};  // its bytes live as long as the reader
+  std::int64_t step = 0;
+  for (; const StepMessages* messages = reader.Next(); ++step) {
+    for (RoleCheck& one : roles) {
+      std::optional<Difference> difference = one.replay->Step(step, *messages, before);
+      if (!difference) continue;
+      ++one.steps_that_differ;
+      if (!one.first) one.first = std::move(difference);
+    }
+    before = *messages;
+  }
+}
+
+std::string Verification::Trouble() const {
+  if (!failure) return broken;
+  const Difference& first = failure->first;
+  return fmt::format(
+      "step {}: {} of {}: {} is {} in the log, and {} when it is computed again: was it altered on "
+      "its way?",
+      first.step, first.channel, NameOf(failure->role), first.field, first.a, first.b);
+}
+
+std::vector<OtherBuild> OtherBuildsIn(const RunLog& run) {
+  std::vector<OtherBuild> others;
+  if (!run.seal || !run.seal->whole) return others;
+  const log_seal_t& says = run.seal->says;
+  for (const RoleInfo& info : kRoles) {
+    const auto place = std::ranges::find(says.role, info.name) - says.role.begin();
+    if (place >= std::ssize(says.build_id)) continue;
+    const BuildId build = says.build_id[static_cast<std::size_t>(place)];
+    const BuildId ours = BuildIdOf(ProgramOf(info.role));
+    // In a run in one process each role is of the build of that process.
+    if (build != kUnknownBuild && (build == ours || build == OwnBuildId())) continue;
+    others.push_back({.role = info.role, .pid = 0, .host = "", .build = build, .ours = ours});
+  }
+  return others;
+}
+
+Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
+                       const std::vector<OtherBuild>& others) {
+  Verification verification;
+  std::vector<RoleCheck> roles = MakeRoleChecks(run);
+  std::erase_if(roles, [&](const RoleCheck& one) {
+    std::string why;
+    if (run.realtime) why = "a run in real time";
+    const auto other = std::ranges::find(others, one.role, &OtherBuild::role);
+    if (other != others.end()) {
+      why = other->build == kUnknownBuild ? "of an unknown build" : "of another build";
+    }
+    if (!why.empty()) verification.left_out.push_back({.role = one.role, .why = why});
+    return !why.empty();
+  });
+  for (const RoleCheck& one : roles) verification.roles.push_back(one.role);
+  try {
+    RunLogReader reader(log);
+    CheckRoles(reader, roles);
+  } catch (const InputError& error) {
+    verification.broken = error.what();
+  }
+  for (RoleCheck& one : roles) {
+    if (!one.first) continue;
+    const bool earlier =
+        !verification.failure || one.first->step < verification.failure->first.step;
+    if (earlier) verification.failure = {.role = one.role, .first = std::move(*one.first)};
+  }
+  return verification;
+}
+
+}  // namespace fogline

@@ -1,0 +1,59 @@
+// Checks that the messages of a run's roles are those that the algorithms compute here. Each step
+// takes its inputs from the log, so a difference in one role does not carry over to another role.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/runtime/wire/other_build.h"
+#include "tools/replay/role_replay.h"
+
+namespace fogline {
+
+/// A role, and the result of computing its steps again.
+struct RoleCheck {
+  Role role;
+  std::unique_ptr<RoleReplay> replay;
+  std::int64_t steps_that_differ = 0;
+  std::optional<Difference> first;  // `a` in the log, `b` computed here
+};
+
+/// The roles of a run in lockstep that compute messages, in their initial state.
+std::vector<RoleCheck> MakeRoleChecks(const RunLog& run);
+/// Computes every step of a log again.
+/// @throws InputError for a step that cannot be computed; the text lacks the log's name
+void CheckRoles(RunLogReader& reader, std::vector<RoleCheck>& roles);
+
+/// Result of the check of a run's own log.
+struct Verification {
+  struct LeftOut {
+    Role role;
+    std::string why;
+  };
+  std::vector<Role> roles;        // roles that were computed again
+  std::vector<LeftOut> left_out;  // roles that could not be computed again
+  struct Failure {
+    Role role;
+    Difference first;  // `a` in the log, `b` computed here
+  };
+  std::optional<Failure> failure;  // the earliest difference
+  std::string broken;              // why a step could not be computed; "" if all steps could
+
+  bool Holds() const { return !failure && broken.empty(); }
+  /// The difference, in one line; "" if there is none.
+  std::string Trouble() const;
+};
+
+/// The roles of which the seal of a log says that they were of another build than the programs
+/// here, or does not say of which; none for a log without a seal.
+std::vector<OtherBuild> OtherBuildsIn(const RunLog& run);
+
+/// @param others roles of another build; their algorithms are not in this program
+Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
+                       const std::vector<OtherBuild>& others);
+
+}  // namespace fogline

@@ -1,0 +1,129 @@
+#include "tools/replay/role_replay.h"
+
+#include <exception>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "services/acc/acc.h"
+#include "services/algorithm.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/radar/radar.h"
+#include "services/runtime/wire/refusals.h"
+#include "services/world/world.h"
+
+namespace fogline {
+namespace {
+
+/// The algorithms of all roles that compute messages.
+using Algorithms = std::tuple<World, Radar, Lidar, Fusion, Acc, Driver, Arbitrator, Follower>;
+
+template <class Algorithm>
+class ReplayOf final : public RoleReplay {
+ public:
+  explicit ReplayOf(const RunLog& run)
+      : algorithm_(run.scenario),
+        run_id_(run.run_id),
+        hears_(Traits::UsesOptionalInput(run.scenario)) {}
+
+  std::optional<Difference> Step(std::int64_t step, const StepMessages& messages,
+                                 const StepMessages& before) override {
+    if constexpr (Traits::kStarts) {
+      if (step == 0) return Compare(step, algorithm_.Start(run_id_), messages);
+    }
+    WithIndex<kInputs>([&]<std::size_t I> { Read<I>(step, messages, before); });
+    try {
+      if constexpr (Traits::kHears) {
+        if (hears_) SetOptionalInput(step, messages, before);
+      }
+      return Compare(step, Compute(std::make_index_sequence<kInputs>{}), messages);
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw InputError(
+          fmt::format("step {}: {} refuses it: {}", step, NameOf(Traits::kRole), error.what()));
+    }
+  }
+
+ private:
+  using Traits = AlgorithmTraits<Algorithm>;
+  using AllInputs = typename Traits::AllInputs;
+  static constexpr std::size_t kInputs = std::tuple_size_v<typename Traits::Inputs>;
+
+  template <std::size_t N, class F>
+  static void WithIndex(F&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<I>(), ...); }
+    (std::make_index_sequence<N>{});
+  }
+
+  /// Reads input I of a step, as the role's process does.
+  template <std::size_t I>
+  void Read(std::int64_t step, const StepMessages& messages, const StepMessages& before) {
+    using M = std::tuple_element_t<I, AllInputs>;
+    constexpr std::int64_t kLag = LagOf(ChannelOf<M>().from, Traits::kRole);
+    const Bytes bytes = (kLag == 0 ? messages : before)[IndexOf<M>()];
+    if (Examine(bytes, std::get<I>(inputs_)) == nullptr) return;
+    throw InputError(fmt::format("step {}: {} is no such message with finite values", step - kLag,
+                                 ChannelOf<M>().name));
+  }
+
+  void SetOptionalInput(std::int64_t step, const StepMessages& messages,
+                        const StepMessages& before) {
+    using M = std::tuple_element_t<kInputs, AllInputs>;
+    // Before the run the message is all zero (services/algorithm.h).
+    if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
+    algorithm_.SetOptionalInput(std::get<kInputs>(inputs_));
+  }
+
+  template <std::size_t... I>
+  const typename Traits::Output& Compute(std::index_sequence<I...>) {
+    return algorithm_.Step(std::get<I>(inputs_)...);
+  }
+
+  std::optional<Difference> Compare(std::int64_t step, const typename Traits::Output& output,
+                                    const StepMessages& messages) {
+    std::optional<Difference> first;
+    const auto compare = [&]<class M>(const M& message) {
+      if (first) return;
+      Encode(message, encoded_);
+      first = FirstDifference(IndexOf<M>(), step, messages[IndexOf<M>()], encoded_);
+    };
+    if constexpr (std::is_same_v<std::tuple<typename Traits::Output>, typename Traits::Outputs>) {
+      compare(output);
+    } else {
+      std::apply([&](const auto&... message) { (compare(message), ...); }, output);
+    }
+    return first;
+  }
+
+  Algorithm algorithm_;
+  std::int64_t run_id_;
+  bool hears_;  // whether the role hears its extra input in this scenario
+  AllInputs inputs_{};
+  std::vector<std::uint8_t> encoded_;
+};
+
+}  // namespace
+
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const RunLog& run) {
+  std::unique_ptr<RoleReplay> replay;
+  [&]<class... A>(std::type_identity<std::tuple<A...>>) {
+    (
+        [&] {
+          if (AlgorithmTraits<A>::kRole == role) replay = std::make_unique<ReplayOf<A>>(run);
+        }(),
+        ...);
+  }(std::type_identity<Algorithms>{});
+  return replay;
+}
+
+}  // namespace fogline

@@ -1,0 +1,34 @@
+// Feeds one role with the inputs from a log, and compares its messages with those in the log. A run
+// in lockstep is a function of its scenario. So the messages must be equal bit by bit, as long as
+// the role still computes as it did when the log was made.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "scenario/sections/scenario.h"
+#include "services/graph.h"
+#include "services/log/run_log.h"
+#include "tools/replay/difference.h"
+
+namespace fogline {
+
+class RoleReplay {
+ public:
+  virtual ~RoleReplay() = default;
+
+  /// Computes a step. Call it for every step in order, from 0 on.
+  /// @param messages of the step
+  /// @param before messages of the step before; step 0 does not use them
+  /// @return the first difference, `a` in the log and `b` computed here
+  /// @throws InputError for an invalid message, or one that the role refuses
+  virtual std::optional<Difference> Step(std::int64_t step, const StepMessages& messages,
+                                         const StepMessages& before) = 0;
+};
+
+/// A role of a run in its initial state; nullptr for the recorder and the runner, which compute
+/// nothing. @throws InputError for an impossible scenario
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const RunLog& run);
+
+}  // namespace fogline

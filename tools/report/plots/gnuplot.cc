@@ -1,0 +1,186 @@
+#include "tools/report/plots/gnuplot.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "common/atomic_file.h"
+#include "common/process/interrupt.h"
+
+extern char** environ;
+
+namespace fogline::report {
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+[[noreturn]] void Fail(const std::string& what, const std::string& why) {
+  throw std::runtime_error(what + ": " + why);
+}
+
+/// A file without a name; it disappears when it is closed.
+File NamelessFile() {
+  File file(std::tmpfile());
+  if (file == nullptr) Fail("temporary file", std::strerror(errno));
+  return file;
+}
+
+/// The whole content of `file`, without white space at its ends.
+std::string TextOf(std::FILE* file) {
+  std::string text;
+  std::array<char, 4096> part{};
+  std::rewind(file);
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), file)) {
+    text.append(part.data(), size);
+  }
+  constexpr const char* kSpace = " \n\r\t";
+  const std::size_t begin = text.find_first_not_of(kSpace);
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
+}
+
+/// Standard streams of a child process.
+class Streams {
+ public:
+  Streams() { posix_spawn_file_actions_init(&actions_); }
+  ~Streams() { posix_spawn_file_actions_destroy(&actions_); }
+  Streams(const Streams&) = delete;
+  Streams& operator=(const Streams&) = delete;
+
+  void Connect(int descriptor, int to) {
+    posix_spawn_file_actions_adddup2(&actions_, to, descriptor);
+  }
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+/// Runs gnuplot. @return its exit status, in the form of waitpid(). gnuplot reads the script as a
+/// file instead of typed input, so that it ends at the first error.
+int StatusOfGnuplot(const Streams& streams) {
+  std::string name = "gnuplot";
+  std::string ignore_personal_settings = "-d";
+  std::string script = "/dev/stdin";
+  std::array<char*, 4> arguments{name.data(), ignore_personal_settings.data(), script.data(),
+                                 nullptr};
+  pid_t child = 0;
+  const int error =
+      posix_spawnp(&child, name.c_str(), streams.get(), nullptr, arguments.data(), environ);
+  if (error == ENOENT)
+    Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
+  if (error != 0) Fail("gnuplot", std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) Fail("gnuplot", std::strerror(errno));
+  }
+  return status;
+}
+
+/// Settings of gnuplot for a format. Letters and lines have the same share of the picture in all
+/// formats.
+struct FormatRow {
+  FigureFormat format;
+  std::string_view suffix;
+  std::string_view terminal;
+  double unit;  // of the terminal's size, per unit of kWidth
+  std::string_view font;
+  double font_scale;
+  double line_width;
+  double point_scale;
+};
+
+constexpr double kInches = 1.0 / 200;  // with it a PDF figure is 8 inches wide
+constexpr std::array kFormats{
+    FormatRow{FigureFormat::kPng, "png", "pngcairo", 1, "sans", 1, 2, 1},
+    // The unit of font sizes is 4/3 of the unit in the cairo terminals, and 1 in svg.
+    FormatRow{FigureFormat::kSvg, "svg", "svg", 1, "sans-serif", 4.0 / 3, 2, 0.7},
+    FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
+};
+
+const FormatRow& RowOf(FigureFormat format) {
+  return *std::ranges::find(kFormats, format, &FormatRow::format);
+}
+
+}  // namespace
+
+void RunGnuplot(const std::string& script, const std::filesystem::path& output) {
+  const File input = NamelessFile();
+  const File words = NamelessFile();
+  AtomicFile picture(output);
+  std::fwrite(script.data(), 1, script.size(), input.get());
+  if (std::fflush(input.get()) != 0) Fail("temporary file", std::strerror(errno));
+
+  Streams streams;
+  streams.Connect(STDIN_FILENO, fileno(input.get()));
+  streams.Connect(STDOUT_FILENO, picture.descriptor());
+  streams.Connect(STDERR_FILENO, fileno(words.get()));
+  const int status = StatusOfGnuplot(streams);
+  // Ctrl-C reaches gnuplot too, so an interrupt is checked before gnuplot's status.
+  if (WasInterrupted()) throw Interrupted("interrupted; not all figures are written");
+  if (status != 0) Fail("gnuplot", TextOf(words.get()));
+  picture.Finish();
+}
+
+std::string FigureFile(FigureFormat format, std::string_view name) {
+  return fmt::format("figure-{}.{}", name, RowOf(format).suffix);
+}
+
+std::string Terminal(FigureFormat format, double height) {
+  const FormatRow& row = RowOf(format);
+  return fmt::format(
+      "set encoding utf8\nset minussign\n"
+      "set terminal {} noenhanced size {},{} font '{},20' fontscale {} linewidth {} "
+      "background rgb 'white'\npoint_scale = {}\n",
+      row.terminal, kWidth * row.unit, height * row.unit, row.font, row.font_scale, row.line_width,
+      row.point_scale);
+}
+
+std::string Margins(const Place& place) {
+  return fmt::format(
+      "set margins at screen {:.4f}, at screen {:.4f}, at screen {:.4f}, at screen {:.4f}\n",
+      place.left, place.right, place.bottom, place.top);
+}
+
+std::string NameOfX(std::string_view name, double height) {
+  constexpr double kBelowPlot = 88;  // distance to the middle of the letters
+  return fmt::format("set label {} {} at graph 0.5, graph 0 center offset screen 0, {:.4f}\n",
+                     kLabelOfX, GnuplotString(name), -kBelowPlot / height);
+}
+
+std::string NameOfY(std::string_view name, double middle) {
+  constexpr double kFromLeft = 38;  // distance to the middle of the letters
+  return fmt::format("set label {} {} at screen {:.4f}, screen {:.4f} center rotate\n", kLabelOfY,
+                     GnuplotString(name), kFromLeft / kWidth, middle);
+}
+
+const std::string_view kAxes =
+    "set border 3 linecolor rgb '#1b2127' linewidth 0.6\n"
+    "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
+    "set grid linecolor rgb '#e3e3de' linetype 1 linewidth 0.5\n";
+
+std::string GnuplotString(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += '\'';
+    const bool control = static_cast<unsigned char>(c) < 0x20;
+    quoted += control ? ' ' : c;
+  }
+  return quoted + "'";
+}
+
+}  // namespace fogline::report

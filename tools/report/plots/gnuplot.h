@@ -1,0 +1,64 @@
+// Runs gnuplot, and defines the style of the pictures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "tools/report/report.h"
+
+namespace fogline::report {
+
+/// Runs gnuplot with `script`, and writes its standard output into the file `output`. It uses no
+/// shell. If gnuplot fails, no file is made.
+/// @throws std::runtime_error with gnuplot's own message
+void RunGnuplot(const std::string& script, const std::filesystem::path& output);
+
+inline constexpr std::string_view kInk = "#1b2127";
+
+inline constexpr double kWidth = 1600;
+
+/// A figure's file name: figure-NAME with the suffix of the format.
+std::string FigureFile(FigureFormat format, std::string_view name);
+
+/// Commands for a picture of this format, kWidth wide: in pixels for a PNG file, in 1/200 inch for
+/// a PDF file. Point sizes are multiplied by its `point_scale`.
+std::string Terminal(FigureFormat format, double height);
+
+/// Commands for axes and grid.
+extern const std::string_view kAxes;
+
+/// Position of a plot in its picture, as shares from the lower left corner.
+struct Place {
+  double left;
+  double right;
+  double bottom;
+  double top;
+};
+
+/// Room for texts around a plot, in units of kWidth. It suffices for a font whose letters are a
+/// quarter larger than those of the widest common font (DejaVu Sans Mono Bold). gnuplot cuts off
+/// text outside the picture, and the available font depends on the machine.
+inline constexpr double kRoomLeft = 185;   // for values and the y axis's name
+inline constexpr double kRoomBelow = 135;  // for values and the x axis's name
+inline constexpr double kRoomRight = 45;   // for half of the last value
+inline constexpr double kRoomOfKey = 115;  // for three lines
+
+/// Commands that set the position of the next plot.
+std::string Margins(const Place& place);
+
+/// Commands that put the name of the next plot's x axis below it, and the name of the y axis at the
+/// left edge of the picture, at the height `middle` (a share). Both distances are independent of
+/// the font.
+std::string NameOfX(std::string_view name, double height);
+std::string NameOfY(std::string_view name, double middle);
+
+/// Numbers of these labels, for "unset label". gnuplot gives lower numbers to other labels.
+inline constexpr int kLabelOfX = 1001;
+inline constexpr int kLabelOfY = 1002;
+
+/// `text` as a gnuplot string in single quotes, in which gnuplot expands nothing. Line breaks and
+/// other control characters become spaces.
+std::string GnuplotString(std::string_view text);
+
+}  // namespace fogline::report

@@ -1,0 +1,364 @@
+#include "tools/runner/bus_run.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/process/console.h"
+#include "common/process/interrupt.h"
+#include "common/process/progress.h"
+#include "common/text.h"
+#include "scenario/io/loader.h"
+#include "services/acc/acc.h"
+#include "services/arbitrator/arbitrator.h"
+#include "services/driver/driver.h"
+#include "services/follower/follower.h"
+#include "services/fusion/fusion.h"
+#include "services/lidar/lidar.h"
+#include "services/radar/radar.h"
+#include "services/recorder/recorder.h"
+#include "services/runtime/coordination/run_coordinator.h"
+#include "services/runtime/discovery/beacon.h"
+#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/process/step_node.h"
+#include "services/runtime/realtime/fallback_log.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/world/world.h"
+#include "tools/processes/child.h"
+#include "tools/processes/external_roles.h"
+#include "tools/processes/relay_process.h"
+#include "tools/runner/kept_log.h"
+#include "tools/runner/supervisor.h"
+
+namespace fogline {
+namespace {
+
+// Time in which a role has to be ready.
+constexpr Duration kJoinLimit = milliseconds(10'000);
+// Interval at which the runner checks its processes while no message arrives.
+constexpr Duration kLookEvery = milliseconds(20);
+// Interval at which the runner checks whether awaited roles belong to other runs.
+constexpr Duration kLookForExternal = milliseconds(100);
+// A process that is silent for this long hangs: ten of its signs of life.
+constexpr Duration kHangLimit = milliseconds(2000);
+// In real time half of that, because by then the readers of the process have long worked without
+// it. It still covers five signs of life, because no repair brings back a lost one.
+constexpr Duration kRealtimeHangLimit = milliseconds(1000);
+
+/// The builds of the runner's own programs; a role that is started elsewhere may have another one.
+RoleBuilds OwnBuilds(bool in_memory) {
+  RoleBuilds builds{};
+  for (const RoleInfo& info : kRoles) {
+    builds[static_cast<std::size_t>(info.role)] =
+        in_memory ? OwnBuildId() : BuildIdOf(ProgramOf(info.role));
+  }
+  return builds;
+}
+
+/// First sequence number of a runner that replaces another one. Roles of the old runner may still
+/// be alive, and they obey the newest runner. A runner sends less than one message per microsecond,
+/// so the time in microseconds exceeds every number of the old runner.
+std::int64_t NewerThanEveryRunner() {
+  using std::chrono::microseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<microseconds>(now).count();
+}
+
+RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
+                                             const ExperimentOptions& options, bool in_memory) {
+  // A slow pace is no stall: a step may take this time.
+  const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
+  const auto& resume = options.resume;
+  return {.run_id = resume ? resume->front.run_id : DrawRunId(),
+          .scenario_text = resume ? resume->front.parts.Text() : PrintScenario(scenario),
+          .steps = scenario.steps,
+          .progress = resume ? resume->remains.steps - 1 : -1,
+          .sequence = resume ? NewerThanEveryRunner() : 0,
+          .pace = options.pace,
+          .realtime = options.realtime,
+          .period = duration_cast<Duration>(step),
+          .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
+          .stall_limit = options.stall_limit + duration_cast<Duration>(step),
+          .external = options.external,
+          .restarts = options.restarts,
+          .builds = OwnBuilds(in_memory),
+          .same_build = options.same_build};
+}
+
+// ---- memq --------------------------------------------------------------------------------------
+
+template <class Algorithm>
+std::unique_ptr<Node> MakeNode(Bus& bus, std::int64_t run_id) {
+  return std::make_unique<StepNode<Algorithm>>(bus, run_id);
+}
+
+void RunInMemory(Bus& bus, RunCoordinator& coordinator, std::int64_t run_id,
+                 const Scenario& scenario, const std::filesystem::path& log,
+                 Recorder::Existing existing) {
+  std::vector<std::unique_ptr<Node>> nodes;
+  for (const auto make :
+       {MakeNode<World>, MakeNode<Radar>, MakeNode<Lidar>, MakeNode<Fusion>, MakeNode<Acc>,
+        MakeNode<Driver>, MakeNode<Arbitrator>, MakeNode<Follower>}) {
+    nodes.push_back(make(bus, run_id));
+  }
+  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log, existing));
+  Progress progress("step", scenario.steps);
+  while (coordinator.phase() == RunCoordinator::Phase::kJoining ||
+         coordinator.phase() == RunCoordinator::Phase::kRunning) {
+    const TimePoint now = Clock::now();
+    TimePoint next = coordinator.Poll(now);
+    for (const auto& node : nodes) next = std::min(next, node->Poll(now));
+    // Messages come first: nothing is due by the clock while there are any.
+    if (bus.Wait(next - Clock::now())) bus.Drain();
+    progress.Show(coordinator.step());
+    if (WasInterrupted()) break;
+  }
+  coordinator.Stop();
+  bus.Drain();
+}
+
+/// The last STATUS of each process of a role.
+std::vector<status_t> LastWords(const RunCoordinator& coordinator, Role role) {
+  const RunCoordinator::Member& member = coordinator.member(role);
+  std::vector<status_t> words = member.dead;
+  if (member.status) words.push_back(*member.status);
+  return words;
+}
+
+/// The processes, dead ones included, whose build differs from the runner's.
+std::vector<OtherBuild> OtherBuilds(const RunCoordinator& coordinator) {
+  std::vector<OtherBuild> others;
+  for (const RoleInfo& info : kRoles) {
+    for (const status_t& status : LastWords(coordinator, info.role)) {
+      auto other = OtherBuildOf(info.role, status, coordinator.builds());
+      if (other) others.push_back(std::move(*other));
+    }
+  }
+  return others;
+}
+
+// ---- processes ---------------------------------------------------------------------------------
+
+void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
+                       const std::string& external) {
+  Notice(fmt::format("run {} on {}", run_id, bus.url()));
+  if (!group.empty()) Notice(fmt::format("processes: {}", group.Describe()));
+  if (!external.empty()) Notice(external);
+}
+
+/// Reports, once each, the processes that have an awaited role but belong to another run.
+class BusyElsewhere {
+ public:
+  explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+
+  void Look(const RunCoordinator& coordinator, TimePoint now) {
+    if (now < look_at_) return;
+    look_at_ = now + kLookForExternal;
+    const std::vector<Role> awaited = coordinator.Awaited(now);
+    if (awaited.empty()) return;
+    for (const ForeignPeer& stranger : coordinator.foreign_peers().known()) {
+      const std::string who = Describe(stranger);
+      const bool is_awaited = std::ranges::any_of(
+          awaited, [&stranger](Role role) { return NameOf(role) == stranger.role; });
+      if (!is_awaited || !told_.insert(who).second) continue;
+      say_(
+          fmt::format("{} is not free: it comes when that run is over, or when its runner has "
+                      "been silent for {:g} s",
+                      who, Seconds(RunnerWatch::kSilent)));
+    }
+  }
+
+ private:
+  std::function<void(const std::string&)> say_;
+  std::set<std::string> told_;
+  TimePoint look_at_{};
+};
+
+/// What a person is warned of while a run goes on, each thing once.
+class Warnings {
+ public:
+  Warnings(RunCoordinator& coordinator, Progress& progress)
+      : coordinator_(coordinator), progress_(progress) {}
+
+  void LookAtTheClock() {
+    const Duration away = coordinator_.TakeLongestPause();
+    if (away == Duration::zero()) return;
+    Say(fmt::format("the runner was held up for {:.1f} s {}",
+                    std::chrono::duration<double>(away).count(), coordinator_.Where()));
+  }
+
+  void LookAtTheRoles() {
+    if (!compared_ && coordinator_.phase() == RunCoordinator::Phase::kRunning) {
+      compared_ = true;
+      for (const OtherBuild& other : OtherBuilds(coordinator_)) Say(other.Text());
+    }
+    if (key_trouble_.empty()) {
+      key_trouble_ = coordinator_.KeyTrouble();
+      if (!key_trouble_.empty()) Say(key_trouble_);
+    }
+  }
+
+ private:
+  void Say(const std::string& what) { progress_.Say("warning: " + what); }
+
+  RunCoordinator& coordinator_;
+  Progress& progress_;
+  bool compared_ = false;  // the builds
+  std::string key_trouble_;
+};
+
+std::vector<Restarts> RunAsProcesses(Bus& bus, RunCoordinator& coordinator, RelayProcess* relay,
+                                     std::int64_t run_id, const Scenario& scenario,
+                                     const ExperimentOptions& options,
+                                     const std::filesystem::path& log) {
+  Progress progress("step", scenario.steps);
+  Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
+  const ExternalRoles external(bus.url(), options.traffic, options.wait);
+  const auto say = [&](const std::string& line) {
+    if (options.announce) progress.Say(line);
+  };
+  BusyElsewhere elsewhere(say);
+  Supervisor supervisor(bus, coordinator,
+                        {.url = bus.url(),
+                         .run_id = run_id,
+                         .log = log,
+                         .resume = options.resume.has_value(),
+                         .arguments = ToArguments(options.traffic),
+                         .external = options.external,
+                         .restarts = options.restarts,
+                         // A hanging process is found before the run counts as stalled.
+                         .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
+                                             options.stall_limit / 2),
+                         .say = say});
+  if (options.announce) {
+    AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
+  }
+  Warnings warnings(coordinator, progress);
+  FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
+  if (options.realtime && options.announce) {
+    coordinator.OnEveryStatus([&](const status_t& status) {
+      if (const Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());
+    });
+  }
+  try {
+    while (coordinator.phase() == RunCoordinator::Phase::kJoining ||
+           coordinator.phase() == RunCoordinator::Phase::kRunning) {
+      const TimePoint now = Clock::now();
+      const TimePoint next = std::min(coordinator.Poll(now), now + kLookEvery);
+      if (options.announce) warnings.LookAtTheClock();
+      if (bus.Wait(next - now)) bus.Drain();
+      supervisor.Look(Clock::now());
+      if (relay != nullptr) {
+        if (const std::string news = relay->Look(coordinator, now); !news.empty()) say(news);
+      }
+      elsewhere.Look(coordinator, now);
+      external.Check(coordinator, now);
+      if (beacon.Due(now)) beacon.Send(now, coordinator.Awaited(now));
+      progress.Show(coordinator.step());
+      if (options.announce) warnings.LookAtTheRoles();
+      if (WasInterrupted()) break;
+    }
+  } catch (const std::exception& error) {
+    coordinator.Fail(error.what());  // the processes below still end in order
+  }
+  supervisor.End();
+  return supervisor.restarts();
+}
+
+/// What the recorders of a run have reported about the log. All but the last recorder are dead. In
+/// real time a recorder drops the part that its predecessor wrote, so only the last report counts.
+std::vector<WrittenLog> WrittenBy(const RunCoordinator& coordinator, bool realtime) {
+  std::vector<WrittenLog> written;
+  for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
+    if (realtime) written.clear();
+    written.push_back({.begin = status.log_begin,
+                       .bytes = status.log_bytes,
+                       .checksum = static_cast<std::uint32_t>(status.log_checksum)});
+  }
+  return written;
+}
+
+std::string UrlOf(const std::string& transport) {
+  if (transport == "memq") return "memq://";
+  if (transport == "udpm") return FreshMulticastUrl();
+  if (IsLcmUrl(transport)) return transport;
+  throw InputError(
+      fmt::format("error: --transport {}: neither direct, memq, udpm, tcpq nor an LCM URL such as "
+                  "\"udpm://239.255.76.67:7667?ttl=0\"",
+                  transport));
+}
+
+}  // namespace
+
+std::int64_t DrawRunId() {
+  std::uint64_t id = 0;
+  randombytes_buf(&id, sizeof(id));
+  return static_cast<std::int64_t>(id >> 2) + 1;  // positive, for easier reading
+}
+
+BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+                const std::filesystem::path& log, const LogKeeper& keeper) {
+  std::optional<RelayProcess> relay;
+  if (options.transport == "tcpq") relay.emplace(options.restarts);
+  Bus bus(relay ? relay->url() : UrlOf(options.transport));
+  const bool in_memory = bus.url().starts_with("memq");
+  Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
+  const RunCoordinatorOptions conducting = MakeCoordinatorOptions(scenario, options, in_memory);
+  RunCoordinator coordinator(bus, conducting);
+  const TimePoint began = Clock::now();
+  std::vector<Restarts> restarts;
+  if (in_memory) {
+    RunInMemory(bus, coordinator, conducting.run_id, scenario, log,
+                options.resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
+  } else {
+    restarts = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id,
+                              scenario, options, log);
+    if (relay && relay->restarts() > 0) {
+      restarts.push_back({.role = "relay", .count = relay->restarts(), .last = relay->death()});
+    }
+  }
+  BusRun run{.run_id = conducting.run_id,
+             .wall_s = std::chrono::duration<double>(Clock::now() - began).count(),
+             .repairs = coordinator.Total(&status_t::repairs_asked),
+             .refused = coordinator.Refused(),
+             .send_troubles = coordinator.SendTroubles(),
+             .foreign_peers = coordinator.foreign_peers().known(),
+             .restarts = std::move(restarts)};
+  for (const RoleInfo& info : kRoles) {
+    const auto& status = coordinator.member(info.role).status;
+    if (status) run.builds[static_cast<std::size_t>(info.role)] = status->build_id;
+  }
+  run.other_builds = OtherBuilds(coordinator);
+  run.written = WrittenBy(coordinator, options.realtime);
+  if (coordinator.phase() != RunCoordinator::Phase::kDone && !options.log.empty()) {
+    const auto key = KeyOf(options.traffic);
+    keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
+  }
+  const std::string kept = KeptLog(conducting.run_id, options);
+  // Printed for every outcome: a missing role may be bound to another run.
+  const std::string foreign_peers = coordinator.foreign_peers().Text();
+  if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
+  if (coordinator.phase() == RunCoordinator::Phase::kFailed) {
+    throw std::runtime_error(coordinator.error() + (kept.empty() ? "" : "\n  " + kept));
+  }
+  if (coordinator.phase() != RunCoordinator::Phase::kDone) {
+    const std::string where = coordinator.phase() == RunCoordinator::Phase::kJoining
+                                  ? fmt::format("while waiting for {}", coordinator.NotReady())
+                                  : coordinator.Where();
+    throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
+  }
+  return run;
+}
+
+}  // namespace fogline

@@ -1,0 +1,37 @@
+// A run over LCM: every role is a node in one process (memq), or a process of its own (any URL).
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "services/runtime/coordination/foreign_peers.h"
+#include "services/runtime/coordination/send_trouble.h"
+#include "services/runtime/wire/refusals.h"
+#include "tools/runner/experiment.h"
+#include "tools/runner/log_keeper.h"
+
+namespace fogline {
+
+struct BusRun {
+  std::int64_t run_id = 0;
+  double wall_s = 0;
+  std::int64_t repairs = 0;
+  Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
+  std::vector<ForeignPeer> foreign_peers;
+  std::vector<Restarts> restarts;
+  RoleBuilds builds{};                   // as each role has reported its own
+  std::vector<OtherBuild> other_builds;  // the builds that differ from the runner's
+  std::vector<WrittenLog> written;       // the last report of each recorder about the log
+};
+
+/// A run id that no other run has.
+std::int64_t DrawRunId();
+
+/// Runs a scenario to its end and leaves its log.
+/// @param keeper seals the log of a run that ends early
+/// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
+BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+                const std::filesystem::path& log, const LogKeeper& keeper);
+
+}  // namespace fogline

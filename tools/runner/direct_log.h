@@ -1,0 +1,52 @@
+// The log of a run without messages (--transport direct).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "services/log/event_log.h"
+#include "services/log/remains.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/message_signer.h"
+#include "services/runtime/wire/other_build.h"
+#include "tools/runner/experiment.h"
+#include "tools/runner/log_keeper.h"
+
+namespace fogline {
+
+/// Writes the messages of a run into a log, and seals it. For a resumed run it compares the
+/// messages with those that the log already has: they must be the same.
+class DirectLog {
+ public:
+  /// @throws InputError if the file cannot be written
+  DirectLog(const ExperimentOptions& options, std::int64_t run_id, const Scenario& scenario);
+
+  /// Adds the next message, in the order of the log.
+  /// @throws InputError if the log has a different message; std::runtime_error if the disk is full
+  void Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime, Bytes message);
+  /// Hands all data to the operating system. @throws std::runtime_error
+  void Flush();
+  /// Seals the log of a complete run. @throws std::runtime_error
+  void End(const ExperimentResult& result);
+  /// Seals the log of an interrupted run as far as it goes.
+  void CutOff();
+
+ private:
+  const SigningKey* key() const { return key_ ? &*key_ : nullptr; }
+  void WriteScenario(const std::string& text);
+  /// Compares a message with the next one of the log.
+  void Compare(std::int64_t step, const ChannelInfo& channel, Bytes message);
+
+  const std::filesystem::path file_;
+  std::optional<EventLogReader> old_;  // as long as it has steps to compare
+  Remains remains_;
+  std::optional<EventLogWriter> log_;
+  std::optional<LogKeeper> keeper_;
+  std::optional<SigningKey> key_;
+  RoleBuilds builds_{};
+  RunLog run_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,255 @@
+#include "tools/runner/experiment.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/process/interrupt.h"
+#include "common/text.h"
+#include "scenario/io/loader.h"
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/sample_decoder.h"
+#include "services/runtime/wire/digest.h"
+#include "tools/runner/bus_run.h"
+#include "tools/runner/direct_log.h"
+#include "tools/runner/kept_log.h"
+#include "tools/runner/log_keeper.h"
+
+namespace fogline {
+namespace {
+
+/// A temporary directory; the destructor removes it.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "fogline-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error(fmt::format("cannot make a temporary directory {}", name));
+    }
+    path_ = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Adds the messages of a step to a digest and a log, in the order of the graph table.
+class StepWriter {
+ public:
+  StepWriter(Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
+
+  void Add(const StepView& step) {
+    step.ForEachMessage([this](const auto& message) { AddOne(message); });
+  }
+
+ private:
+  template <class M>
+  void AddOne(const M& message) {
+    Encode(message, buffer_);
+    digest_.Add(buffer_);
+    if (log_ == nullptr) return;
+    log_->Add(message.header.step, ChannelOf<M>(), message.header.utime, buffer_);
+  }
+
+  Digest& digest_;
+  DirectLog* log_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& options,
+                         std::int64_t run_id) {
+  std::optional<DirectLog> log;
+  if (!options.log.empty()) log.emplace(options, run_id, scenario);
+  ExperimentResult result;
+  Digest digest;
+  StepWriter writer(digest, log ? &*log : nullptr);
+  MeasureAccumulator measures(scenario);
+  FollowerAccumulator followers;
+  const TimePoint began = Clock::now();
+  ClosedLoop loop(scenario);
+  loop.Run(run_id, [&](const StepView& step) {
+    writer.Add(step);
+    const Sample sample = step.ToSample();
+    measures.Add(sample);
+    followers.Add(step.truth, step.follower);
+    if (options.samples) result.samples.push_back(sample);
+    ++result.steps;
+    if (!WasInterrupted()) return;
+    if (log) log->CutOff();
+    throw Interrupted(fmt::format("interrupted at step {}", sample.step));
+  });
+  if (log) log->Flush();
+  result.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
+  result.seed = scenario.seed;
+  result.digest = digest.Hex();
+  result.measures = measures.Result();
+  result.followers = followers.Result();
+  result.log = options.log;
+  if (log) log->End(result);
+  return result;
+}
+
+ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
+  const std::int64_t run_id = options.resume ? options.resume->front.run_id : DrawRunId();
+  try {
+    return Compute(scenario, options, run_id);
+  } catch (const Interrupted& interrupted) {
+    const std::string kept = KeptLog(run_id, options);
+    throw Interrupted(fmt::format("{}{}{}", interrupted.what(), kept.empty() ? "" : "; ", kept));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    const std::string kept = KeptLog(run_id, options);
+    throw std::runtime_error(fmt::format("{}{}{}", error.what(), kept.empty() ? "" : "\n  ", kept));
+  }
+}
+
+std::size_t PlaceOf(const ChannelInfo& channel) {
+  return static_cast<std::size_t>(&channel - kChannels.data());
+}
+
+/// Reads a run from its log, without its measures.
+/// @param use gets the sample of each step
+template <class Use>
+LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
+  LoggedRun logged;
+  FollowerAccumulator followers;
+  SampleDecoder decoder;
+  RunLogReader reader(log);
+  while (const StepMessages* messages = reader.Next()) {
+    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
+      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
+    });
+    // Only a run in real time has holes. Without TRUTH the state of the step is unknown.
+    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
+    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
+    if (sample == nullptr) {
+      throw InputError(
+          fmt::format("{}: error: step {} does not decode: was it recorded with other "
+                      "message types?",
+                      PathText(log), reader.run().steps - 1));
+    }
+    use(*sample);
+    followers.Add(decoder.truth(), decoder.follower());
+  }
+  static_cast<RunLog&>(logged) = reader.run();
+  logged.result.seed = logged.scenario.seed;
+  logged.result.steps = logged.steps;
+  logged.result.digest = logged.digest;
+  logged.result.log = log;
+  logged.result.followers = followers.Result();
+  logged.result.realtime = logged.realtime;
+  return logged;
+}
+
+/// Compares the log with the recorder's reports, and reads it.
+LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
+                     const Scenario& scenario, const ExperimentOptions& options) {
+  const auto read = [&] {
+    LoggedRun logged = options.samples ? ReadLoggedRun(log) : MeasureLoggedRun(log, scenario);
+    if (logged.run_id == run.run_id) return logged;
+    throw std::runtime_error(
+        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
+                    PathText(log), logged.run_id, run.run_id));
+  };
+  try {
+    keeper.Check(run.written);
+  } catch (const std::runtime_error&) {
+    read();  // if the log is that of another run, this error says more
+    throw;
+  }
+  LoggedRun logged = read();
+  if (logged.complete) return logged;
+  throw std::runtime_error(
+      fmt::format("{}: the log is not complete: {}", PathText(log), logged.note));
+}
+
+ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
+  std::optional<TemporaryDirectory> scratch;
+  std::filesystem::path log = options.log;
+  if (log.empty()) log = scratch.emplace().path() / "run.lcm";
+  const LogKeeper keeper(log);
+  BusRun run = RunOnBus(scenario, options, log, keeper);
+  LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
+  const auto key = KeyOf(options.traffic);
+  const bool checked = keeper.HasAllTold(run.written);
+  if (!checked && !options.realtime) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log on disk is not what the recorder wrote: it is longer", PathText(log)));
+  }
+  if (!checked && key) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log cannot be signed: what the recorder told of its end was lost", PathText(log)));
+  }
+  ExperimentResult result = std::move(logged.result);
+  if (options.verify.value_or(options.resume || !options.external.empty())) {
+    result.verification = VerifyRun(log, logged, run.other_builds);
+  }
+  if (checked && !options.log.empty()) {
+    keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
+  }
+  result.checked = checked;
+  result.wall_s = run.wall_s;
+  result.repairs = run.repairs;
+  result.refused = run.refused;
+  result.send_troubles = std::move(run.send_troubles);
+  result.foreign_peers = run.foreign_peers;
+  result.restarts = std::move(run.restarts);
+  result.other_builds = std::move(run.other_builds);
+  result.log = options.log;
+  return result;
+}
+
+}  // namespace
+
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
+  try {
+    const ClosedLoop parts(scenario);
+  } catch (const InputError& error) {
+    // The text is "/pointer: message", or only a message if no single field is the cause.
+    const std::string what = error.what();
+    const std::size_t colon = what.starts_with('/') ? what.find(": ") : std::string::npos;
+    const bool field = colon != std::string::npos;
+    throw ScenarioError(fmt::format("{}: error: {}", PathText(file), what),
+                        {{.file = file.string(),
+                          .pointer = field ? what.substr(0, colon) : "",
+                          .rule = "impossible",
+                          .message = field ? what.substr(colon + 2) : what}});
+  }
+}
+
+ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
+  ExperimentResult result =
+      options.transport == "direct" ? RunDirect(scenario, options) : RunLogged(scenario, options);
+  result.transport = options.transport;
+  return result;
+}
+
+LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
+  std::vector<Sample> samples;
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { samples.push_back(sample); });
+  logged.result.measures = Measure(samples, logged.scenario);
+  logged.result.samples = std::move(samples);
+  return logged;
+}
+
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
+  MeasureAccumulator measures(scenario);
+  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { measures.Add(sample); });
+  logged.result.measures = measures.Result();
+  return logged;
+}
+
+}  // namespace fogline

@@ -1,0 +1,109 @@
+// One run of a scenario, on any transport: the same steps, the same digest.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "scenario/sections/scenario.h"
+#include "services/graph.h"
+#include "services/log/remains.h"
+#include "services/log/run_log.h"
+#include "services/metrics/follower_metrics.h"
+#include "services/metrics/run_metrics.h"
+#include "services/metrics/sample.h"
+#include "services/runtime/coordination/foreign_peers.h"
+#include "services/runtime/coordination/send_trouble.h"
+#include "services/runtime/transport/traffic_options.h"
+#include "services/runtime/wire/other_build.h"
+#include "services/runtime/wire/refusals.h"
+#include "tools/replay/role_check.h"
+
+namespace fogline {
+
+/// The run of a log that is to be resumed.
+struct Resumption {
+  LogFront front;
+  Remains remains;
+};
+
+struct ExperimentOptions {
+  /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
+  /// for each role, a multicast port of its own), tcpq (the same, a TCP relay of its own), or an
+  /// LCM URL (a process for each role there).
+  std::string transport = "udpm";
+  /// Event log to write. If empty: a temporary log, or no log with direct.
+  std::filesystem::path log;
+  /// The part of the run that the log already has, if the run is resumed.
+  std::optional<Resumption> resume;
+  double pace = 0;                       // simulated seconds per second; 0: no limit
+  bool realtime = false;                 // at that pace by the wall clock, without waiting for slow
+                                         // roles
+  std::vector<Role> external;            // roles that are started elsewhere
+  Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
+  Duration stall_limit = milliseconds(4000);
+  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  /// Whether to compute the roles' steps again from the log, and compare. Unsaid: with roles that
+  /// are started elsewhere, and for a run that goes on.
+  std::optional<bool> verify;
+  bool same_build = false;  // end the run if a role is of another build than the runner's
+  TrafficOptions traffic;
+  bool announce = false;         // print on stderr the network of the run and its processes
+  bool samples = false;          // keep the samples of every step in the result
+  std::string command_to_go_on;  // that resumes the run, for the user if the run ends early
+};
+
+/// How often a process was restarted.
+struct Restarts {
+  std::string role;  // or "relay", the relay of the run
+  int count;
+  std::string last;  // how the process before the current one ended
+};
+
+struct ExperimentResult {
+  std::int64_t seed = 0;
+  std::string transport;
+  std::int64_t steps = 0;
+  std::string digest;
+  double wall_s = 0;
+  std::int64_t repairs = 0;  // requests to publish a message again
+  Refusals refused{};
+  std::vector<SendTrouble> send_troubles;
+  std::vector<ForeignPeer> foreign_peers;  // of other runs, on the same network
+  std::vector<Restarts> restarts;
+  std::vector<OtherBuild> other_builds;  // roles whose build differs from the runner's
+  std::optional<Verification> verification;
+  bool checked = true;        // every byte of the log agrees with the recorder's reports
+  std::filesystem::path log;  // empty if there is none
+  RunMeasures measures;
+  std::vector<FollowerMeasures> followers;  // nearest to the host first
+  std::vector<Sample> samples;              // if requested
+  std::optional<RealtimeFigures> realtime;  // only for a run in real time
+};
+
+/// Constructs every part of a run once, without running it. Fields whose values are valid one by
+/// one may be invalid together. The user should learn that before any process starts.
+/// @param file name of the scenario for the user
+/// @throws ScenarioError with the rule "impossible"
+void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
+
+/// Runs a scenario to its end and reads the result from its log.
+/// @throws InputError for an invalid transport or log, Interrupted after Ctrl-C, std::runtime_error
+///     with one line that names the cause when the run fails; a log stays readable
+ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
+
+/// A run as read from its log.
+struct LoggedRun : RunLog {
+  ExperimentResult result;
+};
+/// With the samples of all its steps. @throws InputError
+LoggedRun ReadLoggedRun(const std::filesystem::path& log);
+/// Without samples, in memory that does not grow with the length of the run.
+/// @param scenario the one in the log
+/// @throws InputError
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
+
+}  // namespace fogline

@@ -1,0 +1,77 @@
+#include "tools/runner/kept_log.h"
+
+#include <chrono>
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/text.h"
+#include "services/log/log_of_run.h"
+#include "services/log/remains.h"
+#include "services/runtime/transport/lcm_url.h"
+
+namespace fogline {
+namespace {
+
+/// Whether the log has steps of this run. A run that ends before its first step leaves an older log
+/// unchanged.
+bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
+  try {
+    return ReadFront(log).run_id == run_id && HasSteps(log);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// A word of a command, quoted for a shell if needed.
+std::string Word(std::string_view text) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-,=+";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string InSeconds(Duration time) {
+  return fmt::format("{:g}", std::chrono::duration<double>(time).count());
+}
+
+}  // namespace
+
+std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
+  if (options.log.empty()) return "";
+  if (!HasStepsOf(run_id, options.log)) return "no log was written";
+  std::string text = fmt::format("the log so far: {}", PathText(options.log));
+  if (!options.command_to_go_on.empty()) text += "\n  to go on: " + options.command_to_go_on;
+  return text;
+}
+
+std::string CommandToGoOn(const ExperimentOptions& options) {
+  if (options.log.empty() || options.realtime) return "";
+  const ExperimentOptions unsaid;
+  std::string command = "fogline run --resume " + Word(options.log.string());
+  if (IsLcmUrl(options.transport)) {
+    command += " --lcm-url " + Word(options.transport);
+  } else if (options.transport != unsaid.transport || UrlOfEnvironment()) {
+    command += " --transport " + options.transport;
+  }
+  for (const Role role : options.external) command += fmt::format(" --external {}", NameOf(role));
+  if (options.pace != 0) command += fmt::format(" --pace {:g}", options.pace);
+  if (options.stall_limit != unsaid.stall_limit) {
+    command += " --stall-timeout " + InSeconds(options.stall_limit);
+  }
+  if (options.restarts != unsaid.restarts) {
+    command += fmt::format(" --restarts {}", options.restarts);
+  }
+  if (options.wait != unsaid.wait) command += " --wait " + InSeconds(options.wait);
+  if (options.same_build) command += " --same-build";
+  if (options.verify) command += *options.verify ? " --verify" : " --no-verify";
+  for (const std::string& word : ToArguments(options.traffic)) command += " " + Word(word);
+  return command;
+}
+
+}  // namespace fogline

@@ -1,0 +1,19 @@
+// Text about the log that a run leaves when it ends early.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tools/runner/experiment.h"
+
+namespace fogline {
+
+/// "the log so far: FILE" and the command that resumes it, or that there is no log; "" if the run
+/// was to write no log.
+std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
+
+/// The command that resumes the log of a run. It has the options of the run that the log does not
+/// contain. It is "" for a run in real time, or without a log.
+std::string CommandToGoOn(const ExperimentOptions& options);
+
+}  // namespace fogline

@@ -1,0 +1,102 @@
+#include "tools/runner/log_keeper.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "services/runtime/wire/digest.h"
+
+namespace fogline {
+namespace {
+
+std::int64_t TimeOfStep(std::int64_t step, const Scenario& scenario) {
+  return std::max<std::int64_t>(0, step) * std::llround(scenario.step_s * kMicrosPerSecond);
+}
+
+log_seal_t SealOf(const RunLog& run, const RoleBuilds& builds) {
+  log_seal_t seal{};
+  seal.header = {.run_id = run.run_id,
+                 .step = run.steps - 1,
+                 .utime = TimeOfStep(run.steps - 1, run.scenario)};
+  seal.digest = run.digest;
+  seal.steps = run.steps;
+  seal.complete = run.complete;
+  seal.scenario_hash = run.scenario_hash;
+  seal.version = FOGLINE_VERSION;
+  for (const RoleInfo& info : kRoles) {
+    seal.role.emplace_back(info.name);
+    seal.build_id.push_back(builds[static_cast<std::size_t>(info.role)]);
+  }
+  seal.num_roles = static_cast<std::int32_t>(seal.role.size());
+  return seal;
+}
+
+}  // namespace
+
+LogKeeper::LogKeeper(std::filesystem::path log) : log_(std::move(log)), begun_with_(Find()) {}
+
+std::optional<LogKeeper::Identity> LogKeeper::Find() const {
+  struct stat info {};
+  if (stat(log_.c_str(), &info) != 0) return std::nullopt;
+  return Identity{.device = info.st_dev, .inode = info.st_ino};
+}
+
+void LogKeeper::Check(const EventLogReader& file, const std::vector<WrittenLog>& written) const {
+  if (begun_with_ && Find() != begun_with_) {
+    throw std::runtime_error(fmt::format(
+        "{}: the log is not the file that the run began with: it was replaced meanwhile",
+        log_.string()));
+  }
+  if (const std::string why = WhyNotWritten(file, written); !why.empty()) {
+    throw std::runtime_error(fmt::format("{}: {}", log_.string(), why));
+  }
+}
+
+void LogKeeper::Check(const std::vector<WrittenLog>& written) const {
+  try {
+    Check(EventLogReader(log_), written);
+  } catch (const InputError& error) {  // the file is gone, or it is no event log
+    throw std::runtime_error(error.what());
+  }
+}
+
+bool LogKeeper::HasAllTold(const std::vector<WrittenLog>& written) const {
+  std::error_code missing;
+  const auto told = std::ranges::max_element(written, {}, &WrittenLog::bytes);
+  return told != written.end() &&
+         std::filesystem::file_size(log_, missing) == static_cast<std::uintmax_t>(told->bytes);
+}
+
+void LogKeeper::Seal(const RunLog& run, const std::vector<WrittenLog>& written,
+                     const RoleBuilds& builds, const SigningKey* key) const {
+  const EventLogReader file(log_);
+  Check(file, written);
+  log_seal_t seal = SealOf(run, builds);
+  Hash hash;
+  file.ReadThrough(0, file.content().size(), [&hash](Bytes piece) { hash.Add(piece); });
+  seal.file_hash = hash.Hex();
+  SealLog(log_, run.events, std::move(seal), key);
+}
+
+void LogKeeper::SealCutOff(const std::vector<WrittenLog>& written, const RoleBuilds& builds,
+                           const SigningKey* key) const noexcept {
+  try {
+    if (!HasAllTold(written)) return;
+    Check(written);
+    RunLogReader reader(log_);
+    while (reader.Next() != nullptr) {
+    }
+    // Behind a torn event a seal would be read as the rest of it.
+    if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
+    Seal(reader.run(), written, builds, key);
+  } catch (const std::exception&) {  // the reason why the run ended matters more
+  }
+}
+
+}  // namespace fogline

@@ -1,0 +1,53 @@
+// The log of a run from the view of its runner: checks that the file on the disk has the bytes that
+// the run's recorder has written, and seals it, so that a later change shows.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "services/log/run_log.h"
+#include "services/runtime/wire/other_build.h"
+
+namespace fogline {
+
+class LogKeeper {
+ public:
+  /// Remembers the identity of the log file at the start of the run, if there is a file.
+  explicit LogKeeper(std::filesystem::path log);
+
+  /// @param written the last report of each of the run's recorders
+  /// @throws std::runtime_error if another file has replaced the log, or its bytes differ
+  void Check(const std::vector<WrittenLog>& written) const;
+  /// Whether the file is exactly as long as the recorders have reported.
+  bool HasAllTold(const std::vector<WrittenLog>& written) const;
+
+  /// Checks the file again and seals it.
+  /// @param run read from the whole file
+  /// @param builds the build that each role has reported
+  /// @param key signs the seal; nullptr: no signature
+  /// @throws std::runtime_error as Check(), or if the seal cannot be written
+  void Seal(const RunLog& run, const std::vector<WrittenLog>& written, const RoleBuilds& builds,
+            const SigningKey* key) const;
+  /// The same for a run that ended early, whose log has not been read. If the log cannot be sealed,
+  /// it stays as it is.
+  void SealCutOff(const std::vector<WrittenLog>& written, const RoleBuilds& builds,
+                  const SigningKey* key) const noexcept;
+
+ private:
+  struct Identity {
+    dev_t device;
+    ino_t inode;
+    bool operator==(const Identity&) const = default;
+  };
+  std::optional<Identity> Find() const;
+  /// Checks the bytes on the disk. @throws std::runtime_error as Check()
+  void Check(const EventLogReader& file, const std::vector<WrittenLog>& written) const;
+
+  std::filesystem::path log_;
+  std::optional<Identity> begun_with_;
+};
+
+}  // namespace fogline

@@ -1,0 +1,71 @@
+#include "tools/runner/resumed_log.h"
+
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "scenario/io/loader.h"
+#include "services/log/run_log.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline {
+namespace {
+
+// The roles of a killed runner are killed with it, which takes the kernel a moment. Their recorder
+// keeps the lock of the log until then.
+constexpr Duration kEndOfOthers = milliseconds(2000);
+
+[[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
+  throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
+}
+
+/// Checks that a file exists and is an event log. @return its path @throws InputError
+const std::filesystem::path& Readable(const std::filesystem::path& log) {
+  ReadFront(log);
+  return log;
+}
+
+/// A log that was sealed is the one that was sealed; its new seal must not make it one.
+void CheckSeal(const std::filesystem::path& log, const SigningKey* key) {
+  RunLogReader reader(log, RunLogReader::Compared::kFile);
+  while (reader.Next() != nullptr) {
+  }
+  const RunLog& run = reader.run();
+  if (run.altered) Refuse(log, "the log is not the one that was sealed: " + run.note);
+  if (key == nullptr || !run.seal || VerifySeal(*run.seal, *key) == SealSignature::kHolds) return;
+  Refuse(log, "the seal of the log is not signed with this key");
+}
+
+Resumption Read(const std::filesystem::path& log, const SigningKey* key) {
+  LogFront front = ReadFront(log);
+  if (!front.parts.Complete()) {
+    Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
+  }
+  if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
+  if (front.realtime) {
+    Refuse(log, "a run in real time: the road does not wait, only runs in lockstep can go on");
+  }
+  if (front.type_fingerprint != TypeFingerprint()) {
+    Refuse(log, "the log was made with other message types, by another version of Fogline");
+  }
+  CheckSeal(log, key);
+  const Remains remains = ReadRemains(log, front);
+  if (!remains.final) {
+    if (const std::string odd = OddEnd(log, front, remains); !odd.empty()) {
+      Refuse(log, odd + ": this is not how fogline run leaves a log");
+    }
+  }
+  return {.front = std::move(front), .remains = remains};
+}
+
+}  // namespace
+
+ResumedLog::ResumedLog(const std::filesystem::path& log, const SigningKey* key)
+    : lock_(Readable(log), FileLock::Kind::kOwn, "--resume", "run", kEndOfOthers),
+      resumption_(Read(log, key)),
+      scenario_(ParseScenario(resumption_.front.parts.Text(), log.string())) {
+  CheckPossible(scenario_, log);
+}
+
+}  // namespace fogline

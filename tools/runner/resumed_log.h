@@ -1,0 +1,32 @@
+// The log that `fogline run --resume` continues.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/file_lock.h"
+#include "scenario/sections/scenario.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline {
+
+/// A log of a run in lockstep that has ended early, or is complete. Its lock keeps other runs away
+/// until the end of this object. The constructor does not change the file, even if it refuses it.
+class ResumedLog {
+ public:
+  /// @param key that its seal is signed with, if it has one; nullptr: any or none
+  /// @throws InputError with the reason why the log cannot be resumed
+  ResumedLog(const std::filesystem::path& log, const SigningKey* key);
+
+  const Scenario& scenario() const { return scenario_; }
+  const Resumption& resumption() const { return resumption_; }
+  /// Whether the log has the whole run.
+  bool complete() const { return resumption_.remains.final; }
+
+ private:
+  FileLock lock_;
+  Resumption resumption_;
+  Scenario scenario_;
+};
+
+}  // namespace fogline

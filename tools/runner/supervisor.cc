@@ -1,0 +1,217 @@
+#include "tools/runner/supervisor.h"
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "tools/processes/child.h"
+
+namespace fogline {
+namespace {
+
+// Time in which the roles must leave after STOP.
+constexpr Duration kLeaveLimit = milliseconds(1500);
+constexpr Duration kLookEvery = milliseconds(20);
+// Number of STOP messages for roles that run elsewhere, because the supervisor cannot see them
+// leave.
+constexpr int kStopRepeats = 5;
+// A process hangs if it has sent nothing for this long after its start.
+constexpr Duration kStartLimit = milliseconds(5000);
+// A silent process that still runs counts as alive unless the probability of losing all its
+// messages is below this. With this value a process is killed by mistake only in one of some
+// thousand runs on a network that loses many messages.
+constexpr double kUnlikely = 1e-6;
+
+/// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
+/// has many of them each second.
+std::optional<std::int64_t> ActivityOf(pid_t pid) {
+  std::ifstream status(fmt::format("/proc/{}/status", pid));
+  std::int64_t sum = 0;
+  bool known = false;
+  for (std::string key; status >> key;) {
+    if (!key.ends_with("voluntary_ctxt_switches:")) continue;
+    std::int64_t count = 0;
+    known = static_cast<bool>(status >> count);
+    sum += count;
+  }
+  return known ? std::optional(sum) : std::nullopt;
+}
+
+}  // namespace
+
+Supervisor::Supervisor(Bus& bus, RunCoordinator& coordinator, Options options)
+    : bus_(bus), coordinator_(coordinator), options_(std::move(options)) {
+  const TimePoint now = Clock::now();
+  for (const RoleInfo& info : kRoles) {
+    if (std::ranges::find(options_.external, info.role) != options_.external.end()) continue;
+    children_.push_back({.role = info.role, .policy = RestartPolicy(options_.restarts)});
+    Start(children_.back(), now);
+  }
+}
+
+void Supervisor::Start(Child& child, TimePoint now) {
+  std::vector<std::string> arguments{"--lcm-url", options_.url, "--run-id",
+                                     std::to_string(options_.run_id)};
+  arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
+  if (child.role == Role::kRecorder) {
+    arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
+    // Only if the log is that of this run. Earlier the file may be an old log that is to be
+    // replaced.
+    if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
+  }
+  child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
+  child.started = now;
+  child.start_at.reset();
+  child.activity.reset();
+  child.killed_for.clear();
+  child.deaf = false;
+  coordinator_.Launched(child.role, child.pid, now);
+}
+
+void Supervisor::Look(TimePoint now) {
+  coordinator_.Attend(now);
+  const std::vector<ProcessGroup::Exit> exits = group_.Collect();
+  if (!exits.empty()) {
+    // The last messages of the processes are handled before their end.
+    bus_.Wait(kLookEvery);
+    bus_.Drain();
+  }
+  for (const ProcessGroup::Exit& exit : exits) OnExit(exit, now);
+  for (Child& child : children_) {
+    if (child.start_at && now >= *child.start_at) {
+      StartAgain(child, now);
+    } else if (!child.start_at && !child.gone && options_.restarts > 0) {
+      KillIfItHangs(child, now);
+      KillIfItIsDeaf(child);
+    }
+  }
+  NameTheDeaf();
+}
+
+void Supervisor::StartAgain(Child& child, TimePoint now) {
+  const pid_t before = child.pid;
+  try {
+    Start(child, now);
+  } catch (const std::runtime_error& error) {  // perhaps temporary: the stall timeout decides
+    child.start_at = now + child.policy.OnFailedStart();
+    coordinator_.Hinder(child.role, error.what());
+    return;
+  }
+  options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})", NameOf(child.role),
+                           before, child.death, child.pid, child.policy.restarts(),
+                           child.policy.limit()));
+}
+
+void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
+  const auto child = std::ranges::find(children_, exit.role, &Child::role);
+  const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
+  child->death = fmt::format("{} {}", how, coordinator_.Where());
+  const auto wait = exit.killed ? child->policy.OnDeath(coordinator_.step()) : std::nullopt;
+  if (wait) {
+    coordinator_.MarkDead(exit.role, exit.pid, now);
+    child->start_at = now + *wait;
+    return;
+  }
+  // One line that names the dead process, then the last lines that it printed.
+  std::string text = fmt::format("{} (pid {}) {}", NameOf(exit.role), exit.pid, child->death);
+  if (exit.killed && options_.restarts > 0) {
+    text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
+  }
+  const bool goes_on =
+      options_.restarts > 0 && coordinator_.GoesOnWithout(exit.role) && !child->deaf;
+  if (goes_on) text += "; the run goes on without it";
+  for (const std::string& line : exit.lines) {
+    text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
+  }
+  if (!goes_on) return coordinator_.Fail(std::move(text));
+  coordinator_.MarkDead(exit.role, exit.pid, now);
+  child->gone = true;
+  options_.say(text);
+}
+
+void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
+  const RunCoordinator::Member& member = coordinator_.member(child.role);
+  const bool met = member.status && member.status->pid == child.pid;
+  const Duration silent = coordinator_.HeldAgainst(met ? member.heard : child.started, now);
+  const Duration limit = met ? options_.silence : kStartLimit;
+  if (silent < limit / 2) child.activity.reset();
+  if (silent < limit / 2 || !child.killed_for.empty()) return;
+  if (!child.activity) child.activity = ActivityOf(child.pid);
+  if (silent < limit) return;
+  // A process that still runs may be alive although its messages are lost.
+  if (ActivityOf(child.pid) != child.activity &&
+      coordinator_.ChanceOfLife(child.role, silent) > kUnlikely) {
+    return;
+  }
+  Kill(child, fmt::format("was silent for {:.1f} s and was killed", Seconds(silent)));
+}
+
+void Supervisor::KillIfItIsDeaf(Child& child) {
+  const auto deaf = coordinator_.Deaf(child.role);
+  if (!deaf || !child.killed_for.empty()) return;
+  child.deaf = true;
+  Kill(child, Text(*deaf) + ", and was killed");
+}
+
+void Supervisor::Kill(Child& child, std::string why) {
+  child.killed_for = std::move(why);
+  kill(child.pid, SIGKILL);
+}
+
+void Supervisor::NameTheDeaf() {
+  for (const RoleInfo& info : kRoles) {
+    const auto deaf = coordinator_.Deaf(info.role);
+    if (!deaf) {
+      deaf_.erase(info.role);
+      continue;
+    }
+    const bool ours = std::ranges::find(children_, info.role, &Child::role) != children_.end();
+    if ((ours && options_.restarts > 0) || !deaf_.insert(info.role).second) continue;
+    const auto& status = coordinator_.member(info.role).status;
+    if (!status) continue;
+    options_.say(fmt::format("warning: {} (pid {} on {}) is deaf: it {}", info.name, status->pid,
+                             status->host, Text(*deaf)));
+  }
+}
+
+void Supervisor::End() {
+  const TimePoint began = Clock::now();
+  int said = 0;
+  while ((!group_.empty() && Clock::now() - began < kLeaveLimit) ||
+         (said < kStopRepeats && !options_.external.empty())) {
+    coordinator_.Stop();
+    ++said;
+    const TimePoint pause = Clock::now() + kLookEvery;
+    // Wait until then even if many messages arrive: a flood must not delay the end.
+    while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
+    group_.Collect();
+  }
+  bus_.Drain();  // the last messages of the processes
+}
+
+std::vector<Restarts> Supervisor::restarts() const {
+  std::vector<Restarts> restarts;
+  for (const RoleInfo& info : kRoles) {
+    const auto child = std::ranges::find(children_, info.role, &Child::role);
+    const RunCoordinator::Member& member = coordinator_.member(info.role);
+    if (child != children_.end()) {
+      if (child->policy.restarts() == 0) continue;
+      restarts.push_back({.role = std::string(info.name),
+                          .count = child->policy.restarts(),
+                          .last = child->death});
+    } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
+      // The newest process may have come too late in the run to prove that its predecessor is dead.
+      const status_t& dead = member.rival ? *member.status : member.dead.back();
+      restarts.push_back({.role = std::string(info.name),
+                          .count = elsewhere,
+                          .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,
+                                              dead.host, dead.header.step)});
+    }
+  }
+  return restarts;
+}
+
+}  // namespace fogline

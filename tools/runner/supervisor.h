@@ -1,0 +1,79 @@
+// The roles of a run as processes on this machine. It starts and watches them, and restarts those
+// that are killed, hang or are deaf. A process that exits by itself has printed the reason, and its
+// exit ends the run.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "services/runtime/coordination/restart_policy.h"
+#include "services/runtime/coordination/run_coordinator.h"
+#include "tools/processes/process_group.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline {
+
+class Supervisor {
+ public:
+  struct Options {
+    std::string url;
+    std::int64_t run_id = 0;
+    std::filesystem::path log;
+    bool resume = false;                 // the log already belongs to this run
+    std::vector<std::string> arguments;  // further arguments for every process
+    std::vector<Role> external;          // roles that are started elsewhere
+    int restarts = 0;                    // of each role; 0: the first death ends the run
+    Duration silence{};  // time without a STATUS after which a process counts as hanging and is
+                         // killed
+    std::function<void(const std::string&)> say;  // prints a line for the user
+  };
+
+  /// Starts every role. @throws std::runtime_error
+  Supervisor(Bus& bus, RunCoordinator& coordinator, Options options);
+
+  /// Checks for dead and hanging processes, and restarts those whose delay is over. Call it every
+  /// few tens of milliseconds.
+  void Look(TimePoint now);
+
+  /// Sends STOP until every process has left, then kills the rest.
+  void End();
+
+  /// The restarted roles, here or elsewhere.
+  std::vector<Restarts> restarts() const;
+  const ProcessGroup& group() const { return group_; }
+
+ private:
+  struct Child {
+    Role role;
+    RestartPolicy policy;
+    pid_t pid = 0;
+    TimePoint started{};
+    std::optional<std::int64_t> activity{};  // measured in the middle of its silence
+    std::string killed_for{};                // the reason why the supervisor killed it
+    bool deaf = false;                       // whether that reason was deafness
+    std::string death{};                     // how its last process ended
+    std::optional<TimePoint> start_at{};
+    bool gone = false;  // ended for good, while the run continues
+  };
+  void Start(Child& child, TimePoint now);
+  /// Restarts the process; if that fails, a later call tries again.
+  void StartAgain(Child& child, TimePoint now);
+  void OnExit(const ProcessGroup::Exit& exit, TimePoint now);
+  void KillIfItHangs(Child& child, TimePoint now);
+  void KillIfItIsDeaf(Child& child);
+  void Kill(Child& child, std::string why);
+  /// Reports deaf roles that are not restarted here, once for each time.
+  void NameTheDeaf();
+
+  Bus& bus_;
+  RunCoordinator& coordinator_;
+  Options options_;
+  ProcessGroup group_;
+  std::vector<Child> children_;
+  std::set<Role> deaf_;  // deaf roles that were reported
+};
+
+}  // namespace fogline

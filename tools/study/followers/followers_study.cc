@@ -1,0 +1,272 @@
+// Study `followers`: drivers of the cars behind the host.
+#include <array>
+
+#include <fmt/format.h>
+
+#include "tools/study/case_findings.h"
+#include "tools/study/comparison.h"
+#include "tools/study/followers/string_runs.h"
+#include "tools/study/study.h"
+#include "tools/study/study_findings.h"
+
+namespace fogline::study {
+namespace {
+
+struct Behind {
+  std::string_view name;
+  std::vector<std::string> overrides;
+};
+
+std::vector<Behind> Kinds() {
+  const auto human = [](std::string_view style) {
+    return std::vector<std::string>{"/followers/driver=human",
+                                    fmt::format("/followers/style={}", style)};
+  };
+  const auto careful = [&](std::string_view model) {
+    std::vector<std::string> overrides = human("normal");
+    overrides.push_back(fmt::format("/followers/safety_model={}", model));
+    return overrides;
+  };
+  return {{"acc", {}},
+          {"aggressive human", human("aggressive")},
+          {"normal human", human("normal")},
+          {"cautious human", human("cautious")},
+          {"normal human with UN R157 reference", careful("reference_human")},
+          {"normal human with RSS", careful("rss")},
+          {"normal human with fuzzy model", careful("fuzzy")},
+          {"five cars drawn",
+           {"/followers/driver=drawn", "/followers/style=drawn", "/followers/count=5"}}};
+}
+
+std::vector<StudyCase> Cases() {
+  std::vector<StudyCase> cases;
+  for (const auto& [fog, file] :
+       {std::pair("bias fog", "paper.json"), std::pair("beam fog", "dense_fog.json")}) {
+    for (const Behind& kind : Kinds()) {
+      cases.push_back({.name = fmt::format("{}: {}", fog, kind.name),
+                       .file = file,
+                       .overrides = kind.overrides,
+                       .group = fog});
+    }
+  }
+  return cases;
+}
+
+constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
+                                                         "mean_compromised_safety_fog_m",
+                                                         "collided",
+                                                         "min_follower_gap_m",
+                                                         "min_follower_ttc_s",
+                                                         "min_follower_headway_s",
+                                                         "max_follower_drac_mps2",
+                                                         "min_follower_rss_margin_m"};
+
+// Overrides with which a string settles before the fog, whatever the headways are. The fog is as
+// long as in the file.
+const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
+
+/// Strings in which every car has the same kind of driver.
+std::vector<StudyCase> Strings() {
+  std::vector<StudyCase> kinds;
+  const auto add = [&](std::string_view name, std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), kLater.begin(), kLater.end());
+    kinds.push_back(
+        {.name = std::string(name), .file = "dense_fog.json", .overrides = std::move(overrides)});
+  };
+  add("acc", {});
+  for (const std::string_view style : {"aggressive", "normal", "cautious"}) {
+    add(fmt::format("{} humans", style),
+        {"/followers/driver=human", fmt::format("/followers/style={}", style)});
+  }
+  add("drawn", {"/followers/driver=drawn", "/followers/style=drawn"});
+  return kinds;
+}
+
+const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
+                                          {"traded", {"/arbitrator/policy=traded"}}};
+
+/// Describes the course of a disturbance along one string.
+std::string FindingOf(const StringOutcome& string) {
+  const CarInString& first = string.cars[1];
+  const CarInString& last = string.cars[kStringCars];
+  std::vector<std::string> ratios;
+  for (std::size_t place = 1; place <= kStringCars; ++place) {
+    ratios.push_back(Text(EstimateOf(string.cars[place].amplification), 2));
+  }
+  const Estimate growth = PairedDifference(last.max_deceleration_mps2, first.max_deceleration_mps2);
+  std::string_view verdict;
+  switch (VerdictOf(growth)) {
+    case Verdict::kMore:
+      verdict = "the disturbance grows along the string";
+      break;
+    case Verdict::kLess:
+      verdict = "it dies down along the string";
+      break;
+    case Verdict::kUndecided:
+      verdict = "it neither grows nor dies down by more than chance";
+      break;
+    case Verdict::kTooFew:
+      verdict = "too few runs for an interval";
+      break;
+  }
+  return fmt::format(
+      "String of {}, {}: the host brakes with at most {} m/s2, follower 1 with {}, follower {} "
+      "with {}: {} (last less first {} m/s2). Ratio to the car ahead, place by place: {}. Least "
+      "time to collision: follower 1 {} s, follower {} {} s.",
+      string.kind, string.variant, Text(EstimateOf(string.cars[0].max_deceleration_mps2), 2),
+      Text(EstimateOf(first.max_deceleration_mps2), 2), kStringCars,
+      Text(EstimateOf(last.max_deceleration_mps2), 2), verdict, Text(growth, 2),
+      fmt::join(ratios, ", "), Text(EstimateOf(first.min_ttc_s), 1), kStringCars,
+      Text(EstimateOf(last.min_ttc_s), 1));
+}
+
+/// A quantity as a function of the place in the string, for the strings behind one variant of the
+/// host.
+report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view variant,
+                            std::string id, std::string title, std::string y_label,
+                            std::vector<double> CarInString::*values) {
+  report::StudyFigure figure{
+      .id = std::move(id),
+      .title = fmt::format("{}, host: {}", title, variant),
+      .caption =
+          "Means over the seeds with their 95 % confidence bands. Place 0 is "
+          "the host.",
+      .x_label = "Place in the string",
+      .y_label = std::move(y_label),
+      .log_y = values == &CarInString::min_ttc_s};
+  for (const StringOutcome& string : strings) {
+    if (string.variant != variant) continue;
+    report::StudySeries& series = figure.series.emplace_back();
+    series.name = string.kind;
+    for (std::size_t place = 0; place <= kStringCars; ++place) {
+      const Estimate mean = EstimateOf(string.cars[place].*values);
+      if (mean.n == 0) continue;
+      series.x.push_back(static_cast<double>(place));
+      series.y.push_back(mean.mean);
+      series.low.push_back(mean.low);
+      series.high.push_back(mean.high);
+    }
+  }
+  return figure;
+}
+
+/// A measure that the study reports for each place.
+struct StringMeasure {
+  std::string_view name;
+  std::vector<double> CarInString::*values;
+  int decimals;
+};
+constexpr std::array kStringMeasures{
+    StringMeasure{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
+    StringMeasure{"amplification", &CarInString::amplification, 2},
+    StringMeasure{"min_ttc_s", &CarInString::min_ttc_s, 1},
+    StringMeasure{"min_gap_m", &CarInString::min_gap_m, 2}};
+
+report::StudyTable TableOf(const StringOutcome& string, std::int64_t seeds) {
+  report::StudyTable table{
+      .caption = fmt::format("String of {}, {}: by place; collisions in {}", string.kind,
+                             string.variant, Text(ClopperPearson(string.collisions, seeds))),
+      .columns = {"place"}};
+  for (const StringMeasure& measure : kStringMeasures) table.columns.emplace_back(measure.name);
+  for (std::size_t place = 0; place <= kStringCars; ++place) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row.push_back(place == 0 ? "host" : fmt::format("follower {}", place));
+    for (const StringMeasure& measure : kStringMeasures) {
+      row.push_back(Text(EstimateOf(string.cars[place].*measure.values), measure.decimals));
+    }
+  }
+  return table;
+}
+
+std::string CsvOf(std::span<const StringOutcome> strings) {
+  std::string csv =
+      "string,variant,place,measure,n,infinite,mean,std,ci95_low,ci95_high,minus_first,"
+      "minus_first_ci95_low,minus_first_ci95_high\n";
+  for (const StringOutcome& string : strings) {
+    for (std::size_t place = 0; place <= kStringCars; ++place) {
+      for (const StringMeasure& measure : kStringMeasures) {
+        const std::vector<double>& values = string.cars[place].*measure.values;
+        if (values.empty()) continue;
+        const Estimate mean = EstimateOf(values);
+        const Estimate difference = PairedDifference(values, string.cars[1].*measure.values);
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", string.kind, string.variant,
+                           place, measure.name, mean.n, mean.infinite, CsvText(mean.mean),
+                           CsvText(mean.deviation), CsvText(mean.low), CsvText(mean.high),
+                           CsvText(difference.mean), CsvText(difference.low),
+                           CsvText(difference.high));
+      }
+    }
+  }
+  return csv;
+}
+
+void AddStrings(const StudyContext& context, std::span<const StringOutcome> strings,
+                StudyResult& result) {
+  report::StudySection& section = result.section;
+  result.runs += static_cast<std::int64_t>(strings.size()) * context.seeds.count();
+  for (const StringOutcome& string : strings) {
+    section.findings.push_back(FindingOf(string));
+    section.tables.push_back(TableOf(string, context.seeds.count()));
+  }
+  for (const StudyVariant& variant : kVariants) {
+    section.figures.push_back(
+        ByPlace(strings, variant.name, fmt::format("followers-string-{}", variant.name),
+                "Hardest braking along a string", "Largest deceleration (m/s2)",
+                &CarInString::max_deceleration_mps2));
+    section.figures.push_back(ByPlace(strings, variant.name,
+                                      fmt::format("followers-string-ttc-{}", variant.name),
+                                      "Least time to collision along a string",
+                                      "Least time to collision (s)", &CarInString::min_ttc_s));
+  }
+  result.files.push_back({"followers-string.csv", CsvOf(strings)});
+}
+
+/// The context of one part of a study, whose progress counts `all` units in total.
+StudyContext Part(const StudyContext& whole, std::int64_t before, std::int64_t all) {
+  StudyContext part = whole;
+  part.progress = [&whole, before, all](std::int64_t done, std::int64_t) {
+    return !whole.progress || whole.progress(before + done, all);
+  };
+  return part;
+}
+
+}  // namespace
+
+StudyResult RunFollowersStudy(const StudyContext& context) {
+  const std::vector<StudyCase> cases = Cases();
+  const std::vector<StudyCase> kinds = Strings();
+  const auto compared = static_cast<std::int64_t>(cases.size()) * context.seeds.count();
+  const auto strung =
+      static_cast<std::int64_t>(kinds.size() * kVariants.size()) * context.seeds.count();
+  const Comparison comparison(Part(context, 0, compared + strung), cases, kVariants);
+  const std::vector<StringOutcome> strings =
+      RunStrings(Part(context, compared, compared + strung), kinds, kVariants);
+  StudyResult result;
+  result.runs = comparison.runs();
+  report::StudySection& section = result.section;
+  section.findings = CaseFindings(comparison, 1);
+  section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "followers-cs",
+                                         "Compromised safety by follower", true),
+                     comparison.FigureOf("max_follower_drac_mps2", "followers-drac",
+                                         "How hard the follower has to brake", true),
+                     comparison.FigureOf("min_follower_ttc_s", "followers-ttc",
+                                         "Least time to collision of the follower", true),
+                     comparison.FigureOf("collided", "followers-collisions", "Collisions", true)};
+  section.tables = {comparison.TableOfVariant(0, kTableMeasures),
+                    comparison.TableOfVariant(1, kTableMeasures)};
+  section.method = fmt::format(
+      "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
+      "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC: "
+      "another driver has until the fog begins to find his own. Measures are those of the first "
+      "car behind the host; collisions are those of any car. A person is the IDM of his style "
+      "behind the Human Driver Model's errors and reaction time. Strings: {} cars of a kind behind "
+      "the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled; "
+      "measures are those from a second before the fog on. Braking of less than 0.01 m/s2 has no "
+      "ratio behind it.",
+      comparison.seeds(), kStringCars);
+  result.files = {{"followers.csv", comparison.Csv(0)}};
+  AddStrings(context, strings, result);
+  return result;
+}
+
+}  // namespace fogline::study

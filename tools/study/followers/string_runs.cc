@@ -1,0 +1,116 @@
+#include "tools/study/followers/string_runs.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/follower_metrics.h"
+#include "tools/stats/in_order.h"
+
+namespace fogline::study {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// The measurement starts this long before the fog, so that it includes the whole effect of the fog.
+constexpr double kBefore_s = 1;
+
+// Smaller decelerations do not count as braking: noise causes them in clear air.
+constexpr double kLeastBraking_mps2 = 0.01;
+
+/// Result of one run.
+struct StringRun {
+  std::array<double, kStringCars + 1> max_deceleration_mps2{};
+  std::vector<FollowerMeasures> followers;
+  bool collided = false;
+};
+
+/// For use by one thread.
+class StringWorker {
+ public:
+  StringRun Run(const Scenario& scenario, std::int64_t seed) {
+    scenario_ = scenario;
+    scenario_.seed = seed;
+    if (loop_) {
+      loop_->Restart(scenario_);
+    } else {
+      loop_.emplace(scenario_);
+    }
+    StringRun run;
+    FollowerAccumulator followers;
+    loop_->Run(0, [&](const StepView& step) {
+      const truth_t& truth = step.truth;
+      run.collided = truth.collision != truth_t::COLLISION_NONE;
+      const double time_s = static_cast<double>(truth.header.utime) * 1e-6;
+      if (time_s < scenario_.fog.start_s - kBefore_s) return;
+      followers.Add(truth, step.follower);
+      const auto brakes = [&](std::size_t place, double acceleration_mps2) {
+        double& most = run.max_deceleration_mps2[place];
+        most = std::max(most, -acceleration_mps2);
+      };
+      brakes(0, truth.host_acceleration_mps2);
+      const auto cars = std::min(kStringCars, truth.follower_acceleration_mps2.size());
+      for (std::size_t i = 0; i < cars; ++i) brakes(i + 1, truth.follower_acceleration_mps2[i]);
+    });
+    run.followers = followers.Result();
+    return run;
+  }
+
+ private:
+  std::optional<ClosedLoop> loop_;
+  Scenario scenario_;
+};
+
+void Add(const StringRun& run, StringOutcome& outcome) {
+  outcome.collisions += run.collided ? 1 : 0;
+  for (std::size_t place = 0; place <= kStringCars; ++place) {
+    CarInString& car = outcome.cars[place];
+    const double own_mps2 = run.max_deceleration_mps2[place];
+    car.max_deceleration_mps2.push_back(own_mps2);
+    if (place == 0) continue;
+    const double ahead_mps2 = run.max_deceleration_mps2[place - 1];
+    car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? kNone : own_mps2 / ahead_mps2);
+    const bool there = place <= run.followers.size();
+    const FollowerMeasures measures = there ? run.followers[place - 1] : FollowerMeasures{};
+    car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : kNone));
+    car.min_gap_m.push_back(measures.min_gap_m.value_or(kNone));
+  }
+}
+
+}  // namespace
+
+std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
+                                      std::span<const StudyVariant> variants) {
+  std::vector<StringOutcome> outcomes;
+  std::vector<Scenario> scenarios;
+  for (const StudyCase& kind : kinds) {
+    for (const StudyVariant& variant : variants) {
+      std::vector<std::string> overrides = kind.overrides;
+      overrides.push_back("/followers/count=" + std::to_string(kStringCars));
+      overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
+      scenarios.push_back(context.Load(kind.file, overrides));
+      outcomes.push_back({.kind = kind.name,
+                          .variant = variant.name,
+                          .cars = std::vector<CarInString>(kStringCars + 1)});
+    }
+  }
+  const std::int64_t seeds = context.seeds.count();
+  const std::int64_t units = static_cast<std::int64_t>(scenarios.size()) * seeds;
+  ComputeInOrder(
+      0, units, context.jobs, [] { return StringWorker(); },
+      [&](StringWorker& worker, std::int64_t unit) {
+        return worker.Run(scenarios[static_cast<std::size_t>(unit / seeds)],
+                          context.seeds.first + unit % seeds);
+      },
+      [&](std::int64_t unit, const StringRun& run) {
+        Add(run, outcomes[static_cast<std::size_t>(unit / seeds)]);
+        context.Show(unit + 1, units);
+        return true;
+      });
+  return outcomes;
+}
+
+}  // namespace fogline::study

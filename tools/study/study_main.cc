@@ -1,0 +1,242 @@
+// fogline study, a program of its own: the paper's open questions, answered with numbers.
+#include "tools/study/study.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/process/interrupt.h"
+#include "common/process/progress.h"
+#include "common/text.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/own_program.h"
+#include "tools/cli/verb_program.h"
+#include "tools/report/study_page.h"
+#include "tools/sweep/engine.h"
+
+namespace fogline::study {
+namespace {
+
+/// The name that selects every study.
+constexpr std::string_view kAll = "all";
+
+struct StudyArguments {
+  std::string name;
+  std::filesystem::path out = "studies";
+  std::filesystem::path scenarios = "scenario";
+  std::string seeds;
+  int jobs = AllCores();
+  bool json = false;
+};
+
+/// A finished study.
+struct Made {
+  const Study* study;
+  SeedRange seeds;
+  StudyResult result;
+};
+
+// Every run of a study stays in memory until the study ends.
+constexpr std::int64_t kMostSeeds = 100'000;
+
+/// @throws InputError
+void RequireFew(const SeedRange& seeds, const std::string& text) {
+  if (seeds.count() <= kMostSeeds) return;
+  throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
+}
+
+/// Checks before long work that the scenarios of the studies exist. @throws InputError
+void RequireScenarios(const std::filesystem::path& folder) {
+  for (const char* name : {"paper.json", "dense_fog.json"}) {
+    const std::filesystem::path file = folder / name;
+    if (std::filesystem::exists(file)) continue;
+    throw InputError(
+        fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
+                    "with paper.json and dense_fog.json, in Fogline's sources scenario/",
+                    PathText(file)));
+  }
+}
+
+std::string Names() {
+  std::string names;
+  for (const Study& study : Studies()) names += fmt::format("{}, ", study.name);
+  return names + std::string(kAll);
+}
+
+/// @throws InputError
+std::vector<const Study*> Chosen(const std::string& name) {
+  std::vector<const Study*> chosen;
+  for (const Study& study : Studies()) {
+    if (name == kAll || name == study.name) chosen.push_back(&study);
+  }
+  if (chosen.empty()) {
+    throw InputError(fmt::format("error: no study \"{}\"; there are {}", name, Names()));
+  }
+  return chosen;
+}
+
+Made Make(const Study& study, const StudyArguments& arguments) {
+  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : ParseSeeds(arguments.seeds);
+  std::optional<Progress> progress;
+  const StudyContext context{.scenarios = arguments.scenarios,
+                             .seeds = seeds,
+                             .jobs = arguments.jobs,
+                             .progress = [&](std::int64_t done, std::int64_t total) {
+                               if (!progress)
+                                 progress.emplace(fmt::format("{}: unit", study.name), total);
+                               progress->Show(done);
+                               return !WasInterrupted();
+                             }};
+  Made made{.study = &study, .seeds = seeds, .result = {}};
+  try {
+    made.result = study.run(context);
+  } catch (const StudyStopped&) {
+    throw Interrupted(
+        fmt::format("interrupted in study {}; its files are not written", study.name));
+  }
+  report::StudySection& section = made.result.section;
+  section.name = study.name;
+  section.title = study.title;
+  section.question = study.question;
+  return made;
+}
+
+void Write(const std::filesystem::path& path, const std::string& content) {
+  AtomicFile file(path);
+  file.Write(content);
+  file.Finish();
+}
+
+/// The command that makes the same files again. It has neither the folder nor the number of
+/// threads, because the files do not depend on them.
+std::string CommandOf(const StudyArguments& arguments) {
+  std::string command = fmt::format("fogline study {}", arguments.name);
+  if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);
+  return command;
+}
+
+nlohmann::ordered_json ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
+                              const std::filesystem::path& page,
+                              const std::filesystem::path& text) {
+  nlohmann::ordered_json json{{"command", CommandOf(arguments)},
+                              {"report", page.string()},
+                              {"text", text.string()},
+                              {"studies", nlohmann::ordered_json::array()}};
+  for (const Made& made : all) {
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const StudyFile& file : made.result.files) {
+      files.push_back((arguments.out / file.name).string());
+    }
+    json["studies"].push_back({{"name", made.study->name},
+                               {"seeds", fmt::format("{}:{}", made.seeds.first, made.seeds.last)},
+                               {"runs", made.result.runs},
+                               {"findings", made.result.section.findings},
+                               {"files", std::move(files)}});
+  }
+  return json;
+}
+
+void PrintText(const StudyArguments& arguments, const Made& made) {
+  fmt::print("{} ({} runs)\n", made.study->title, made.result.runs);
+  for (const std::string& finding : made.result.section.findings) fmt::print("  {}\n", finding);
+  for (const StudyFile& file : made.result.files) {
+    fmt::print("{}\n", PathText(arguments.out / file.name));
+  }
+}
+
+/// The folder for the files, made before long work. The destructor removes a new folder that is
+/// still empty.
+class OutFolder {
+ public:
+  /// @throws InputError
+  explicit OutFolder(const std::filesystem::path& folder)
+      : folder_(folder), is_new_(!std::filesystem::exists(folder)) {
+    RequireWritableFolder(folder, "--out");
+  }
+  ~OutFolder() {
+    std::error_code not_empty;
+    if (is_new_) std::filesystem::remove(folder_, not_empty);
+  }
+  OutFolder(const OutFolder&) = delete;
+  OutFolder& operator=(const OutFolder&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool is_new_;
+};
+
+int RunStudy(const StudyArguments& arguments) {
+  const std::vector<const Study*> chosen = Chosen(arguments.name);
+  if (!arguments.seeds.empty()) RequireFew(ReadSeeds(arguments.seeds), arguments.seeds);
+  RequireScenarios(arguments.scenarios);
+  const OutFolder folder(arguments.out);
+  WatchInterrupts();
+  std::vector<Made> all;
+  std::vector<report::StudySection> sections;
+  for (const Study* study : chosen) {
+    const Made& made = all.emplace_back(Make(*study, arguments));
+    for (const StudyFile& file : made.result.files) Write(arguments.out / file.name, file.content);
+    sections.push_back(made.result.section);
+    if (!arguments.json) PrintText(arguments, made);
+  }
+  const std::string stem = arguments.name == kAll ? "studies" : arguments.name;
+  const std::filesystem::path page = arguments.out / (stem + ".html");
+  Write(page, report::MakeStudyPage(CommandOf(arguments), sections));
+  const std::filesystem::path text = arguments.out / (stem + ".md");
+  Write(text, report::MakeStudyText(CommandOf(arguments), sections));
+  if (arguments.json) {
+    PrintJson(ToJson(arguments, all, page, text));
+  } else {
+    fmt::print("{}\n{}\n", PathText(page), PathText(text));
+  }
+  return kDone;
+}
+
+void AddStudy(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand(kStudy.verb, kStudy.purpose);
+  const auto arguments = std::make_shared<StudyArguments>();
+  verb->add_option("NAME", arguments->name, fmt::format("One of {}", Names()))->required();
+  verb->add_option("--out", arguments->out, "Folder for the files, which are replaced")
+      ->capture_default_str();
+  verb->add_option("--seeds", arguments->seeds,
+                   "Seeds A:B, both included (default: the study's own number)");
+  verb->add_option("--jobs", arguments->jobs, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  verb->add_option("--scenarios", arguments->scenarios,
+                   "Folder with paper.json and dense_fog.json, which the studies vary")
+      ->capture_default_str();
+  verb->add_flag("--json", arguments->json, "Print findings and files as JSON");
+  std::string table;
+  for (const Study& study : Studies()) {
+    table += fmt::format("  {:<11}{} ({} seeds)\n", study.name, study.title, study.seeds.count());
+  }
+  ShowExitCodes(*verb, {.interruptible = true});
+  verb->footer(fmt::format(
+      "Studies:\n{}\n"
+      "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with findings, figures and tables (of "
+      "all:\n"
+      "studies.html, studies.md). Findings are made from the numbers. Equal seeds have equal "
+      "noise\n"
+      "in all variants, and differences are paired; intervals are those of 95 %. The files do not\n"
+      "depend on --jobs.\n\n"
+      "Examples:\n  fogline study policy\n"
+      "  fogline study conflict --seeds 1:20 --out /tmp/conflict\n"
+      "  fogline study all --out docs/studies",
+      table));
+  verb->callback([&action, arguments] { action = [arguments] { return RunStudy(*arguments); }; });
+}
+
+}  // namespace
+}  // namespace fogline::study
+
+int main(int argc, char** argv) {
+  return fogline::RunOneVerb(argc, argv, fogline::study::AddStudy);
+}

@@ -1,0 +1,139 @@
+#include "tools/study/thresholds/equal_engagement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tools/study/bootstrap.h"
+
+namespace fogline::study {
+namespace {
+
+// Random stream of the resamples. Streams below 1000 belong to roles, 1000 to the mix of
+// situations.
+constexpr Stream kSituations{1001};
+
+CurvePoint PointOf(const RuleValues& rule, std::span<const double> weights) {
+  return {.rhe_pct = WeightedMean(rule.rhe_pct, weights), .gain = WeightedMean(rule.gain, weights)};
+}
+
+std::vector<CurvePoint> CurveOf(std::span<const RuleValues> fixed,
+                                std::span<const double> weights) {
+  std::vector<CurvePoint> curve;
+  for (const RuleValues& one : fixed) curve.push_back(PointOf(one, weights));
+  return curve;
+}
+
+/// Gain as by BestAt(). If the RHE is beyond the curve, the end of the curve counts.
+double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
+  const auto [least, most] = std::ranges::minmax(curve, {}, &CurvePoint::rhe_pct);
+  const std::optional<CurvePlace> place =
+      BestAt(curve, std::clamp(rhe_pct, least.rhe_pct, most.rhe_pct));
+  return place ? place->gain : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Gain as by BestOfAtMost(). If no point engages so little, the point with the smallest RHE
+/// counts.
+double GainOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
+  const double least = std::ranges::min(curve, {}, &CurvePoint::rhe_pct).rhe_pct;
+  const std::optional<std::size_t> best = BestOfAtMost(curve, std::max(rhe_pct, least));
+  return best ? curve[*best].gain : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Distance of a point of the curve from the curve of the other points. nullopt at the ends, and
+/// where the RHE is constant, because nothing is interpolated there.
+std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
+  if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
+  const std::array neighbours{curve[point - 1], curve[point + 1]};
+  const std::optional<CurvePlace> place = BestAt(neighbours, curve[point].rhe_pct);
+  if (!place || place->share == 0) return std::nullopt;
+  return std::abs(place->gain - curve[point].gain);
+}
+
+}  // namespace
+
+std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct) {
+  std::optional<CurvePlace> best;
+  const auto offer = [&](CurvePlace place) {
+    if (!best || place.gain > best->gain) best = place;
+  };
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (curve[i].rhe_pct == rhe_pct) offer({.below = i, .share = 0, .gain = curve[i].gain});
+    if (i + 1 == curve.size()) break;
+    const auto [from, to] = std::pair(curve[i], curve[i + 1]);
+    const double share = (rhe_pct - from.rhe_pct) / (to.rhe_pct - from.rhe_pct);
+    if (!(share > 0 && share < 1)) continue;  // also false where the RHE is constant
+    offer({.below = i, .share = share, .gain = std::lerp(from.gain, to.gain, share)});
+  }
+  return best;
+}
+
+std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
+                                            std::span<const RuleValues> rules) {
+  const std::size_t situations = fixed.front().rhe_pct.size();
+  const std::vector<double> once(situations, 1.0);
+  const std::vector<CurvePoint> curve = CurveOf(fixed, once);
+  std::vector<AtEqualEngagement> all(rules.size());
+  std::vector<double> values(rules.size());
+  std::vector<double> cheaper(rules.size());
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    const CurvePoint point = PointOf(rules[r], once);
+    all[r].place = BestAt(curve, point.rhe_pct);
+    if (!all[r].place) continue;
+    values[r] = point.gain - all[r].place->gain;
+    all[r].interpolation_error = InterpolationErrorAt(curve, *all[r].place);
+    all[r].cheaper = BestOfAtMost(curve, point.rhe_pct);
+    cheaper[r] = point.gain - GainOfAtMost(curve, point.rhe_pct);
+  }
+  const Resampling resampling(situations, kSituations);
+  std::vector<std::vector<double>> replicates(rules.size());
+  std::vector<std::vector<double>> of_cheaper(rules.size());
+  std::vector<double> weights;
+  for (std::int64_t k = 0; k < kReplicates; ++k) {
+    resampling.Draw(k, weights);
+    const std::vector<CurvePoint> again = CurveOf(fixed, weights);
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      if (!all[r].place) continue;
+      const CurvePoint point = PointOf(rules[r], weights);
+      replicates[r].push_back(point.gain - GainAt(again, point.rhe_pct));
+      of_cheaper[r].push_back(point.gain - GainOfAtMost(again, point.rhe_pct));
+    }
+  }
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    if (!all[r].place) continue;
+    const auto n = static_cast<std::int64_t>(situations);
+    all[r].difference = FromReplicates(n, values[r], std::move(replicates[r]));
+    all[r].against_cheaper = FromReplicates(n, cheaper[r], std::move(of_cheaper[r]));
+  }
+  return all;
+}
+
+std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (curve[i].rhe_pct <= rhe_pct && (!best || curve[i].gain > curve[*best].gain)) best = i;
+  }
+  return best;
+}
+
+double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place) {
+  if (place.share == 0) return 0;
+  std::optional<double> largest;
+  for (const std::size_t i : {place.below, place.below + 1}) {
+    const std::optional<double> off = OffTheOthers(curve, i);
+    if (off) largest = std::max(largest.value_or(0), *off);
+  }
+  const double whole = std::abs(curve[place.below + 1].gain - curve[place.below].gain);
+  return 4 * place.share * (1 - place.share) * largest.value_or(whole);
+}
+
+Verdict AtEqualEngagement::verdict() const {
+  Estimate widened = difference;
+  widened.low -= interpolation_error;
+  widened.high += interpolation_error;
+  return VerdictOf(widened);
+}
+
+}  // namespace fogline::study

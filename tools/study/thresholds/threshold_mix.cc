@@ -1,0 +1,160 @@
+#include "tools/study/thresholds/threshold_mix.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/random.h"
+#include "tools/stats/in_order.h"
+#include "tools/study/paired_worker.h"
+
+namespace fogline::study {
+namespace {
+
+// Random stream of the mix. Streams below 1000 belong to roles.
+constexpr Stream kMix{1000};
+
+/// Range of a uniform distribution, or of a uniform distribution of the logarithm.
+struct Range {
+  double least;
+  double most;
+
+  double Even(double u) const { return std::lerp(least, most, u); }
+  double Log(double u) const { return least * std::pow(most / least, u); }
+};
+
+// The mix is our choice: in each respect it reaches from the paper's value to a bad one.
+constexpr double kClearShare = 0.25;
+constexpr Range kVisibility_m{40, 300};
+constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216
+constexpr Range kMounting_m{0.7, 1.0};
+constexpr Range kRadarStd_m{0.01, 0.1};
+constexpr Range kLidarStd_m{0.01, 0.03};
+// Half of the humans judge correctly and stay aware. The readiness of the others falls to a value
+// in this range while the automation drives.
+constexpr double kErringShare = 0.5;
+constexpr Range kMonitoring{0.1, 1.0};
+constexpr Range kLeadAmplitude_mps{0, 1.5};
+
+constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+
+/// Sets the fields that vary between situations.
+Scenario Draw(Scenario scenario, std::int64_t seed) {
+  const Random random(seed, kMix);
+  const auto u = [&](std::uint32_t index) { return random.Uniform2(0, index)[0]; };
+  scenario.fog.model = u(0) < 0.5 ? FogModel::kBias : FogModel::kBeam;
+  if (u(1) < kClearShare) scenario.fog.duration_s = 0;
+  scenario.fog.visibility_m = kVisibility_m.Log(u(2));
+  scenario.fog.bias_m = kBias_m.Log(u(3));
+  scenario.radar.bias_m = kMounting_m.Even(u(4));
+  scenario.radar.range_std_m = kRadarStd_m.Log(u(5));
+  scenario.lidar.range_std_m = kLidarStd_m.Log(u(6));
+  scenario.human.awareness.monitoring = kMonitoring.Even(u(7));
+  scenario.human.misjudges = scenario.human.loses_awareness = u(9) < kErringShare;
+  scenario.lead.sinusoid.amplitude_mps = kLeadAmplitude_mps.Even(u(8));
+  scenario.seed = seed;
+  return scenario;
+}
+
+const std::vector<std::string> kMixed{"/lead/profile=sinusoid",
+                                      "/human/sight=fog",
+                                      "/followers/driver=drawn",
+                                      "/followers/style=drawn",
+                                      "/arbitrator/missing_lidar=conflict",
+                                      "/arbitrator/adaptive/most=1"};
+
+RuleFamily FamilyOf(std::string name, std::string_view policy, std::string_view pointer,
+                    std::span<const double> values) {
+  RuleFamily family{.name = std::move(name),
+                    .values = std::vector<double>(values.begin(), values.end()),
+                    .members = {}};
+  for (const double value : values) {
+    family.members.push_back(
+        {fmt::format("{} {:g}", family.name, value),
+         {fmt::format("/arbitrator/policy={}", policy), fmt::format("{}={:g}", pointer, value)}});
+  }
+  return family;
+}
+
+std::vector<RuleFamily> Families() {
+  // The grid is dense, because other rules are compared with values between two points. It is
+  // denser where the RHE falls fastest.
+  std::vector<double> fixed;
+  for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
+    fixed.push_back(permille / 1000.0);
+  }
+  constexpr std::array kBases{0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 0.98};
+  constexpr std::array kCosts{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
+  std::vector<RuleFamily> families{
+      FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
+      FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
+      FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
+      FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
+  return families;
+}
+
+std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed) {
+  std::vector<Scenario> bases;
+  std::vector<std::string> overrides = kMixed;
+  overrides.emplace_back(kWithoutTradedControl);
+  bases.push_back(context.Load("paper.json", overrides));
+  for (const RuleFamily& family : mixed.families) {
+    for (const StudyVariant& member : family.members) {
+      overrides = kMixed;
+      overrides.insert(overrides.end(), member.overrides.begin(), member.overrides.end());
+      bases.push_back(context.Load("paper.json", overrides));
+    }
+  }
+  return bases;
+}
+
+void Add(const RunValues& run, RuleMember& member) {
+  member.si_pct.push_back(run[PlaceOfMeasure("si_pct")]);
+  member.rhe_pct.push_back(run[PlaceOfMeasure("rhe_pct")]);
+  member.shortfall_m.push_back(run[PlaceOfMeasure(kShortfall)]);
+  member.collisions += run[PlaceOfMeasure("collided")] > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+MixedRuns RunMix(const StudyContext& context) {
+  MixedRuns mixed{.families = Families(), .members = {}, .situations = context.seeds.count()};
+  for (std::size_t f = 0; f < mixed.families.size(); ++f) {
+    for (const StudyVariant& member : mixed.families[f].members) {
+      mixed.members.push_back({.family = f, .name = member.name});
+    }
+  }
+  const std::vector<Scenario> bases = BasesOf(context, mixed);
+  ComputeInOrder(
+      0, mixed.situations, context.jobs, [] { return PairedWorker(); },
+      [&](PairedWorker& worker, std::int64_t unit) {
+        const std::int64_t seed = context.seeds.first + unit;
+        std::vector<Scenario> scenarios;
+        for (const Scenario& base : bases) scenarios.push_back(Draw(base, seed));
+        return worker.Compute(scenarios, seed);
+      },
+      [&](std::int64_t unit, const std::vector<RunValues>& runs) {
+        for (std::size_t m = 0; m < runs.size(); ++m) Add(runs[m], mixed.members[m]);
+        context.Show(unit + 1, mixed.situations);
+        return true;
+      });
+  return mixed;
+}
+
+std::string MixText() {
+  return fmt::format(
+      "drawn alike for every rule: paper.json with a leader whose speed swings by up to {:g} m/s, "
+      "{:g} % in clear air, else fog of either model (visibility {:g} to {:g} m, bias {:g} to {:g} "
+      "m), mounting offset {:g} to {:g} m, radar noise {:g} to {:g} m, LiDAR noise {:g} to {:g} m; "
+      "a human who sees the fog and in {:g} % misjudges and loses awareness (down to {:g} to {:g}),"
+      " and a follower of drawn kind and style",
+      kLeadAmplitude_mps.most, 100 * kClearShare, kVisibility_m.least, kVisibility_m.most,
+      kBias_m.least, kBias_m.most, kMounting_m.least, kMounting_m.most, kRadarStd_m.least,
+      kRadarStd_m.most, kLidarStd_m.least, kLidarStd_m.most, 100 * kErringShare, kMonitoring.least,
+      kMonitoring.most);
+}
+
+}  // namespace fogline::study
