@@ -1,0 +1,186 @@
+// The order of the folders: which may use which, how full one may be, and one meaning for each
+// name.
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+struct Room {
+  std::string_view folder;  // with its subfolders, unless they are rooms of their own
+  std::string_view why;     // why it stands behind those before it
+};
+
+/// A file may include files of its own room and of rooms before it. NAME_main.cc is a program, so
+/// it may include all.
+constexpr std::array kRooms = std::to_array<Room>({
+    {"common", "knows nothing of Fogline"},
+    {"fogline", "the message types that lcm-gen makes of lcmtypes/"},
+    {"scenario/sections", "what an experiment can choose"},
+    {"scenario/io", "reads, checks and explains the sections"},
+    {"services", "graph.h and what all roles share: who sends what to whom"},
+    {"services/models", "vehicles and people of a scenario"},
+    {"services/decision", "who should drive, from what models and sensors say"},
+    {"services/acc", "a role"},
+    {"services/world", "a role"},
+    {"services/radar", "a role"},
+    {"services/lidar", "a role"},
+    {"services/fusion", "a role"},
+    {"services/driver", "a role"},
+    {"services/arbitrator", "a role"},
+    {"services/follower", "a role; its car may have an ACC"},
+    {"services/runtime/wire", "the bytes of messages"},
+    {"services/metrics", "judges what the messages of a run say"},
+    {"services/metrics/closed_loop", "all roles in one process, and their metrics"},
+    {"services/runtime/transport", "carries the bytes"},
+    {"services/runtime/discovery", "finds runs by what is carried"},
+    {"services/runtime/lockstep", "a role's part in a run that waits"},
+    {"services/runtime/realtime", "a role's part in a run that does not wait"},
+    {"services/runtime/coordination", "the runner's part in both"},
+    {"services/runtime/process", "makes a process of a role"},
+    {"services/log", "the file that a run leaves"},
+    {"services/recorder", "the role that writes it"},
+    {"tools/stats", "numbers about many runs"},
+    {"tools/sweep", "many runs"},
+    {"tools/report", "pages about them"},
+    {"tools/export", "logs for other programs"},
+    {"tools/watch", "what is on a network"},
+    {"tools/relay", "carries messages over TCP"},
+    {"tools/processes", "starts and watches processes"},
+    {"tools/replay", "computes a role again from a log"},
+    {"tools/runner", "makes one run, over any transport"},
+    {"tools/spy", "LCM's viewer with Fogline's types"},
+    {"tools/doctor", "examines the machine, and these tools on it"},
+    {"tools/cli", "what the command lines of verbs share"},
+    {"tools/calibrate", "a program"},
+    {"tools/study", "a program"},
+    {"tools/fogline", "the verbs"},
+    {"tools/benchmarks", "a program that measures the others"},
+});
+
+/// The room of a file; nullopt if it is in none.
+std::optional<std::size_t> RoomOf(const std::filesystem::path& file) {
+  for (auto folder = file.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    const auto room = std::ranges::find(kRooms, folder.generic_string(), &Room::folder);
+    if (room != kRooms.end()) return room - kRooms.begin();
+  }
+  return std::nullopt;
+}
+
+std::string Read(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The C++ files outside tests/, relative to the folder of the sources, in the order of their
+/// names.
+std::vector<std::filesystem::path> Sources() {
+  std::vector<std::filesystem::path> sources;
+  for (const char* top : {"common", "scenario", "services", "tools"}) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(SourceDirectory() / top)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cc") continue;
+      sources.push_back(std::filesystem::relative(entry.path(), SourceDirectory()));
+    }
+  }
+  std::ranges::sort(sources);
+  return sources;
+}
+
+/// "FILE includes FILE" for each include that the order of the rooms forbids.
+std::vector<std::string> ForbiddenIncludes(const std::filesystem::path& file,
+                                           const std::string& text) {
+  static const std::regex include("(?:^|\n)#include \"([^\"]+)\"");
+  const auto room = RoomOf(file);
+  if (!room) return {file.string() + " is in no room"};
+  if (file.stem().string().ends_with("_main")) return {};
+  std::vector<std::string> forbidden;
+  for (std::sregex_iterator at(text.begin(), text.end(), include), end; at != end; ++at) {
+    const std::string included = (*at)[1];
+    if (RoomOf(included).value_or(kRooms.size()) <= *room) continue;
+    forbidden.push_back(file.string() + " includes " + included);
+  }
+  return forbidden;
+}
+
+TEST(HouseTest, FilesIncludeOnlyWhatStandsBeforeThem) {
+  const auto sources = Sources();
+  ASSERT_GT(sources.size(), 300U);
+  std::vector<std::string> forbidden;
+  for (const auto& file : sources) {
+    std::ranges::move(ForbiddenIncludes(file, Read(SourceDirectory() / file)),
+                      std::back_inserter(forbidden));
+  }
+  EXPECT_THAT(forbidden, IsEmpty());
+}
+
+TEST(HouseTest, FindsAForbiddenInclude) {
+  const std::string text =
+      "// Radar.\n#include \"services/graph.h\"\n#include \"services/runtime/transport/bus.h\"\n";
+  EXPECT_THAT(ForbiddenIncludes("services/radar/radar.h", text),
+              ElementsAre("services/radar/radar.h includes services/runtime/transport/bus.h"));
+  EXPECT_THAT(ForbiddenIncludes("services/radar/radar_main.cc", text), IsEmpty());
+  EXPECT_THAT(ForbiddenIncludes("common/clock.h", "#include \"attic/clock.h\"\n"),
+              ElementsAre("common/clock.h includes attic/clock.h"));
+}
+
+TEST(HouseTest, NoFolderHasMoreThan20Files) {
+  constexpr int kMost = 20;
+  std::map<std::filesystem::path, int> files;
+  for (const auto& file : Sources()) ++files[file.parent_path()];
+  for (const auto& [folder, count] : files) EXPECT_LE(count, kMost) << folder;
+}
+
+/// "NAMESPACE::NAME" of each type that a header defines outside of other types.
+std::set<std::string> TypesOf(const std::string& header) {
+  static const std::regex line(
+      "(?:^|\n)(?:namespace ([a-z_:]+) \\{|(?:class|struct|enum class) (\\w+)[^;<\n]*\\{)");
+  std::set<std::string> types;
+  std::string space;
+  for (std::sregex_iterator at(header.begin(), header.end(), line), end; at != end; ++at) {
+    if ((*at)[1].matched) space = (*at)[1];
+    if ((*at)[2].matched) types.insert(space + "::" + (*at)[2].str());
+  }
+  return types;
+}
+
+TEST(HouseTest, NoTwoHeadersDefineATypeOfTheSameName) {
+  std::map<std::string, std::filesystem::path> known;
+  for (const auto& file : Sources()) {
+    if (file.extension() != ".h") continue;
+    for (const std::string& type : TypesOf(Read(SourceDirectory() / file))) {
+      const auto [first, fresh] = known.emplace(type, file);
+      EXPECT_TRUE(fresh) << type << " is defined in " << first->second << " and in " << file;
+    }
+  }
+  EXPECT_GT(known.size(), 300U);
+}
+
+TEST(HouseTest, FindsTheTypesOfAHeader) {
+  EXPECT_THAT(
+      TypesOf("namespace fogline::report {\n\nstruct Window {\n  enum class Kind { kA };\n};\n"
+              "class Later;\nclass Curve final : public Line {\n};\n"),
+      ElementsAre("fogline::report::Curve", "fogline::report::Window"));
+}
+
+}  // namespace
+}  // namespace fogline::test
