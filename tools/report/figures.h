@@ -126,7 +126,7 @@ struct Window {
 /// Time spans with fog. A step lasts until the next sample.
 std::vector<Window> FogWindows(std::span<const Sample> samples);
 
-/// Time spans in which the human drives, that is, has any authority, as in measures.h.
+/// Time spans in which the human drives, that is, has any authority, as in run_metrics.h.
 std::vector<Window> HumanWindows(std::span<const Sample> samples);
 
 }  // namespace fogline::report

@@ -20,9 +20,9 @@ struct Evidence {
   StatedRange prediction;
 };
 
-/// A scalar score of conflict; a higher score means more conflict. The table (measures.h) states
-/// unit, range and treatment of missing values for each measure. A measure reads no clock, shares
-/// no state, and allocates no memory in Step: equal evidence gives equal scores, to the bit.
+/// A scalar score of conflict; a higher score means more conflict. The table (conflict_measures.h)
+/// states unit, range and treatment of missing values for each measure. A measure reads no clock,
+/// shares no state, and allocates no memory in Step: equal evidence gives equal scores, to the bit.
 class ConflictMeasure {
  public:
   virtual ~ConflictMeasure() = default;
