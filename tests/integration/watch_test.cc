@@ -68,29 +68,41 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const ScratchFolder folder;
   Bus bus(FreshMulticastUrl());
   std::int64_t step = -1;
-  bus.Subscribe(ChannelOf<truth_t>().name,
-                [&step](Bytes bytes) { step = ReadInt64(bytes, kStepOffset); });
+  TimePoint heard{};
+  int uneven = 0;  // steps that the machine held up, or that make up for such a one
+  bus.Subscribe(ChannelOf<truth_t>().name, [&](Bytes bytes) {
+    step = ReadInt64(bytes, kStepOffset);
+    const TimePoint now = Clock::now();
+    uneven += now - heard < milliseconds(50) || now - heard > milliseconds(150) ? 1 : 0;
+    heard = now;
+  });
   const Background run({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--quiet",
                         "--lcm-url", bus.url(), "--log", folder.File("run.lcm")});
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN top watches it for two seconds
-  const Outcome top = RunCommand(
-      {Program("fogline"), "top", "--once", "--json", "--interval", "2", "--lcm-url", bus.url()});
-  ASSERT_EQ(top.code, 0) << top.err;
+  // WHEN top watches it for two seconds in which this machine does not disturb the run's pace
+  std::string shown;
+  for (int tries = 0; shown.empty() && tries < 10; ++tries) {
+    uneven = 0;
+    Background top(
+        {Program("fogline"), "top", "--once", "--json", "--interval", "2", "--lcm-url", bus.url()});
+    while (IsAlive(top.pid())) bus.Wait(milliseconds(10));
+    ASSERT_EQ(top.Wait(), 0) << top.Err();
+    if (uneven == 0) shown = top.Out();
+  }
+  ASSERT_NE(shown, "") << "the machine disturbed every try";
   // THEN top shows the run, and every channel that has a message in every step has 10 per second
-  const json document = json::parse(top.out);
-  ASSERT_EQ(document["runs"].size(), 1U) << top.out;
+  const json document = json::parse(shown);
+  ASSERT_EQ(document["runs"].size(), 1U) << shown;
   const json& seen = document["runs"][0];
   EXPECT_GT(seen["step"], 5);
   for (const ChannelInfo& channel : kChannels) {
     if (channel.pace != Pace::kStep) continue;
     SCOPED_TRACE(channel.name);
     const json& row = Find(seen["channels"], "channel", std::string(channel.name));
-    // A run that a busy machine has held up makes up for it, so that it is quicker for a while.
-    EXPECT_GT(row["rate_hz"], 5.0);
-    EXPECT_LT(row["rate_hz"], 20.0);
+    // The tolerance covers a message more or less at either end.
+    EXPECT_NEAR(row["rate_hz"].get<double>(), 10, 1.5);
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["undecodable"], 0);
     EXPECT_GT(row["bandwidth_bytes_per_s"], 10.0 * kHeaderEnd * 0.8);
