@@ -70,8 +70,9 @@ pid_t ParentOf(pid_t pid) {
   return parent;
 }
 
-/// The process that has locked an open file. An owner has started the processes that work for it,
-/// so of several holders the one whose parent is none of them is named. /proc/locks has lines "1:
+/// The process that has locked an open file. Several processes can hold one lock: an owner, and
+/// processes that the owner has started. The owner is named: its parent holds no lock.
+/// /proc/locks has lines "1:
 /// FLOCK ADVISORY READ 4711 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {
   struct stat file {};

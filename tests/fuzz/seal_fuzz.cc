@@ -28,12 +28,12 @@ void DemandUnforgeable(const MessageSigner& seal, const ChannelInfo& channel, By
     Demand(opened.payload.empty(), "what is not good is not given to anybody");
     return;
   }
-  bool signed_by_somebody = false;
+  bool signed_by_a_role = false;
   for (int role = 0; role <= static_cast<int>(Role::kRunner); ++role) {
-    MessageSigner somebody(Key(1), static_cast<Role>(role));
-    signed_by_somebody |= std::ranges::equal(somebody.Sign(channel.name, opened.payload), message);
+    MessageSigner signer(Key(1), static_cast<Role>(role));
+    signed_by_a_role |= std::ranges::equal(signer.Sign(channel.name, opened.payload), message);
   }
-  Demand(signed_by_somebody, "what is good was signed");
+  Demand(signed_by_a_role, "what is good was signed");
   Took();
 }
 

@@ -234,6 +234,7 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
            said.find(" again\n") != std::string::npos;
   };
   const TimePoint end = Clock::now() + kPatience;
+  // No event tells that a program has written to its stderr, which is a file.
   while (std::ranges::none_of(drivers, is_other) && Clock::now() < end) {
     std::this_thread::sleep_for(kLookEvery);
   }

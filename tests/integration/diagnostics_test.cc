@@ -75,7 +75,7 @@ pid_t WaitForRole(pid_t run, const std::string& program) {
     for (const pid_t child : ChildrenOf(run)) {
       if (Content("/proc/" + std::to_string(child) + "/comm").starts_with(program)) return child;
     }
-    std::this_thread::sleep_for(kLookEvery);
+    std::this_thread::sleep_for(kLookEvery);  // no event tells that a process was started
   }
   return 0;
 }

@@ -26,7 +26,7 @@ class PacedRun {
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // It is under way when so many steps are on disk.
+    // It is under way when so many steps are on disk, of which no event tells.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);
@@ -127,6 +127,7 @@ TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
   paced.run().Signal(SIGKILL);
   EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
   const auto end = SteadyClock::now() + std::chrono::seconds(5);
+  // The roles are no children of this test, so that it cannot wait for their ends.
   for (const pid_t pid : pids) {
     while (IsAlive(pid) && SteadyClock::now() < end) std::this_thread::sleep_for(kLookEvery);
     EXPECT_FALSE(IsAlive(pid)) << pid;

@@ -43,7 +43,7 @@ std::string WhyNoComparison(const std::string& name) {
   for (const Comparison& comparison : all) {
     names += (names.empty() ? "" : ", ") + comparison.name;
   }
-  return fmt::format("\"{}\" is none of {}", name, names);
+  return fmt::format("there is no comparison \"{}\"; the comparisons are {}", name, names);
 }
 
 std::vector<Comparison> Wanted(const Arguments& arguments) {
