@@ -17,10 +17,10 @@
 
 #include <fmt/core.h>
 
-#include "common/file.h"
 #include "common/errors.h"
-#include "common/text.h"
+#include "common/file.h"
 #include "common/process/interrupt.h"
+#include "common/text.h"
 
 namespace fogline {
 

@@ -18,8 +18,8 @@
 
 #include <fmt/core.h>
 
-#include "common/file.h"
 #include "common/errors.h"
+#include "common/file.h"
 #include "common/text.h"
 
 namespace fogline {

@@ -17,8 +17,8 @@
 
 #include <fmt/core.h>
 
-#include "common/text.h"
 #include "common/clock.h"
+#include "common/text.h"
 
 namespace fogline {
 namespace {

@@ -1,6 +1,6 @@
 #include "services/acc/acc.h"
 
-namespace fogline {
+namespace fogline::acc {
 
 Acc::Acc(const Scenario& scenario)
     : controller_(scenario.acc, scenario.step_s, scenario.host_vehicle.model),
@@ -28,4 +28,4 @@ const accel_command_t& Acc::Step(const ego_t& ego, const track_t& track) {
   return out_;
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

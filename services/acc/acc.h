@@ -7,7 +7,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc_controller.h"
 
-namespace fogline {
+namespace fogline::acc {
 
 /// Offers the automation's acceleration a_A in every step, also while the human drives. Uses the
 /// host's own odometry and the track of the preceding car, never the truth; decides nothing about
@@ -30,4 +30,4 @@ class Acc {
   accel_command_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -6,7 +6,7 @@
 
 #include "common/errors.h"
 
-namespace fogline {
+namespace fogline::acc {
 namespace {
 
 // A car has followed its command if its acceleration differs by no more than this, in m/s2: far
@@ -127,4 +127,4 @@ bool AccController::Solve(const AccSituation& now, Output& output) {
   return true;
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -11,7 +11,7 @@
 #include "services/acc/acc_program.h"
 #include "services/acc/qp.h"
 
-namespace fogline {
+namespace fogline::acc {
 
 /// Model predictive adaptive cruise control: holds the safe distance d_r = T_hw v + d_0 to the
 /// preceding car. Uses distances and speeds; sensors, messages and authority have no place here.
@@ -86,4 +86,4 @@ class AccController {
   double acceleration_mps2_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::acc

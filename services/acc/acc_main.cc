@@ -3,4 +3,6 @@
 #include "services/acc/acc.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Acc>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::acc::Acc>(argc, argv);
+}

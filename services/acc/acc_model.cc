@@ -2,7 +2,7 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-namespace fogline {
+namespace fogline::acc {
 
 AccModel MakeAccModel(const AccSection& section) {
   const double engine_rate = 1.0 / section.engine_time_constant_s;
@@ -23,4 +23,4 @@ DiscreteAccModel Discretise(const AccModel& model, double step_s) {
   return {.phi = exponential.topLeftCorner<3, 3>(), .gamma = exponential.topRightCorner<3, 1>()};
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

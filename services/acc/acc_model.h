@@ -5,7 +5,7 @@
 
 #include "scenario/sections/control.h"
 
-namespace fogline {
+namespace fogline::acc {
 
 /// Order of the state x = [delta_d, delta_v, a]: the distance minus the safe distance
 /// d_r = T_hw v + d_0 in m, the preceding car's speed minus the own in m/s, and the own
@@ -43,4 +43,4 @@ inline double SafeDistance(const AccSection& section, double speed_mps) {
   return section.headway_s * speed_mps + section.standstill_m;
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fogline {
+namespace fogline::acc {
 namespace {
 
 using Eigen::Index;
@@ -194,4 +194,4 @@ bool AccProgram::GapsAreWithinLimits(const AccSituation& now,
   return true;
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

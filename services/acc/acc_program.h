@@ -8,7 +8,7 @@
 #include "scenario/sections/control.h"
 #include "services/acc/acc_model.h"
 
-namespace fogline {
+namespace fogline::acc {
 
 /// The situation from which a plan starts.
 struct AccSituation {
@@ -107,4 +107,4 @@ class AccProgram {
   Eigen::MatrixXd constraints_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Jacobi>
 
-namespace fogline {
+namespace fogline::acc {
 namespace {
 
 using Eigen::Index;
@@ -227,4 +227,4 @@ void QpSolver::Drop(Index position) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace fogline {
+namespace fogline::acc {
 
 /// The dual active-set method of D. Goldfarb and A. Idnani, "A numerically stable dual method for
 /// solving strictly convex quadratic programs", Mathematical Programming 27 (1983) 1-33, for
@@ -120,4 +120,4 @@ class QpSolver {
   Eigen::VectorXd multipliers_;  // m
 };
 
-}  // namespace fogline
+}  // namespace fogline::acc

@@ -4,23 +4,24 @@
 
 #include "services/decision/policies/policies.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
       meter_(scenario),
-      rule_(RowOf(scenario.arbitrator.policy).rule),
-      shares_(RowOf(scenario.arbitrator.policy).shares),
+      rule_(policies::RowOf(scenario.arbitrator.policy).rule),
+      shares_(policies::RowOf(scenario.arbitrator.policy).shares),
       steady_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
       transfer_(scenario.arbitrator.transfer, scenario.step_s),
       easing_per_step_(scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s) {
   out_.threshold = threshold_;
-  if (rule_ == Rule::kOwn) policy_ = RowOf(scenario.arbitrator.policy).make(scenario);
+  if (rule_ == policies::Rule::kOwn)
+    policy_ = policies::RowOf(scenario.arbitrator.policy).make(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
 bool Arbitrator::UsesOptionalInput(const Scenario& scenario) {
-  return RowOf(scenario.arbitrator.policy).needs_surroundings;
+  return policies::RowOf(scenario.arbitrator.policy).needs_surroundings;
 }
 
 void Arbitrator::SetOptionalInput(const truth_t& truth) {
@@ -44,10 +45,10 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.header = ego.header;
   out_.conflict_m = meter_.conflict();
   out_.doc = meter_.DocOf(out_.conflict_m);
-  const EngagementRequest wish = rule_ == Rule::kThreshold ? Compare(out_.doc, threshold_)
-                                 : rule_ == Rule::kNever
-                                     ? StayAutomated(threshold_)
-                                     : OwnRequest(ego, track, automation, driver);
+  const policies::EngagementRequest wish =
+      rule_ == policies::Rule::kThreshold ? policies::Compare(out_.doc, threshold_)
+      : rule_ == policies::Rule::kNever   ? policies::StayAutomated(threshold_)
+                                          : OwnRequest(ego, track, automation, driver);
   out_.threshold = wish.threshold;
   const double wanted = steady_.Step(wish, out_.doc);
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
@@ -59,18 +60,18 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
   // The mode names the side with more authority; the human if both have half.
-  out_.mode =
-      state.lambda_human < kMainAuthority ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
+  out_.mode = state.lambda_human < models::kMainAuthority ? arbitration_t::AUTOMATION
+                                                          : arbitration_t::HUMAN;
   if (take_over_) {
-    out_.mode = InfoOf(take_over_->outcome().state).mode;
+    out_.mode = take_over::InfoOf(take_over_->outcome().state).mode;
     sent_mps2_ = out_.acceleration_mps2;
   }
   return out_;
 }
 
-EngagementRequest Arbitrator::OwnRequest(const ego_t& ego, const track_t& track,
-                                         const accel_command_t& automation,
-                                         const driver_command_t& driver) {
+policies::EngagementRequest Arbitrator::OwnRequest(const ego_t& ego, const track_t& track,
+                                                   const accel_command_t& automation,
+                                                   const driver_command_t& driver) {
   return policy_->Decide({.doc = out_.doc,
                           .threshold = threshold_,
                           .lambda_human = out_.lambda_human,
@@ -84,8 +85,8 @@ EngagementRequest Arbitrator::OwnRequest(const ego_t& ego, const track_t& track,
 bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
                      const driver_command_t& driver, Transfer::Offers& offers) {
   const bool manoeuvre_ran = take_over_->in_manoeuvre();
-  const bool human_wanted = shares_ ? wanted > 0 : wanted >= kMainAuthority;
-  const TakeOverOutcome& asked =
+  const bool human_wanted = shares_ ? wanted > 0 : wanted >= models::kMainAuthority;
+  const take_over::TakeOverOutcome& asked =
       take_over_->Step(ego.header, {.human_wanted = human_wanted || !automation_there_,
                                     .automation_mps2 = offers.automation_mps2,
                                     .human_mps2 = offers.human_mps2,
@@ -98,11 +99,11 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     out_.lambda_automation = 0;
     out_.lambda_human = 0;
     out_.acceleration_mps2 = asked.acceleration_mps2;
-    out_.mode = InfoOf(asked.state).mode;
+    out_.mode = take_over::InfoOf(asked.state).mode;
     Overrule(out_);
     return false;
   }
-  if (asked.authority == Authority::kHuman) {
+  if (asked.authority == take_over::Authority::kHuman) {
     // The driver shares authority only with an automation that is there and is not off for the rest
     // of the run.
     const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
@@ -126,4 +127,4 @@ void Arbitrator::Overrule(const arbitration_t& sent) {
   sent_mps2_ = sent.acceleration_mps2;
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -19,7 +19,7 @@
 #include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// With the defaults it is the traded control of Sourav & Cheng 2024:
 ///
@@ -54,15 +54,15 @@ class Arbitrator {
   /// Whether the last decision wants the human to drive, also while the transfer is still under
   /// way. If the driver must be asked: whether he has taken over and has at least half of the
   /// authority.
-  bool wants_human() const { return granted_ >= kMainAuthority; }
+  bool wants_human() const { return granted_ >= models::kMainAuthority; }
   /// The driver must be asked, and has not taken over.
   bool must_ask() const {
-    return take_over_ && take_over_->outcome().authority != Authority::kHuman;
+    return take_over_ && take_over_->outcome().authority != take_over::Authority::kHuman;
   }
   /// A request is pending, or the host is in the manoeuvre that follows an unanswered request. This
   /// manoeuvre needs only the odometry as input.
   bool asks() const {
-    return must_ask() && take_over_->outcome().state != TakeOverState::kAutomated;
+    return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
   bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
   /// An automation that is not there does not get authority back from a driver who was asked.
@@ -73,8 +73,9 @@ class Arbitrator {
 
  private:
   /// The wish of a policy with its own rule, for the conflict in out_.
-  EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
-                               const accel_command_t& automation, const driver_command_t& driver);
+  policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
+                                         const accel_command_t& automation,
+                                         const driver_command_t& driver);
   /// Handles the wish for the human if he must be asked. @return false if the host is in a
   /// manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
@@ -82,19 +83,19 @@ class Arbitrator {
 
   double threshold_;
   ConflictMeter meter_;
-  Rule rule_;
+  policies::Rule rule_;
   bool shares_;
-  std::unique_ptr<EngagementPolicy> policy_;  // none for a simple rule
+  std::unique_ptr<policies::EngagementPolicy> policy_;  // none for a simple rule
   RequestDebouncer steady_;
   Transfer transfer_;
-  Surroundings surroundings_;
-  std::optional<TakeOver> take_over_;  // only of a driver who must be asked
-  double easing_per_step_;             // m/s2; decrease of an acceleration per step after a request
-  double eased_mps2_ = 0;              // upper limit of the automation's acceleration then
+  policies::Surroundings surroundings_;
+  std::optional<take_over::TakeOver> take_over_;  // only of a driver who must be asked
+  double easing_per_step_;  // m/s2; decrease of an acceleration per step after a request
+  double eased_mps2_ = 0;   // upper limit of the automation's acceleration then
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H at the end of the transfer
   std::optional<double> sent_mps2_;  // command of the step before
   arbitration_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

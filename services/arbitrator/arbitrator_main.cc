@@ -5,5 +5,6 @@
 #include "services/runtime/process/service.h"
 
 int main(int argc, char** argv) {
-  return fogline::RunService<fogline::Arbitrator, fogline::FailsafeArbitrator>(argc, argv);
+  return fogline::runtime::RunService<fogline::arbitrator::Arbitrator,
+                                      fogline::arbitrator::FailsafeArbitrator>(argc, argv);
 }

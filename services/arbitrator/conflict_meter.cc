@@ -4,25 +4,25 @@
 
 #include "common/errors.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 ConflictMeter::ConflictMeter(const Scenario& scenario)
     : slope_(scenario.arbitrator.doc_slope_per_m),
       centre_(scenario.arbitrator.doc_centre_m),
-      doc_(ConflictParametersOf(scenario.arbitrator)),
+      doc_(policies::ConflictParametersOf(scenario.arbitrator)),
       witness_(scenario.fusion) {
   const ArbitratorSection& section = scenario.arbitrator;
   is_posterior_ = section.measure_scale == MeasureScale::kProbability;
-  if (is_posterior_ && !RowOf(section.measure).posterior) {
+  if (is_posterior_ && !policies::RowOf(section.measure).posterior) {
     throw InputError(
         fmt::format("/arbitrator/measure_scale: \"probability\" is for measures that are one, as "
                     "\"lidar_modes\"; /arbitrator/measure is \"{}\"",
-                    RowOf(section.measure).name));
+                    policies::RowOf(section.measure).name));
   }
   if (section.measure == MeasureChoice::kDoc) return;
-  measure_ = RowOf(section.measure).make(ConflictParametersOf(section));
+  measure_ = policies::RowOf(section.measure).make(policies::ConflictParametersOf(section));
   slope_ = section.measure_slope;
   centre_ = section.measure_centre;
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -10,7 +10,7 @@
 #include "services/decision/policies/evidence.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// DoC = 1/(1 + exp(-slope (x - centre))). x is z (services/decision/conflict/one_step/doc.h), as
 /// in the paper, or the score of another row of services/decision/conflict/conflict_measures.cc, as
@@ -23,7 +23,8 @@ class ConflictMeter {
   /// Adds the values of a step. `track` is the witness for measures that need one; a track of
   /// another step than radar's is not used.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
-    Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
+    conflict::Evidence evidence{
+        .radar = policies::StatedBy(radar), .lidar = policies::StatedBy(lidar), .prediction = {}};
     if (!measure_) return doc_.Observe(evidence);
     if (track.header.step == radar.header.step) {
       evidence.prediction = witness_.Prediction(track, radar, lidar);
@@ -36,7 +37,7 @@ class ConflictMeter {
   /// DoC of this value of conflict().
   double DocOf(double conflict) const {
     if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
-    return DegreeOfConflict(conflict, slope_, centre_);
+    return conflict::DegreeOfConflict(conflict, slope_, centre_);
   }
   /// Whether the DoC is the posterior probability that a sensor is wrong, by all evidence so far.
   bool is_posterior() const { return is_posterior_; }
@@ -45,10 +46,10 @@ class ConflictMeter {
   bool is_posterior_ = false;
   double slope_;  // of the DoC, over z or score
   double centre_;
-  Doc doc_;
-  Witness witness_;
-  std::unique_ptr<ConflictMeasure> measure_;  // none for doc
+  conflict::Doc doc_;
+  policies::Witness witness_;
+  std::unique_ptr<conflict::ConflictMeasure> measure_;  // none for doc
   double score_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::arbitrator {
 namespace {
 
 // The automation can drive if its command is there, the track from which the command is computed,
@@ -93,7 +93,7 @@ Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pa
 
 void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
   out_.mode = mode;
-  out_.lambda_human = HumanDrives(mode) ? 1 : 0;
+  out_.lambda_human = models::HumanDrives(mode) ? 1 : 0;
   out_.lambda_automation = 1 - out_.lambda_human;
   out_.acceleration_mps2 = acceleration_mps2;
 }
@@ -106,4 +106,4 @@ void FailsafeArbitrator::Stop(const ego_t& ego) {
   out_.acceleration_mps2 = minimal_risk_.Step(ego.speed_mps);
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

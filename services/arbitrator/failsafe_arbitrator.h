@@ -14,7 +14,7 @@
 #include "services/models/minimal_risk/minimal_risk.h"
 #include "services/models/minimal_risk/modes.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// Everything that the arbitrator reads, as far as it has come. The odometry triggers the decision
 /// of a step, so it is always there.
@@ -50,7 +50,9 @@ class FailsafeArbitrator {
   /// Text that says what it does instead of its regular work; "" if it does its regular work.
   std::string_view fallback() const { return FallbackText(decision_); }
   /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
-  std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
+  std::int8_t minimal_risk() const {
+    return models::IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0};
+  }
   /// The decision of the last step.
   Decision decision() const { return decision_; }
 
@@ -62,7 +64,7 @@ class FailsafeArbitrator {
 
   Arbitrator arbitrator_;
   SensorPairs pairs_;
-  MinimalRisk minimal_risk_;
+  models::MinimalRisk minimal_risk_;
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
   std::optional<double> last_mps2_;  // commanded
@@ -70,4 +72,4 @@ class FailsafeArbitrator {
   arbitration_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -9,7 +9,7 @@
 
 #include "services/input_state.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// Availability of the automation or of the human, from best to worst. The values are bits, so that
 /// a row of the table can name several.
@@ -108,4 +108,4 @@ constexpr std::string_view FallbackText(Decision decision) {
   return "";
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

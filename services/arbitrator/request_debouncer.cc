@@ -6,7 +6,7 @@
 
 #include "common/whole_steps.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 namespace {
 
 // ln(p/(1 - p)). A p closer than 1e-12 to 0 or 1 counts as 1e-12 away: there a DoC is only
@@ -28,7 +28,7 @@ RequestDebouncer::RequestDebouncer(const TransferSection& section, double step_s
       dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
       steps_since_change_(dwell_steps_) {}
 
-double RequestDebouncer::PutOff(const EngagementRequest& wish, double doc) {
+double RequestDebouncer::PutOff(const policies::EngagementRequest& wish, double doc) {
   decided_human_ = HumanByHysteresis(wish, doc);
   ++steps_since_change_;
   if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_) {
@@ -42,7 +42,7 @@ double RequestDebouncer::LowerThreshold(double threshold) const {
   return threshold - std::min(section_.band, threshold / 2);
 }
 
-bool RequestDebouncer::HumanByHysteresis(const EngagementRequest& wish, double doc) {
+bool RequestDebouncer::HumanByHysteresis(const policies::EngagementRequest& wish, double doc) {
   switch (section_.hysteresis) {
     case Hysteresis::kNone:
       break;
@@ -57,4 +57,4 @@ bool RequestDebouncer::HumanByHysteresis(const EngagementRequest& wish, double d
   return wish.lambda_human > 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -6,7 +6,7 @@
 #include "scenario/sections/engagement.h"
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// Turns the policy's wish of every step into the wanted authority. The scenario's hysteresis
 /// delays the result of the comparison of DoC and threshold:
@@ -30,7 +30,7 @@ class RequestDebouncer {
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
   /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
-  double Step(const EngagementRequest& wish, double doc) {
+  double Step(const policies::EngagementRequest& wish, double doc) {
     if (wish.firm) return wish.lambda_human;
     return plain_ ? wish.lambda_human : PutOff(wish, doc);
   }
@@ -39,8 +39,8 @@ class RequestDebouncer {
   double evidence() const { return evidence_; }
 
  private:
-  double PutOff(const EngagementRequest& wish, double doc);
-  bool HumanByHysteresis(const EngagementRequest& wish, double doc);
+  double PutOff(const policies::EngagementRequest& wish, double doc);
+  bool HumanByHysteresis(const policies::EngagementRequest& wish, double doc);
   double LowerThreshold(double threshold) const;
 
   TransferSection section_;
@@ -56,4 +56,4 @@ class RequestDebouncer {
   std::int64_t steps_since_change_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 SensorPairs::SensorPairs(const HealthSection& section) : section_(section) {
   for (radar_t& radar : radars_) radar.header.step = -1;
@@ -46,4 +46,4 @@ void SensorPairs::Judge(std::int64_t step) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -11,7 +11,7 @@
 #include "services/graph.h"
 #include "services/input_state.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// The newest pair and its health. The limits are those of inputs, in steps instead of time.
 class SensorPairs {
@@ -51,4 +51,4 @@ class SensorPairs {
   std::int64_t in_time_ = 0;  // consecutive decisions with a pair in time
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -7,7 +7,7 @@
 #include "common/whole_steps.h"
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 namespace {
 
 // k of the sigmoid: the paper's slope of the DoC, per duration instead of per metre. The steepest
@@ -51,7 +51,7 @@ Transfer::Transfer(const TransferSection& section, double step_s)
 }
 
 Transfer::State Transfer::Smooth(double wanted, const Offers& offers, double applied_mps2) {
-  const bool to_human = wanted >= kMainAuthority;
+  const bool to_human = wanted >= models::kMainAuthority;
   if (to_human != to_human_) {
     to_human_ = to_human;
     limiting_ = section_.gate || section_.profile == TransferProfile::kJerkLimited;
@@ -99,9 +99,9 @@ void Transfer::Overrule(const State& actual) {
   progress_ = section_.profile == TransferProfile::kSigmoid && !end
                   ? InverseSigmoid(actual.lambda_human)
                   : actual.lambda_human;
-  to_human_ = actual.lambda_human >= kMainAuthority;
+  to_human_ = actual.lambda_human >= models::kMainAuthority;
   limiting_ = false;
   previous_mps2_ = actual.acceleration_mps2;
 }
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

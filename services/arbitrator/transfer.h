@@ -6,7 +6,7 @@
 
 #include "scenario/sections/engagement.h"
 
-namespace fogline {
+namespace fogline::arbitrator {
 
 /// Moves the human's authority lambda_H towards the wanted one, and computes the command
 /// a = lambda_H a_H + lambda_A a_A. Profiles:
@@ -71,4 +71,4 @@ class Transfer {
   std::optional<double> previous_mps2_;  // commanded
 };
 
-}  // namespace fogline
+}  // namespace fogline::arbitrator

@@ -6,25 +6,25 @@
 #include "common/text.h"
 #include "services/models/minimal_risk/modes.h"
 
-namespace fogline {
+namespace fogline::driver {
 namespace {
 
-Situation Truly(const truth_t& truth) {
+models::Situation Truly(const truth_t& truth) {
   return {.speed_mps = truth.host_speed_mps,
           .acceleration_mps2 = truth.host_acceleration_mps2,
-          .ahead = CarAhead{.gap_m = truth.host_gap_m,
-                            .speed_mps = truth.preceding_speed_mps,
-                            .acceleration_mps2 = truth.preceding_acceleration_mps2}};
+          .ahead = models::CarAhead{.gap_m = truth.host_gap_m,
+                                    .speed_mps = truth.preceding_speed_mps,
+                                    .acceleration_mps2 = truth.preceding_acceleration_mps2}};
 }
 
 /// @param awareness nullptr if he is always aware
-HumanDriver MakeHuman(const Scenario& scenario, const Following& following,
-                      const Awareness* awareness) {
+models::HumanDriver MakeHuman(const Scenario& scenario, const models::Following& following,
+                              const models::Awareness* awareness) {
   HumanParameters parameters = scenario.human.errors;
   if (awareness != nullptr) parameters.reaction_time_s = awareness->LongestReactionTime_s();
   try {
-    return HumanDriver(parameters, following, Random(scenario.seed, Stream::kHumanErrors),
-                       scenario.step_s);
+    return models::HumanDriver(parameters, following, Random(scenario.seed, Stream::kHumanErrors),
+                               scenario.step_s);
   } catch (const std::invalid_argument& error) {
     throw InputError("/step_s: " + NumberText(scenario.step_s) +
                      " s is too short for the driver: " + error.what());
@@ -50,8 +50,8 @@ Driver::Driver(const Scenario& scenario)
 // stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
 // no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
 void Driver::SetOptionalInput(const arbitration_t& host) {
-  const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
-  task_ = monitors ? DriverTask::kMonitors : DriverTask::kDrives;
+  const bool monitors = host.mode == arbitration_t::AUTOMATION || models::IsLocked(host.mode);
+  task_ = monitors ? models::DriverTask::kMonitors : models::DriverTask::kDrives;
 }
 
 const driver_command_t& Driver::Step(const truth_t& truth) {
@@ -71,7 +71,7 @@ void Driver::PassTime(std::int64_t step) {
 }
 
 double Driver::Drive(const truth_t& truth) {
-  Situation seen = Truly(truth);
+  models::Situation seen = Truly(truth);
   if (sight_) seen = sight_->Perceive(seen, truth.fog_visibility_m);
   if (!human_) return following_.Acceleration(seen);
   if (!awareness_) return human_->Step(truth.header.step, seen);
@@ -82,4 +82,4 @@ double Driver::Drive(const truth_t& truth) {
        .approach_error_ps = errors_.approach_error_ps + awareness_->ApproachError_ps()});
 }
 
-}  // namespace fogline
+}  // namespace fogline::driver

@@ -12,7 +12,7 @@
 #include "services/models/driver/following.h"
 #include "services/models/driver/human_driver.h"
 
-namespace fogline {
+namespace fogline::driver {
 
 /// By default the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground truth.
 /// He perceives it perfectly and without delay, in fog as in clear air; his readiness is the
@@ -36,15 +36,15 @@ class Driver {
   void PassTime(std::int64_t step);
   double Drive(const truth_t& truth);
 
-  Following following_;
-  std::optional<FogSight> sight_;
-  std::optional<HumanDriver> human_;
-  std::optional<Awareness> awareness_;
+  models::Following following_;
+  std::optional<models::FogSight> sight_;
+  std::optional<models::HumanDriver> human_;
+  std::optional<models::Awareness> awareness_;
   HumanParameters errors_;  // of an aware driver
   double step_s_;
-  DriverTask task_ = DriverTask::kMonitors;
+  models::DriverTask task_ = models::DriverTask::kMonitors;
   std::optional<std::int64_t> last_step_;
   driver_command_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::driver

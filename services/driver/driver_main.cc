@@ -3,4 +3,6 @@
 #include "services/driver/driver.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Driver>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::driver::Driver>(argc, argv);
+}

@@ -1,10 +1,10 @@
 #include "services/follower/acc_driver.h"
 
-namespace fogline {
+namespace fogline::follower {
 
-CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const Situation& now,
+CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const models::Situation& now,
                                   double /*visibility_m*/) {
-  const AccController::Output output = controller_.Step({
+  const acc::AccController::Output output = controller_.Step({
       .distance_m = now.ahead->gap_m,
       .relative_speed_mps = now.ahead->speed_mps - now.speed_mps,
       .speed_mps = now.speed_mps,
@@ -14,4 +14,4 @@ CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const Situation& now,
   return {output.acceleration_mps2, output.safe_distance_m};
 }
 
-}  // namespace fogline
+}  // namespace fogline::follower

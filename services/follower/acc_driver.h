@@ -5,7 +5,7 @@
 #include "services/acc/acc_controller.h"
 #include "services/follower/car_driver.h"
 
-namespace fogline {
+namespace fogline::follower {
 
 /// The same ACC as the host's (services/acc), with its own parameters and with perfect sensors.
 class AccDriver final : public CarDriver {
@@ -20,10 +20,10 @@ class AccDriver final : public CarDriver {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
   }
 
-  Action Step(std::int64_t step, const Situation& now, double visibility_m) override;
+  Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
 
  private:
-  AccController controller_;
+  acc::AccController controller_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::follower

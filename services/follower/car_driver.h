@@ -5,7 +5,7 @@
 
 #include "services/models/driver/situation.h"
 
-namespace fogline {
+namespace fogline::follower {
 
 class CarDriver {
  public:
@@ -19,7 +19,7 @@ class CarDriver {
   /// The driver's action in this step. Call it once per step, in the order of steps.
   /// @param now the truth, with a car ahead
   /// @param visibility_m meteorological optical range
-  virtual Action Step(std::int64_t step, const Situation& now, double visibility_m) = 0;
+  virtual Action Step(std::int64_t step, const models::Situation& now, double visibility_m) = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::follower

@@ -6,12 +6,12 @@
 #include "scenario/sections/scenario.h"
 #include "services/models/follower/style.h"
 
-namespace fogline {
+namespace fogline::follower {
 
 /// Driver of a following car.
 struct DriverAssignment {
   bool has_acc = true;
-  Style style = Style::kNormal;  // of a person
+  models::Style style = models::Style::kNormal;  // of a person
 };
 
 /// The driver of this following car; the car behind the host has number 0. Random choices are drawn
@@ -19,4 +19,4 @@ struct DriverAssignment {
 /// driver.
 DriverAssignment AssignmentOf(const Scenario& scenario, std::size_t car);
 
-}  // namespace fogline
+}  // namespace fogline::follower

@@ -11,12 +11,13 @@
 #include "services/follower/driver_assignment.h"
 #include "services/follower/person.h"
 
-namespace fogline {
+namespace fogline::follower {
 namespace {
 
-std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car, Style style) {
+std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
+                                      models::Style style) {
   const Random errors(scenario.seed, FollowerErrors(static_cast<std::uint32_t>(car)));
-  std::optional<FogSight> sight;
+  std::optional<models::FogSight> sight;
   if (scenario.followers.sight == Sight::kFog) sight.emplace(scenario.human.fog_sight);
   try {
     return std::make_unique<Person>(style, sight, scenario.followers.safety_model, errors,
@@ -40,11 +41,11 @@ std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
 }
 
 /// The true situation of this following car.
-Situation SituationOf(const truth_t& truth, std::size_t car) {
+models::Situation SituationOf(const truth_t& truth, std::size_t car) {
   const bool first = car == 0;
   return {.speed_mps = truth.follower_speed_mps[car],
           .acceleration_mps2 = truth.follower_acceleration_mps2[car],
-          .ahead = CarAhead{
+          .ahead = models::CarAhead{
               .gap_m = truth.follower_gap_m[car],
               .speed_mps = first ? truth.host_speed_mps : truth.follower_speed_mps[car - 1],
               .acceleration_mps2 = first ? truth.host_acceleration_mps2
@@ -78,4 +79,4 @@ const follower_command_t& Follower::Step(const truth_t& truth) {
   return out_;
 }
 
-}  // namespace fogline
+}  // namespace fogline::follower

@@ -10,7 +10,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/follower/car_driver.h"
 
-namespace fogline {
+namespace fogline::follower {
 
 /// Drives the following cars, each behind the car in front of it: with the same ACC as the host's
 /// (acc_driver.h) or as a person (person.h). They receive the truth: the gap, and the speeds of
@@ -35,4 +35,4 @@ class Follower {
   follower_command_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::follower

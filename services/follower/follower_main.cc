@@ -3,4 +3,6 @@
 #include "services/follower/follower.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Follower>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::follower::Follower>(argc, argv);
+}

@@ -2,34 +2,36 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::follower {
 namespace {
 
-std::optional<SafetyResponse> ResponseOf(SafetyModelChoice choice, double step_s) {
+std::optional<models::SafetyResponse> ResponseOf(SafetyModelChoice choice, double step_s) {
   switch (choice) {
     case SafetyModelChoice::kNone:
       break;
     case SafetyModelChoice::kReferenceHuman:
-      return SafetyResponse(SafetyModel::kReferenceHuman, step_s);
+      return models::SafetyResponse(models::SafetyModel::kReferenceHuman, step_s);
     case SafetyModelChoice::kRss:
-      return SafetyResponse(SafetyModel::kRss, step_s);
+      return models::SafetyResponse(models::SafetyModel::kRss, step_s);
     case SafetyModelChoice::kFuzzy:
-      return SafetyResponse(SafetyModel::kFuzzy, step_s);
+      return models::SafetyResponse(models::SafetyModel::kFuzzy, step_s);
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-Person::Person(Style style, const std::optional<FogSight>& sight, SafetyModelChoice safety,
-               const Random& errors, double step_s)
-    : idm_(ParametersOf(style).driver),
+Person::Person(models::Style style, const std::optional<models::FogSight>& sight,
+               SafetyModelChoice safety, const Random& errors, double step_s)
+    : idm_(models::ParametersOf(style).driver),
       sight_(sight),
-      driver_(ParametersOf(style).human, Following(FollowingModel::kIdm, idm_), errors, step_s),
+      driver_(models::ParametersOf(style).human, models::Following(FollowingModel::kIdm, idm_),
+              errors, step_s),
       safety_(ResponseOf(safety, step_s)) {}
 
-CarDriver::Action Person::Step(std::int64_t step, const Situation& now, double visibility_m) {
-  const Situation seen = sight_ ? sight_->Perceive(now, visibility_m) : now;
+CarDriver::Action Person::Step(std::int64_t step, const models::Situation& now,
+                               double visibility_m) {
+  const models::Situation seen = sight_ ? sight_->Perceive(now, visibility_m) : now;
   double acceleration_mps2 = driver_.Step(step, seen);
   if (safety_) {
     const double braking_mps2 = safety_->Step(seen);
@@ -38,4 +40,4 @@ CarDriver::Action Person::Step(std::int64_t step, const Situation& now, double v
   return {acceleration_mps2, idm_.headway_s * now.speed_mps + idm_.standstill_m};
 }
 
-}  // namespace fogline
+}  // namespace fogline::follower

@@ -10,7 +10,7 @@
 #include "services/models/follower/safety_response.h"
 #include "services/models/follower/style.h"
 
-namespace fogline {
+namespace fogline::follower {
 
 /// The IDM with the parameters of his style (services/models/follower/style.h), inside the Human
 /// Driver Model with its errors and reaction time (services/models/driver/human_driver.h). With a
@@ -23,16 +23,16 @@ class Person final : public CarDriver {
   /// @param sight nullopt if he sees perfectly
   /// @param errors random numbers for his errors; each person has his own stream
   /// @throw std::invalid_argument if his reaction time has too many steps (HumanDriver)
-  Person(Style style, const std::optional<FogSight>& sight, SafetyModelChoice safety,
-         const Random& errors, double step_s);
+  Person(models::Style style, const std::optional<models::FogSight>& sight,
+         SafetyModelChoice safety, const Random& errors, double step_s);
 
-  Action Step(std::int64_t step, const Situation& now, double visibility_m) override;
+  Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
 
  private:
   DriverSection idm_;
-  std::optional<FogSight> sight_;
-  HumanDriver driver_;
-  std::optional<SafetyResponse> safety_;
+  std::optional<models::FogSight> sight_;
+  models::HumanDriver driver_;
+  std::optional<models::SafetyResponse> safety_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::follower

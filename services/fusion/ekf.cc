@@ -1,6 +1,6 @@
 #include "services/fusion/ekf.h"
 
-namespace fogline {
+namespace fogline::fusion {
 
 Ekf::Ekf(double step_s, double jerk_density_m2ps5) {
   const double t = step_s;
@@ -46,4 +46,4 @@ void Ekf::SetCovariance(const Covariance& covariance) {
   covariance_ = (covariance + covariance.transpose()) / 2;
 }
 
-}  // namespace fogline
+}  // namespace fogline::fusion

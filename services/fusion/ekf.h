@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace fogline {
+namespace fogline::fusion {
 
 /// State x = [d, dv, a_p]: distance (m) and relative speed (m/s) of the preceding car, preceding
 /// minus host, and the *own* acceleration of the preceding car (m/s2). The host's acceleration a_h
@@ -55,4 +55,4 @@ class Ekf {
   Covariance covariance_ = Covariance::Zero();
 };
 
-}  // namespace fogline
+}  // namespace fogline::fusion

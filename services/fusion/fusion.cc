@@ -9,7 +9,7 @@
 #include "services/decision/policies/policies.h"
 #include "services/fusion/line_of_sight.h"
 
-namespace fogline {
+namespace fogline::fusion {
 namespace {
 
 // A range of less than this many lateral offsets is too uncertain about the distance ahead for a
@@ -42,13 +42,13 @@ Fusion::Fusion(const Scenario& scenario)
       lidar_offset_m_(scenario.lidar.lateral_offset_m),
       initial_speed_variance_(Square(scenario.fusion.initial_speed_std_mps)),
       initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {
-  const PolicyRow& policy = RowOf(scenario.arbitrator.policy);
+  const policies::PolicyRow& policy = policies::RowOf(scenario.arbitrator.policy);
   if (policy.trusts) policy_ = policy.make(scenario);
   selects_ = gating_ || policy_ != nullptr;
 }
 
 bool Fusion::UsesOptionalInput(const Scenario& scenario) {
-  return RowOf(scenario.arbitrator.policy).needs_true_gap;
+  return policies::RowOf(scenario.arbitrator.policy).needs_true_gap;
 }
 
 const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar) {
@@ -102,8 +102,9 @@ bool Fusion::StartFromLidar(const lidar_t& lidar) {
   return started_ = true;
 }
 
-SensorSelection Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
-  Evidence evidence{.radar = StatedBy(radar), .lidar = StatedBy(lidar), .prediction = {}};
+policies::SensorSelection Fusion::Judge(const radar_t& radar, const lidar_t& lidar) {
+  conflict::Evidence evidence{
+      .radar = policies::StatedBy(radar), .lidar = policies::StatedBy(lidar), .prediction = {}};
   if (started_) {
     const LineOfSight sight(ekf_.state()[0], radar_offset_m_);
     evidence.prediction = {
@@ -166,4 +167,4 @@ void Fusion::Report(double host_acceleration_mps2) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::fusion

@@ -14,7 +14,7 @@
 #include "services/fusion/gate.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::fusion {
 
 /// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
 /// one value after the other in this order. The predicted value is that of the state after the
@@ -61,7 +61,7 @@ class Fusion {
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
   /// The policy's trust in the sensors in this step. @pre the filter has predicted
-  SensorSelection Judge(const radar_t& radar, const lidar_t& lidar);
+  policies::SensorSelection Judge(const radar_t& radar, const lidar_t& lidar);
   void CorrectByRadar(const radar_t& radar);
   void CorrectByLidar(const lidar_t& lidar);
   void Correct(Value value, const Comparison& comparison);
@@ -78,12 +78,13 @@ class Fusion {
   double lidar_offset_m_;
   double initial_speed_variance_;
   double initial_acceleration_variance_;
-  std::unique_ptr<EngagementPolicy> policy_;  // none if the policy does not select sensors
-  bool selects_ = false;                      // whether gate or policy may refuse a value
-  SensorSelection trust_;
+  std::unique_ptr<policies::EngagementPolicy>
+      policy_;            // none if the policy does not select sensors
+  bool selects_ = false;  // whether gate or policy may refuse a value
+  policies::SensorSelection trust_;
   std::optional<double> true_gap_m_;
   bool started_ = false;
   track_t out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::fusion

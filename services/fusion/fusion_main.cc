@@ -3,4 +3,6 @@
 #include "services/fusion/fusion.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Fusion>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::fusion::Fusion>(argc, argv);
+}

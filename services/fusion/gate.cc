@@ -2,7 +2,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-namespace fogline {
+namespace fogline::fusion {
 
 Gate::Gate(double probability, std::int64_t reopen_after)
     : limit_(boost::math::quantile(boost::math::chi_squared(1), probability)),
@@ -18,4 +18,4 @@ bool Gate::Admits(double normalised_innovation_squared) {
   return false;
 }
 
-}  // namespace fogline
+}  // namespace fogline::fusion

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace fogline {
+namespace fogline::fusion {
 
 /// Gate on the normalised innovation squared of one measured value, nu^2 / S, which is chi-square
 /// distributed with one degree of freedom while the filter's model holds (Bar-Shalom, Li &
@@ -26,4 +26,4 @@ class Gate {
   std::int64_t refusals_ = 0;  // in a row; stays at reopen_after_ while the gate is open
 };
 
-}  // namespace fogline
+}  // namespace fogline::fusion

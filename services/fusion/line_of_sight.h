@@ -5,7 +5,7 @@
 
 #include "services/fusion/ekf.h"
 
-namespace fogline {
+namespace fogline::fusion {
 
 /// The line from a sensor to the target's reflection point at distance d ahead and y to the side:
 ///
@@ -49,4 +49,4 @@ class LineOfSight {
   double cosine_slope_per_m_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::fusion

@@ -7,7 +7,7 @@
 
 #include "services/models/driver/visibility.h"
 
-namespace fogline {
+namespace fogline::lidar {
 
 EchoModel::EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm)
     : optics_(OpticsOf(beam)),
@@ -27,7 +27,7 @@ EchoModel::EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm)
 EchoPowers EchoModel::At(double range_m, double visibility_m) const {
   constexpr double kNoEcho = -std::numeric_limits<double>::infinity();
   if (range_m <= optics_.overlap_start_m) return {kNoEcho, kNoEcho, range_m};
-  const double extinction_pm = ExtinctionOf(visibility_m);
+  const double extinction_pm = models::ExtinctionOf(visibility_m);
   const auto [log_strength, peak_m] = PeakAt(extinction_pm);
   EchoPowers echoes{.target = ClearTarget(range_m) - 2.0 * extinction_pm * range_m,
                     .fog = log_backscatter_ - std::log(visibility_m) + log_strength,
@@ -60,4 +60,4 @@ EchoModel::LogPeak EchoModel::PeakAt(double extinction_pm) const {
   return {std::lerp(a.log_strength, b.log_strength, t), std::lerp(a.range_m, b.range_m, t)};
 }
 
-}  // namespace fogline
+}  // namespace fogline::lidar

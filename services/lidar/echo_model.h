@@ -8,7 +8,7 @@
 #include "scenario/sections/sensing.h"
 #include "services/lidar/fog_beam.h"
 
-namespace fogline {
+namespace fogline::lidar {
 
 /// Powers as ln(P / P_min), P_min being the detection threshold: an echo above 0 is detected.
 /// Minus infinity if there is no echo.
@@ -56,4 +56,4 @@ class EchoModel {
   std::array<LogPeak, kNodes> peaks_;  // at equally spaced extinctions
 };
 
-}  // namespace fogline
+}  // namespace fogline::lidar

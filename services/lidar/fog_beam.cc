@@ -8,7 +8,7 @@
 #include <boost/math/special_functions/lambert_w.hpp>
 #include <boost/math/tools/minima.hpp>
 
-namespace fogline {
+namespace fogline::lidar {
 namespace {
 
 using std::numbers::pi;
@@ -91,4 +91,4 @@ double Beta2And20(double u, double v) {
   return 1.0 - std::exp(std::log(u) / 21.0 + std::log(v) / 20.0);
 }
 
-}  // namespace fogline
+}  // namespace fogline::lidar

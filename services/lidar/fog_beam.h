@@ -15,7 +15,7 @@
 
 #include "scenario/sections/sensing.h"
 
-namespace fogline {
+namespace fogline::lidar {
 
 /// Parameters that shape the echo of the fog.
 struct BeamOptics {
@@ -58,4 +58,4 @@ double CrossoverRange_m(double fog_strength_pm, double reflectivity, double back
 /// like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs no rejection.
 double Beta2And20(double u, double v);
 
-}  // namespace fogline
+}  // namespace fogline::lidar

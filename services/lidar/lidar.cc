@@ -6,7 +6,7 @@
 
 #include "services/models/driver/visibility.h"
 
-namespace fogline {
+namespace fogline::lidar {
 
 Lidar::Lidar(const Scenario& scenario)
     : lidar_(scenario.lidar),
@@ -14,8 +14,8 @@ Lidar::Lidar(const Scenario& scenario)
       random_(scenario.seed, Stream::kLidar),
       beam_random_(scenario.seed, Stream::kLidarBeam) {
   if (scenario.fog.model == FogModel::kBeam) {
-    model_.emplace(lidar_.beam, ExtinctionOf(scenario.fog.clear_visibility_m),
-                   ExtinctionOf(scenario.fog.visibility_m));
+    model_.emplace(lidar_.beam, models::ExtinctionOf(scenario.fog.clear_visibility_m),
+                   models::ExtinctionOf(scenario.fog.visibility_m));
     echoes_.reserve(static_cast<std::size_t>(lidar_.beam.beams));
   }
 }
@@ -86,4 +86,4 @@ void Lidar::CollectEchoes(const truth_t& truth, double target_m) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::lidar

@@ -13,7 +13,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/lidar/echo_model.h"
 
-namespace fogline {
+namespace fogline::lidar {
 
 /// With x the gap and y the lateral offset, the target is at r = sqrt(x^2 + y^2), and the LiDAR
 /// reports range = d + bias + noise with Gaussian white noise. The scenario's fog model gives d:
@@ -68,4 +68,4 @@ class Lidar {
   lidar_t output_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::lidar

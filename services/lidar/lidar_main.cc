@@ -4,4 +4,6 @@
 #include "services/lidar/lidar.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Lidar>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::lidar::Lidar>(argc, argv);
+}

@@ -22,7 +22,7 @@
 #include "common/process/this_process.h"
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::log {
 namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
@@ -35,7 +35,7 @@ constexpr std::size_t kWorthWriting = 1 << 16;
 // call.
 constexpr std::size_t kMostMapped = 4 << 20;
 
-std::uint32_t ReadUint32(Bytes bytes, std::size_t offset) {
+std::uint32_t ReadUint32(runtime::Bytes bytes, std::size_t offset) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | bytes[offset + i];
   return value;
@@ -92,13 +92,13 @@ bool EventLogWriter::CountHead(std::int64_t bytes) {
     const auto wanted = std::min<std::int64_t>(std::ssize(chunk), bytes - written_.bytes);
     const std::size_t size = std::fread(chunk.data(), 1, static_cast<std::size_t>(wanted), out_);
     if (size == 0) return false;
-    CountWritten(Bytes(chunk).first(size));
+    CountWritten(runtime::Bytes(chunk).first(size));
   }
   return true;
 }
 
-void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
-                 std::vector<std::uint8_t>& bytes) {
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime,
+                 runtime::Bytes data, std::vector<std::uint8_t>& bytes) {
   const std::size_t begin = bytes.size();
   bytes.resize(begin + kEventHeader + channel.size() + data.size());
   std::uint8_t* const event = bytes.data() + begin;
@@ -111,7 +111,7 @@ void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t uti
   std::ranges::copy(data, event + kEventHeader + channel.size());
 }
 
-void EventLogWriter::Write(std::string_view channel, std::int64_t utime, Bytes data) {
+void EventLogWriter::Write(std::string_view channel, std::int64_t utime, runtime::Bytes data) {
   const std::size_t before = pending_.size();
   AppendEvent(events_++, channel, utime, data, pending_);
   size_ += static_cast<std::int64_t>(pending_.size() - before);
@@ -125,12 +125,12 @@ void EventLogWriter::Flush() {
 bool EventLogWriter::WriteOut() {
   const std::size_t written = std::fwrite(pending_.data(), 1, pending_.size(), out_);
   const bool all = written == pending_.size();
-  CountWritten(Bytes(pending_).first(written));
+  CountWritten(runtime::Bytes(pending_).first(written));
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
   return all;
 }
 
-void EventLogWriter::CountWritten(Bytes bytes) {
+void EventLogWriter::CountWritten(runtime::Bytes bytes) {
   if (bytes.empty()) return;  // for a null buffer the library returns the initial value
   written_.bytes += std::ssize(bytes);
   written_.checksum = libdeflate_crc32(written_.checksum, bytes.data(), bytes.size());
@@ -173,7 +173,7 @@ EventLogReader::~EventLogReader() {
   }
 }
 
-std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why) {
+std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why) {
   why = "cut off";
   if (bytes.size() < kEventHeader) return std::nullopt;
   why = "no event";
@@ -186,8 +186,8 @@ std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why) {
   if (channel_size + data_size > bytes.size() - kEventHeader) return std::nullopt;
   why = "";
   const auto* channel = reinterpret_cast<const char*>(bytes.data() + kEventHeader);
-  return Event{.number = ReadInt64(bytes, 4),
-               .utime = ReadInt64(bytes, 12),
+  return Event{.number = runtime::ReadInt64(bytes, 4),
+               .utime = runtime::ReadInt64(bytes, 12),
                .channel = {channel, channel_size},
                .data = bytes.subspan(kEventHeader + channel_size, data_size)};
 }
@@ -196,7 +196,7 @@ std::size_t SizeInFile(const Event& event) {
   return kEventHeader + event.channel.size() + event.data.size();
 }
 
-std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+std::optional<std::size_t> FindEvent(runtime::Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept) {
   std::array<std::uint8_t, sizeof(kSyncWord)> sync{};
   for (std::size_t i = 0; i < sync.size(); ++i) {
@@ -222,7 +222,7 @@ void EventLogReader::GoTo(const LogHead& head) {
 }
 
 void EventLogReader::ReadThrough(std::size_t from, std::size_t to,
-                                 const std::function<void(Bytes)>& use) const {
+                                 const std::function<void(runtime::Bytes)>& use) const {
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   while (from < to) {
     const std::size_t end = std::min(to, from + kMostMapped);
@@ -244,7 +244,7 @@ void EventLogReader::Release() {
 
 std::optional<Event> EventLogReader::Next() {
   if (offset_ >= released_ + kMostMapped) Release();
-  const Bytes rest = content_.subspan(offset_);
+  const runtime::Bytes rest = content_.subspan(offset_);
   if (rest.empty() || !torn_.empty()) return std::nullopt;
   std::string_view why;
   const auto event = ParseEvent(rest, why);
@@ -258,4 +258,4 @@ std::optional<Event> EventLogReader::Next() {
   return event;
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -17,7 +17,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::log {
 
 /// The most bytes that an event takes besides its data: its header, and LCM's longest channel name.
 inline constexpr std::size_t kMostEventOverhead = 28 + 63;
@@ -54,7 +54,7 @@ class EventLogWriter {
   EventLogWriter& operator=(const EventLogWriter&) = delete;
 
   /// @throws std::runtime_error, such as when the disk is full
-  void Write(std::string_view channel, std::int64_t utime, Bytes data);
+  void Write(std::string_view channel, std::int64_t utime, runtime::Bytes data);
   /// Hands everything written so far to the operating system, so that it survives a kill -9 of this
   /// process.
   /// @throws std::runtime_error
@@ -71,7 +71,7 @@ class EventLogWriter {
  private:
   bool WriteOut();
   /// Adds bytes, which the operating system has, to written_.
-  void CountWritten(Bytes bytes);
+  void CountWritten(runtime::Bytes bytes);
   /// Reads the last kTailBytes of the head and adds them to written_.
   /// @return false and errno if they cannot be read
   bool CountHead(std::int64_t bytes);
@@ -86,8 +86,8 @@ class EventLogWriter {
 };
 
 /// Appends an event to the bytes of a log.
-void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime, Bytes data,
-                 std::vector<std::uint8_t>& bytes);
+void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime,
+                 runtime::Bytes data, std::vector<std::uint8_t>& bytes);
 
 /// Whether a log may replace the file: it begins like an event log, or is empty.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
@@ -97,18 +97,18 @@ struct Event {
   std::int64_t number;
   std::int64_t utime;
   std::string_view channel;
-  Bytes data;
+  runtime::Bytes data;
 };
 
 /// The event at the beginning of `bytes`; nullopt if there is none.
 /// @param why is set to the reason if there is none
-std::optional<Event> ParseEvent(Bytes bytes, std::string_view& why);
+std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why);
 /// The bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
 /// The place of the first event in `bytes`, from `offset` on, that `accept` recognises; nullopt if
 /// there is no such event. Other bytes may stand before it, such as the end of another event.
-std::optional<std::size_t> FindEvent(Bytes bytes, std::size_t offset,
+std::optional<std::size_t> FindEvent(runtime::Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept);
 
 /// Reads a log from front to back without copying. A torn tail (an incomplete last event, which a
@@ -135,21 +135,22 @@ class EventLogReader {
   /// The events read so far.
   LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
   /// All bytes of the file.
-  Bytes content() const { return content_; }
+  runtime::Bytes content() const { return content_; }
   /// Passes the bytes of the file from `from` to `to` to `use` in pieces, and releases the memory
   /// of each piece.
-  void ReadThrough(std::size_t from, std::size_t to, const std::function<void(Bytes)>& use) const;
+  void ReadThrough(std::size_t from, std::size_t to,
+                   const std::function<void(runtime::Bytes)>& use) const;
 
  private:
   /// Releases the memory of the bytes that have been read. Otherwise the mapped file would stay in
   /// memory.
   void Release();
 
-  Bytes content_;
+  runtime::Bytes content_;
   std::size_t released_ = 0;  // memory is released up to here
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;
   std::string torn_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -15,7 +15,7 @@
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
 
-namespace fogline {
+namespace fogline::log {
 namespace {
 
 /// Whether a file can be removed because it has no step. A file that cannot be read is kept.
@@ -84,4 +84,4 @@ bool HasSteps(const std::filesystem::path& log) {
   return false;
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -6,7 +6,7 @@
 
 #include "common/file_lock.h"
 
-namespace fogline {
+namespace fogline::log {
 
 /// Keeps a log locked against other runs until the end of this object. A log without a step is then
 /// removed, because its run never began; an older log that it replaces comes back.
@@ -40,4 +40,4 @@ class LogOfRun {
 /// Whether a log contains more than a scenario and a seal. @throws InputError if it is no event log
 bool HasSteps(const std::filesystem::path& log);
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -15,25 +15,25 @@
 #include "common/process/this_process.h"
 #include "services/runtime/wire/digest.h"
 
-namespace fogline {
+namespace fogline::log {
 namespace {
 
-std::string HashOfBytes(Bytes bytes) {
-  return HashOf({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+std::string HashOfBytes(runtime::Bytes bytes) {
+  return runtime::HashOf({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 /// The correct value of `check`.
 std::int64_t CheckOf(log_seal_t seal) {
   seal.check = 0;
   std::vector<std::uint8_t> bytes;
-  Encode(seal, bytes);
+  runtime::Encode(seal, bytes);
   constexpr int kHexadecimal = 16;
   constexpr std::size_t kDigits = 2 * sizeof(std::int64_t);
   return static_cast<std::int64_t>(
       std::stoull(HashOfBytes(bytes).substr(0, kDigits), nullptr, kHexadecimal));
 }
 
-std::uint32_t ChecksumOf(std::uint32_t before, Bytes bytes) {
+std::uint32_t ChecksumOf(std::uint32_t before, runtime::Bytes bytes) {
   return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
@@ -41,15 +41,17 @@ std::uint32_t ChecksumOf(std::uint32_t before, Bytes bytes) {
 
 bool IsLogSeal(const Event& event) {
   return event.channel == kLogSealChannel ||
-         (event.data.size() >= kHeaderEnd && ReadInt64(event.data, 0) == log_seal_t::getHash());
+         (event.data.size() >= runtime::kHeaderEnd &&
+          runtime::ReadInt64(event.data, 0) == log_seal_t::getHash());
 }
 
 LogSeal ReadLogSeal(const Event& event, const LogHead& before) {
   LogSeal seal;
   seal.before = before;
   seal.event.assign(event.data.begin(), event.data.end());
-  const bool decodes = Decode(event.data, seal.says) ||
-                       (LooksSigned(event.data) && Decode(WithoutSignature(event.data), seal.says));
+  const bool decodes = runtime::Decode(event.data, seal.says) ||
+                       (runtime::LooksSigned(event.data) &&
+                        runtime::Decode(runtime::WithoutSignature(event.data), seal.says));
   seal.whole = decodes && event.channel == kLogSealChannel && seal.says.check == CheckOf(seal.says);
   if (!seal.whole) seal.says = {};
   seal.copied = event.utime != seal.says.header.utime;
@@ -57,13 +59,13 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before) {
 }
 
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
-             const SigningKey* key) {
+             const runtime::SigningKey* key) {
   seal.check = CheckOf(seal);
   std::vector<std::uint8_t> data;
-  Encode(seal, data);
+  runtime::Encode(seal, data);
   if (key != nullptr) {
-    MessageSigner signer(*key, Role::kRunner);
-    const Bytes with_signature = signer.Sign(kLogSealChannel, data);
+    runtime::MessageSigner signer(*key, Role::kRunner);
+    const runtime::Bytes with_signature = signer.Sign(kLogSealChannel, data);
     data = std::vector<std::uint8_t>(with_signature.begin(), with_signature.end());
   }
   std::vector<std::uint8_t> event;
@@ -82,13 +84,13 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
 
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {
   const auto before = static_cast<std::size_t>(seal.before.bytes);
-  Hash hash;
-  file.ReadThrough(0, before, [&hash](Bytes piece) { hash.Add(piece); });
+  runtime::Hash hash;
+  file.ReadThrough(0, before, [&hash](runtime::Bytes piece) { hash.Add(piece); });
   const bool same = hash.Hex() == seal.says.file_hash;
   if (seal.copied) return same ? "the time of its seal was changed" : "";
   if (!same) return "other bytes than those that were sealed";
   std::string_view why;
-  const Bytes last = file.content().subspan(before);
+  const runtime::Bytes last = file.content().subspan(before);
   const auto event = ParseEvent(last, why);
   if (!event || event->number != seal.before.events) return "the number of its seal was changed";
   if (SizeInFile(*event) != last.size()) {
@@ -97,13 +99,13 @@ std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {
   return "";
 }
 
-SealSignature VerifySeal(const LogSeal& seal, const SigningKey& key) {
-  switch (MessageSigner(key, std::nullopt).Open(kLogSealChannel, seal.event).verdict) {
-    case MessageSigner::Verdict::kGood:
+SealSignature VerifySeal(const LogSeal& seal, const runtime::SigningKey& key) {
+  switch (runtime::MessageSigner(key, std::nullopt).Open(kLogSealChannel, seal.event).verdict) {
+    case runtime::MessageSigner::Verdict::kGood:
       return SealSignature::kHolds;
-    case MessageSigner::Verdict::kNotSigned:
+    case runtime::MessageSigner::Verdict::kNotSigned:
       return SealSignature::kNone;
-    case MessageSigner::Verdict::kBadlySigned:
+    case runtime::MessageSigner::Verdict::kBadlySigned:
       break;
   }
   return SealSignature::kWrong;
@@ -114,7 +116,8 @@ std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenL
     const std::size_t to = std::min(file.content().size(), static_cast<std::size_t>(told.bytes));
     const std::size_t from = std::min(to, static_cast<std::size_t>(told.begin));
     std::uint32_t checksum = 0;
-    file.ReadThrough(from, to, [&](Bytes piece) { checksum = ChecksumOf(checksum, piece); });
+    file.ReadThrough(from, to,
+                     [&](runtime::Bytes piece) { checksum = ChecksumOf(checksum, piece); });
     if (std::cmp_equal(to, told.bytes) && checksum == told.checksum) continue;
     return fmt::format(
         "the log on disk is not what the recorder wrote: {} bytes with checksum {:08x}, on disk {} "
@@ -124,4 +127,4 @@ std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenL
   return "";
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

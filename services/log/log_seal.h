@@ -14,7 +14,7 @@
 #include "services/log/event_log.h"
 #include "services/runtime/wire/message_signer.h"
 
-namespace fogline {
+namespace fogline::log {
 
 /// The channel of log_seal_t. It is not part of kGraph: no process publishes or reads it.
 inline constexpr std::string_view kLogSealChannel = "FOGLINE_SEAL";
@@ -40,7 +40,7 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 /// @param key signs it; nullptr: no signature
 /// @throws std::runtime_error if it cannot be written; the log is then as it was
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
-             const SigningKey* key);
+             const runtime::SigningKey* key);
 
 /// Why a file is not the one that was sealed; "" if it is. The events of a copy have other times
 /// than those of the file that was sealed. So for a copy the result is "" if its bytes differ.
@@ -48,10 +48,10 @@ std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.
 enum class SealSignature { kNone, kHolds, kWrong };
-SealSignature VerifySeal(const LogSeal& seal, const SigningKey& key);
+SealSignature VerifySeal(const LogSeal& seal, const runtime::SigningKey& key);
 
 /// Why a log's bytes differ from those that were written into it; "" if they do not.
 /// @param written the last report of each of its writers
 std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenLog>& written);
 
-}  // namespace fogline
+}  // namespace fogline::log

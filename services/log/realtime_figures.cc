@@ -4,17 +4,17 @@
 
 #include "services/runtime/lockstep/possible_status.h"
 
-namespace fogline {
+namespace fogline::log {
 
 void RealtimeAccumulator::Add(const status_t& status) {
-  if (!IsPossible(status)) return;  // a file may contain any numbers
+  if (!runtime::IsPossible(status)) return;  // a file may contain any numbers
   status_t& last = last_[{status.role, status.instance}];
   if (status.sequence <= last.sequence) return;  // overtaken on its way
   last = status;
   fallbacks_.Add(status);
 }
 
-void RealtimeAccumulator::AddStep(const ChannelSet& there) {
+void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
   ++steps_;
   for (std::size_t i = 0; i < kNumChannels; ++i) logged_[i] += there[i] ? 1 : 0;
 }
@@ -66,4 +66,4 @@ RealtimeFigures RealtimeAccumulator::Result() const {
   return figures;
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

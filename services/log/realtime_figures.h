@@ -11,7 +11,7 @@
 #include "services/graph.h"
 #include "services/runtime/realtime/fallback_log.h"
 
-namespace fogline {
+namespace fogline::log {
 
 struct RealtimeFigures {
   double speed = 1;  // simulated seconds per second
@@ -33,7 +33,7 @@ struct RealtimeFigures {
   std::int64_t missed_messages = 0;
   std::int64_t unlogged_messages = 0;
   // The first fallbacks, and how many came after these.
-  std::vector<Fallback> fallbacks;
+  std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
 };
 
@@ -62,7 +62,7 @@ class RealtimeAccumulator {
   /// Adds the next STATUS of the log.
   void Add(const status_t& status);
   /// Adds the next step of the log, which has messages on these channels.
-  void AddStep(const ChannelSet& there);
+  void AddStep(const runtime::ChannelSet& there);
 
   RealtimeFigures Result() const;
 
@@ -71,11 +71,11 @@ class RealtimeAccumulator {
   std::int64_t Unlogged(std::size_t channel) const;
 
   double speed_;
-  FallbackLog fallbacks_;
+  runtime::FallbackLog fallbacks_;
   std::int64_t steps_ = 0;                           // number of steps in the log
   std::array<std::int64_t, kNumChannels> logged_{};  // messages of each channel
   // The last STATUS of each process. Its counters are those since the start of the process.
   std::map<std::pair<std::string, std::int64_t>, status_t> last_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::log

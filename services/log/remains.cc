@@ -9,10 +9,10 @@
 #include "services/log/step_order.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::log {
 namespace {
 
-static_assert(kTailBytes > (kRingSteps + 3) * kMostStepBytes);
+static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
 // While a log is read from front to back, STATUS is sent after each so many bytes. A slow disk
 // reads them in less than one or two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
@@ -42,7 +42,7 @@ class Follower {
  private:
   bool TakeNext(const Event& event, std::int64_t step, const LogHead& head) {
     if (event.channel != kStepNames[next_] || step != remains_.steps) return false;
-    if (event.channel == ChannelOf<truth_t>().name && Decode(event.data, truth_)) {
+    if (event.channel == ChannelOf<truth_t>().name && runtime::Decode(event.data, truth_)) {
       last_ = truth_.last;
     }
     if (++next_ == kStepChannels) {
@@ -62,7 +62,7 @@ class Follower {
       const auto size = static_cast<std::int64_t>(SizeInFile(event));
       EndSteps(step, {.bytes = head.bytes - size, .events = head.events - 1});
     }
-    if (event.channel == ChannelOf<truth_t>().name && Decode(event.data, truth_)) {
+    if (event.channel == ChannelOf<truth_t>().name && runtime::Decode(event.data, truth_)) {
       remains_.final = truth_.last;
     }
     if (++next_ == kStepChannels) EndSteps(step + 1, head);
@@ -109,7 +109,7 @@ struct Start {
   LogHead head;
 };
 
-std::optional<Start> StartIn(Bytes content, std::int64_t from, const LogFront& front) {
+std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const LogFront& front) {
   std::int64_t step = -1;
   std::int64_t number = 0;
   const auto accept = [&](const Event& event) {
@@ -147,7 +147,8 @@ LogFront ReadFront(const std::filesystem::path& file) {
   while (!front.parts.Complete()) {
     const auto event = reader.Next();
     run_t run{};
-    if (!event || event->channel != ChannelOf<run_t>().name || !Decode(event->data, run)) break;
+    if (!event || event->channel != ChannelOf<run_t>().name || !runtime::Decode(event->data, run))
+      break;
     if (front.parts.empty()) {
       front.run_id = run.header.run_id;
       front.realtime = run.realtime != 0;
@@ -181,8 +182,8 @@ std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
   while (const auto event = reader.Next()) {
     if (IsLogSeal(*event)) continue;
     const std::int64_t step = StepOf(*event, front.run_id);
-    const bool is_usual =
-        IsStepChannel(event->channel) && step >= remains.steps && step < remains.steps + kRingSteps;
+    const bool is_usual = IsStepChannel(event->channel) && step >= remains.steps &&
+                          step < remains.steps + runtime::kRingSteps;
     if (is_usual) continue;
     return fmt::format("an event on channel {} (byte {}) does not continue {}",
                        EscapeControls(event->channel), reader.good_bytes() - SizeInFile(*event),
@@ -191,4 +192,4 @@ std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
   return "";
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

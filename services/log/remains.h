@@ -10,12 +10,12 @@
 #include "services/log/event_log.h"
 #include "services/runtime/wire/scenario_parts.h"
 
-namespace fogline {
+namespace fogline::log {
 
 /// The beginning of a log: its run and scenario.
 struct LogFront {
   std::int64_t run_id = 0;
-  ScenarioParts parts;  // empty if the log does not begin with a scenario
+  runtime::ScenarioParts parts;  // empty if the log does not begin with a scenario
   bool realtime = false;
   std::int64_t type_fingerprint = 0;
   LogHead head;  // the part with the scenario; step 0 follows
@@ -51,4 +51,4 @@ Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);
 
-}  // namespace fogline
+}  // namespace fogline::log

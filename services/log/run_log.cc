@@ -14,7 +14,7 @@
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/scenario_parts.h"
 
-namespace fogline {
+namespace fogline::log {
 namespace {}  // namespace
 
 /// Combines the events of a log into steps.
@@ -35,10 +35,10 @@ class RunLogReader::Assembler {
       Take(*event);
     }
     current_ = TakeStep();
-    for (const Bytes message : current_) {
+    for (const runtime::Bytes message : current_) {
       if (!message.empty()) digest_.Add(message);
     }
-    if (Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
+    if (runtime::Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
     ++run_.steps;
     return &current_;
   }
@@ -71,7 +71,7 @@ class RunLogReader::Assembler {
       pending_.erase(next);
     }
     if (realtime_) {
-      ChannelSet there;
+      runtime::ChannelSet there;
       for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
       realtime_->AddStep(there);
     }
@@ -81,16 +81,17 @@ class RunLogReader::Assembler {
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
     if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
-    if (channel == kNumChannels || event.data.size() < kHeaderEnd) return;
+    if (channel == kNumChannels || event.data.size() < runtime::kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
-    const Bytes data = Payload(event.data);
-    if (parts_.empty() || data.empty() || ReadInt64(data, kRunIdOffset) != run_.run_id) {
+    const runtime::Bytes data = Payload(event.data);
+    if (parts_.empty() || data.empty() ||
+        runtime::ReadInt64(data, runtime::kRunIdOffset) != run_.run_id) {
       ++foreign_;
       return;
     }
-    const std::int64_t step = ReadInt64(data, kStepOffset);
+    const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
     if (step < run_.steps) return;  // a repetition
     if (realtime_ && step >= steps_) return;
     Pending& pending = pending_[step];
@@ -176,10 +177,11 @@ class RunLogReader::Assembler {
     return kNumChannels;
   }
 
-  void TakeRun(Bytes data) {
+  void TakeRun(runtime::Bytes data) {
     run_t run{};
-    const bool is_sealed = LooksSigned(data) && Decode(WithoutSignature(data), run);
-    if (!is_sealed && !Decode(data, run)) return;
+    const bool is_sealed =
+        runtime::LooksSigned(data) && runtime::Decode(runtime::WithoutSignature(data), run);
+    if (!is_sealed && !runtime::Decode(data, run)) return;
     if (parts_.empty()) {
       run_.run_id = run.header.run_id;
       sealed_ = is_sealed;
@@ -206,20 +208,22 @@ class RunLogReader::Assembler {
     realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
   }
 
-  void TakeStatus(Bytes event) {
-    const Bytes data = Payload(event);
+  void TakeStatus(runtime::Bytes event) {
+    const runtime::Bytes data = Payload(event);
     status_t status{};
-    if (!realtime_ || !Decode(data, status) || status.header.run_id != run_.run_id) return;
+    if (!realtime_ || !runtime::Decode(data, status) || status.header.run_id != run_.run_id) return;
     realtime_->Add(status);
   }
 
   /// The payload of a message. lcm-logger writes signed messages as they come, with their
   /// signatures. This reader cannot verify them. In a signed run a message without a signature does
   /// not belong to the run: the result is then empty.
-  Bytes Payload(Bytes data) const {
+  runtime::Bytes Payload(runtime::Bytes data) const {
     if (!sealed_) return data;
-    return LooksSigned(data) && data.size() >= kHeaderEnd + kSignatureBytes ? WithoutSignature(data)
-                                                                            : Bytes();
+    return runtime::LooksSigned(data) &&
+                   data.size() >= runtime::kHeaderEnd + runtime::kSignatureBytes
+               ? runtime::WithoutSignature(data)
+               : runtime::Bytes();
   }
 
   static std::string Lacking(const StepMessages& messages) {
@@ -234,9 +238,9 @@ class RunLogReader::Assembler {
   std::filesystem::path file_;
   EventLogReader reader_;
   Compared compared_;
-  Digest digest_;
+  runtime::Digest digest_;
   RunLog run_;
-  ScenarioParts parts_;
+  runtime::ScenarioParts parts_;
   std::map<std::int64_t, Pending> pending_;
   StepMessages current_{};
   std::size_t guess_ = 0;
@@ -257,4 +261,4 @@ RunLogReader::~RunLogReader() = default;
 const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
 const RunLog& RunLogReader::run() const { return assembler_->run(); }
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -13,10 +13,10 @@
 #include "services/log/log_seal.h"
 #include "services/log/realtime_figures.h"
 
-namespace fogline {
+namespace fogline::log {
 
 /// The messages of one step by place in kChannels; empty where there is none.
-using StepMessages = std::array<Bytes, kNumChannels>;
+using StepMessages = std::array<runtime::Bytes, kNumChannels>;
 
 /// The contents of a log, apart from its steps.
 struct RunLog {
@@ -63,4 +63,4 @@ class RunLogReader {
   std::unique_ptr<Assembler> assembler_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::log

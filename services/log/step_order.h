@@ -11,7 +11,7 @@
 
 #include "services/log/event_log.h"
 
-namespace fogline {
+namespace fogline::log {
 
 inline constexpr std::size_t kStepChannels = [] {
   std::size_t count = 0;
@@ -31,7 +31,7 @@ inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
 
 /// The most bytes that a step takes in a log.
 inline constexpr std::int64_t kMostStepBytes =
-    kStepChannels * (kMostEventOverhead + kMaxMessageBytes);
+    kStepChannels * (kMostEventOverhead + runtime::kMaxMessageBytes);
 
 inline bool IsStepChannel(std::string_view channel) {
   return std::ranges::find(kStepNames, channel) != kStepNames.end();
@@ -39,9 +39,9 @@ inline bool IsStepChannel(std::string_view channel) {
 
 /// The step of a message of this run; -1 if the message is of another run.
 inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
-  const bool is_ours =
-      event.data.size() >= kHeaderEnd && ReadInt64(event.data, kRunIdOffset) == run_id;
-  return is_ours ? ReadInt64(event.data, kStepOffset) : -1;
+  const bool is_ours = event.data.size() >= runtime::kHeaderEnd &&
+                       runtime::ReadInt64(event.data, runtime::kRunIdOffset) == run_id;
+  return is_ours ? runtime::ReadInt64(event.data, runtime::kStepOffset) : -1;
 }
 
 /// The step of a run in lockstep that begins with this event; nullopt if none does.
@@ -58,4 +58,4 @@ inline std::optional<std::int64_t> StepBegunBy(const Event& event, std::int64_t 
   return step;
 }
 
-}  // namespace fogline
+}  // namespace fogline::log

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace fogline {
+namespace fogline::metrics {
 namespace {
 
 constexpr double kSecondsPerHour = 3600;
@@ -54,4 +54,4 @@ DetectionMeasures DetectionAccumulator::Result() const {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

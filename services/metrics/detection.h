@@ -7,7 +7,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/metrics/sample.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// In a step the LiDAR is *deceived* if it has a value with an error (LidarError) of more than a
 /// tolerance. Otherwise it is *right*; a LiDAR without a value counts as right. An *alarm* lasts
@@ -65,4 +65,4 @@ class DetectionAccumulator {
   double false_alarms_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -4,7 +4,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace fogline {
+namespace fogline::metrics {
 
 EventShare ClopperPearson(std::int64_t events, std::int64_t runs, double confidence) {
   if (events < 0 || runs < 1 || events > runs || !(confidence > 0 && confidence < 1)) {
@@ -21,4 +21,4 @@ EventShare ClopperPearson(std::int64_t events, std::int64_t runs, double confide
           .upper = Binomial::find_upper_bound_on_p(n, k, tail)};
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// A share of runs, with exact bounds of the event's probability.
 struct EventShare {
@@ -20,4 +20,4 @@ struct EventShare {
 /// @throws std::invalid_argument
 EventShare ClopperPearson(std::int64_t events, std::int64_t runs, double confidence = 0.95);
 
-}  // namespace fogline
+}  // namespace fogline::metrics

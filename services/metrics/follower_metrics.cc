@@ -5,7 +5,7 @@
 
 #include "services/metrics/surrogate.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 void FollowerAccumulator::Add(const truth_t& truth, const follower_command_t& commands) {
   const std::size_t cars =
@@ -41,4 +41,4 @@ std::vector<FollowerMeasures> FollowerAccumulator::Result() const {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -11,7 +11,7 @@
 #include "services/graph.h"
 #include "services/metrics/running.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// Measures of one following car. The car ahead of the first following car is the host.
 /// nullopt: the run has no step that is relevant for the measure.
@@ -62,4 +62,4 @@ class FollowerAccumulator {
   std::size_t num_cars_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -8,7 +8,7 @@
 
 #include "services/models/minimal_risk/modes.h"
 
-namespace fogline {
+namespace fogline::metrics {
 namespace {
 
 constexpr double kPercent = 100.0;
@@ -68,13 +68,15 @@ void MeasureAccumulator::AddPairs(const Sample& sample) {
 }
 
 void MeasureAccumulator::AddAuthority(const Sample& sample) {
-  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
+  if (!sample.fog_present)
+    human_in_clear_air_.Add(models::HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
-  if (HumanIsEngaged(previous_->lambda_human)) {
+  if (models::HumanIsEngaged(previous_->lambda_human)) {
     measures_.human_time_s += sample.time_s - previous_->time_s;
   }
   if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
-  if (HumanDrives(sample.lambda_human) != HumanDrives(previous_->lambda_human)) AddTransfer(sample);
+  if (models::HumanDrives(sample.lambda_human) != models::HumanDrives(previous_->lambda_human))
+    AddTransfer(sample);
 }
 
 void MeasureAccumulator::AddTransfer(const Sample& sample) {
@@ -156,4 +158,4 @@ std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
   return improvement.Pct();
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

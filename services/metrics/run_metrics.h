@@ -15,7 +15,7 @@
 #include "services/metrics/sample.h"
 #include "services/metrics/surrogate.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
 /// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
@@ -242,4 +242,4 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "root mean square of fused distance minus true gap");
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

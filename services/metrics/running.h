@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// Sets `least` to `value` if that is smaller or the first one. A missing value (NaN) changes
 /// nothing.
@@ -37,4 +37,4 @@ class Mean {
   std::int64_t count_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -7,7 +7,7 @@
 
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// Values of one step in SI units. NaN if a sensor gave no value.
 struct Sample {
@@ -83,4 +83,4 @@ inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar
   };
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

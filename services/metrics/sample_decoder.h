@@ -5,7 +5,7 @@
 #include "services/metrics/sample.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 class SampleDecoder {
  public:
@@ -14,7 +14,7 @@ class SampleDecoder {
   template <class Messages>
   const Sample* Decode(const Messages& messages) {
     return Decode(messages, [&messages]<class M>(M& message) {
-      return fogline::Decode(messages[IndexOf<M>()], message);
+      return fogline::runtime::Decode(messages[IndexOf<M>()], message);
     });
   }
 
@@ -25,7 +25,7 @@ class SampleDecoder {
     const bool decoded = Decode(messages, [&messages]<class M>(M& message) {
       const auto& bytes = messages[IndexOf<M>()];
       if (bytes.empty()) message = Missing<M>();
-      return bytes.empty() || fogline::Decode(bytes, message);
+      return bytes.empty() || fogline::runtime::Decode(bytes, message);
     });
     return decoded ? &sample_ : nullptr;
   }
@@ -69,4 +69,4 @@ class SampleDecoder {
   Sample sample_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace fogline {
+namespace fogline::metrics {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -96,8 +96,9 @@ void PairAccumulator::Add(const CarPair& pair, double since_s) {
     min_headway_s_ = std::min(min_headway_s_, std::max(0.0, pair.gap_m) / pair.speed_mps);
   }
   min_picud_m_ = std::min(min_picud_m_, UrgentDecelerationGap(section_, pair));
-  min_rss_margin_m_ = std::min(
-      min_rss_margin_m_, pair.gap_m - RssSafeDistance(rss_, pair.speed_mps, pair.lead_speed_mps));
+  min_rss_margin_m_ =
+      std::min(min_rss_margin_m_,
+               pair.gap_m - models::RssSafeDistance(rss_, pair.speed_mps, pair.lead_speed_mps));
 }
 
 PairMeasures PairAccumulator::Result() const {
@@ -114,4 +115,4 @@ PairMeasures PairAccumulator::Result() const {
   return result;
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -8,7 +8,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/models/follower/safe_distance.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// A car and the car ahead of it at one moment.
 struct CarPair {
@@ -80,7 +80,7 @@ class PairAccumulator {
   void Pass(double duration_s);
 
   MeasuresSection section_;
-  RssParameters rss_;
+  models::RssParameters rss_;
   std::optional<double> ttc_s_;  // of the step before; nullopt if it had no pair
   double crash_probability_ = 0;
   bool met_ = false;
@@ -98,4 +98,4 @@ class PairAccumulator {
   double crash_time_s_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

@@ -7,7 +7,7 @@
 
 #include <boost/math/special_functions/lambert_w.hpp>
 
-namespace fogline {
+namespace fogline::radar {
 namespace {
 
 constexpr double kMetresPerKilometre = 1e3;
@@ -91,4 +91,4 @@ double MaxRange_m(double clear_range_m, double attenuation_dbpkm) {
   return boost::math::lambert_w0(q_pm * clear_range_m) / q_pm;
 }
 
-}  // namespace fogline
+}  // namespace fogline::radar

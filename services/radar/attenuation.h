@@ -2,7 +2,7 @@
 // recommendations, and the resulting maximum range. Pure functions.
 #pragma once
 
-namespace fogline {
+namespace fogline::radar {
 
 enum class Polarization { kHorizontal, kVertical };
 
@@ -34,4 +34,4 @@ double RainAttenuation_dbpkm(double rain_mmph, const RainCoefficients& rain);
 /// Lambert's function.
 double MaxRange_m(double clear_range_m, double attenuation_dbpkm);
 
-}  // namespace fogline
+}  // namespace fogline::radar

@@ -5,7 +5,7 @@
 
 #include "services/radar/attenuation.h"
 
-namespace fogline {
+namespace fogline::radar {
 namespace {
 
 // At 77 GHz the two polarisations differ by less than 5 %; the horizontal one attenuates more.
@@ -52,4 +52,4 @@ bool Radar::DropsOut(std::int64_t step) const {
          random_.Uniform2(step, kDropoutDraw)[0] < radar_.dropout_probability;
 }
 
-}  // namespace fogline
+}  // namespace fogline::radar

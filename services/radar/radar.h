@@ -9,7 +9,7 @@
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
 
-namespace fogline {
+namespace fogline::radar {
 
 /// With x the gap and y the lateral offset, a target at r = sqrt(x^2 + y^2) is measured as
 ///     range = r + bias + noise,   range rate = x x' / r + noise
@@ -42,4 +42,4 @@ class Radar {
   radar_t output_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::radar

@@ -4,4 +4,6 @@
 #include "services/radar/radar.h"
 #include "services/runtime/process/service.h"
 
-int main(int argc, char** argv) { return fogline::RunService<fogline::Radar>(argc, argv); }
+int main(int argc, char** argv) {
+  return fogline::runtime::RunService<fogline::radar::Radar>(argc, argv);
+}

@@ -7,7 +7,7 @@
 
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::recorder {
 
 /// A set of steps, with the requested channels of each. A repeated request adds nothing, so many
 /// roles that repeat their requests get only one answer. The answers come in the order of the
@@ -47,4 +47,4 @@ class AskedSteps {
   std::int64_t from_ = 0;  // Take() returns the first step from here on
 };
 
-}  // namespace fogline
+}  // namespace fogline::recorder

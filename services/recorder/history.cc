@@ -13,16 +13,17 @@
 
 #include "services/log/step_order.h"
 
-namespace fogline {
+namespace fogline::recorder {
 namespace {
 
 // More than twice the size of any step, so that a step begins wherever this many bytes are read.
 constexpr std::int64_t kLook = 32 << 10;
-static_assert(kLook > 2 * kMostStepBytes);
+static_assert(kLook > 2 * log::kMostStepBytes);
 
 }  // namespace
 
-History::History(std::filesystem::path file, const LogFront& front, const Remains& remains)
+History::History(std::filesystem::path file, const log::LogFront& front,
+                 const log::Remains& remains)
     : file_(std::move(file)),
       run_id_(front.run_id),
       realtime_(front.realtime),
@@ -40,42 +41,43 @@ void History::Add(std::int64_t end) {
   last_ = std::exchange(end_, end);
 }
 
-void History::ForEachMessage(std::int64_t step,
-                             const std::function<void(std::string_view channel, Bytes)>& use) {
+void History::ForEachMessage(
+    std::int64_t step, const std::function<void(std::string_view channel, runtime::Bytes)>& use) {
   const std::int64_t begin = Find(step);
-  const Place& behind = found_[RingSlot(step + 1)];
+  const Place& behind = found_[runtime::RingSlot(step + 1)];
   const std::int64_t known_end =
-      step == steps_ - 1 ? end_ : (behind.step == step + 1 ? behind.begin : begin + kMostStepBytes);
-  const Bytes read = Read(begin, known_end - begin);
-  Bytes rest = read;
+      step == steps_ - 1 ? end_
+                         : (behind.step == step + 1 ? behind.begin : begin + log::kMostStepBytes);
+  const runtime::Bytes read = Read(begin, known_end - begin);
+  runtime::Bytes rest = read;
   std::size_t messages = 0;
   std::string_view why;
-  while (messages < kStepChannels) {
-    const auto event = ParseEvent(rest, why);
-    const bool is_next = event && (realtime_ ? IsStepChannel(event->channel)
-                                             : event->channel == kStepNames[messages]);
-    const bool is_of_step = is_next && StepOf(*event, run_id_) == step;
+  while (messages < log::kStepChannels) {
+    const auto event = log::ParseEvent(rest, why);
+    const bool is_next = event && (realtime_ ? log::IsStepChannel(event->channel)
+                                             : event->channel == log::kStepNames[messages]);
+    const bool is_of_step = is_next && log::StepOf(*event, run_id_) == step;
     if (is_of_step) {
       ++messages;
       use(event->channel, event->data);
     } else if (!event || !realtime_) {
       break;
     }
-    rest = rest.subspan(SizeInFile(*event));
+    rest = rest.subspan(log::SizeInFile(*event));
   }
   if (realtime_) return;  // the messages that are missing were never recorded
-  if (messages < kStepChannels) {
+  if (messages < log::kStepChannels) {
     throw std::runtime_error(fmt::format("cannot read {} again: step {} at byte {} is damaged",
                                          file_.string(), step, begin));
   }
-  found_[RingSlot(step)] = {.step = step, .begin = begin};
+  found_[runtime::RingSlot(step)] = {.step = step, .begin = begin};
   const auto size = static_cast<std::int64_t>(read.size() - rest.size());
-  found_[RingSlot(step + 1)] = {.step = step + 1, .begin = begin + size};
+  found_[runtime::RingSlot(step + 1)] = {.step = step + 1, .begin = begin + size};
 }
 
 std::int64_t History::Find(std::int64_t step) {
   if (step == steps_ - 1) return last_;
-  if (const Place& known = found_[RingSlot(step)]; known.step == step) return known.begin;
+  if (const Place& known = found_[runtime::RingSlot(step)]; known.step == step) return known.begin;
   Place low{.step = 0, .begin = front_.bytes};  // the step is this one or a later one
   std::int64_t high = end_;                     // and it begins before this byte
   // Steps have nearly the same size. The guess is for the step before, so that the search finds the
@@ -104,26 +106,26 @@ std::int64_t History::Find(std::int64_t step) {
 
 std::optional<History::Place> History::Look(std::int64_t from, std::int64_t limit,
                                             std::int64_t step) {
-  const Bytes chunk = Read(from, std::min(kLook, end_ - from));
+  const runtime::Bytes chunk = Read(from, std::min(kLook, end_ - from));
   std::optional<Place> found;
   std::size_t offset = 0;
-  const auto begins_step = [this](const Event& event) {
-    return StepBegunBy(event, front_.events, run_id_).has_value();
+  const auto begins_step = [this](const log::Event& event) {
+    return log::StepBegunBy(event, front_.events, run_id_).has_value();
   };
-  while (const auto at = FindEvent(chunk, offset, begins_step)) {
+  while (const auto at = log::FindEvent(chunk, offset, begins_step)) {
     std::string_view why;
-    const auto event = ParseEvent(chunk.subspan(*at), why);
-    const Place place{.step = *StepBegunBy(*event, front_.events, run_id_),
+    const auto event = log::ParseEvent(chunk.subspan(*at), why);
+    const Place place{.step = *log::StepBegunBy(*event, front_.events, run_id_),
                       .begin = from + static_cast<std::int64_t>(*at)};
     if (place.begin >= limit) break;
     if (place.step > step) return found ? found : place;
     found = place;
-    offset = *at + SizeInFile(*event);
+    offset = *at + log::SizeInFile(*event);
   }
   return found;
 }
 
-Bytes History::Read(std::int64_t from, std::int64_t size) {
+runtime::Bytes History::Read(std::int64_t from, std::int64_t size) {
   if (fd_ < 0) fd_ = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
   const auto wanted = static_cast<std::size_t>(size);
   if (chunk_.size() < wanted) chunk_.resize(wanted);
@@ -135,4 +137,4 @@ Bytes History::Read(std::int64_t from, std::int64_t size) {
   return {chunk_.data(), static_cast<std::size_t>(got)};
 }
 
-}  // namespace fogline
+}  // namespace fogline::recorder

@@ -13,7 +13,7 @@
 #include "services/log/remains.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::recorder {
 
 /// Finds the steps in the recorder's own log, in which the messages of a step stand together. It
 /// reads the bytes on request, as they were written, and decodes nothing. There is no index, which
@@ -23,7 +23,7 @@ class History {
  public:
   /// @param front of the log
   /// @param remains the known steps of the log
-  History(std::filesystem::path file, const LogFront& front, const Remains& remains);
+  History(std::filesystem::path file, const log::LogFront& front, const log::Remains& remains);
   ~History();
   History(const History&) = delete;
   History& operator=(const History&) = delete;
@@ -37,7 +37,7 @@ class History {
   /// @pre the step is known, and the operating system has its bytes
   /// @throws std::runtime_error if it cannot be read
   void ForEachMessage(std::int64_t step,
-                      const std::function<void(std::string_view channel, Bytes)>& use);
+                      const std::function<void(std::string_view channel, runtime::Bytes)>& use);
 
  private:
   struct Place {
@@ -52,19 +52,19 @@ class History {
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
   /// Bytes of the file, fewer if it ends before; valid until the next call.
   /// @throws std::runtime_error
-  Bytes Read(std::int64_t from, std::int64_t size);
+  runtime::Bytes Read(std::int64_t from, std::int64_t size);
 
   std::filesystem::path file_;
   int fd_ = -1;  // opened when first needed
   std::int64_t run_id_;
   bool realtime_;
-  LogHead front_;
+  log::LogHead front_;
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
   std::int64_t end_;   // byte at which it ends
   // Steps that were found lately and the steps behind them, which are usually asked for next.
-  std::array<Place, kRingSteps> found_{};
+  std::array<Place, runtime::kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::recorder

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace fogline {
+namespace fogline::recorder {
 namespace {
 
 // A message is asked for when it is kPatience periods late: kAsks times, at intervals of kAskEvery.
@@ -12,46 +12,49 @@ constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
 // The most incomplete steps. Producers keep kRingSteps; the other half leaves time for their
 // answers.
-constexpr std::int64_t kMaxOpen = kRingSteps / 2;
+constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
 // The most STATUS messages that wait to be written: several of each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
 
 }  // namespace
 
-RecordRule::RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id)
-    : RealtimeRule(node, scenario, speed), run_id_(run_id) {}
+RecordRule::RecordRule(runtime::Node& node, const Scenario& scenario, double speed,
+                       std::int64_t run_id)
+    : runtime::RealtimeRule(node, scenario, speed), run_id_(run_id) {}
 
 void RecordRule::ListenToStatus() {
   listening_ = true;
-  bus().Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+  bus().Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
     const auto* status = arrival.As<status_t>();
     if (status == nullptr || status->header.run_id != run_id_ || heard_.size() >= kMaxHeard) return;
-    const Bytes bytes = arrival.bytes();
+    const runtime::Bytes bytes = arrival.bytes();
     heard_.push_back(
         {.step = std::max<std::int64_t>(newest(), 0), .bytes = {bytes.begin(), bytes.end()}});
   });
 }
 
-void RecordRule::TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use) {
+void RecordRule::TakeStatus(std::int64_t step, const std::function<void(runtime::Bytes)>& use) {
   for (; !heard_.empty() && heard_.front().step <= step; heard_.pop_front()) {
     use(heard_.front().bytes);
   }
 }
 
-StepRing::Verdict RecordRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
-  const StepRing::Verdict verdict = RealtimeRule::Classify(input, step, bytes);
-  const StepRing& ring = inputs()[input].ring;
+runtime::StepRing::Verdict RecordRule::Classify(std::size_t input, std::int64_t step,
+                                                runtime::Bytes bytes) {
+  const runtime::StepRing::Verdict verdict = runtime::RealtimeRule::Classify(input, step, bytes);
+  const runtime::StepRing& ring = inputs()[input].ring;
   // A message of the step that stands in the ring is in the log; of an older one it is not known.
-  if (verdict != StepRing::Verdict::kLate || ring.Has(step) || step <= ring.newest() - kRingSteps) {
+  if (verdict != runtime::StepRing::Verdict::kLate || ring.Has(step) ||
+      step <= ring.newest() - runtime::kRingSteps) {
     return verdict;
   }
   Refused& refused = refused_[input];
-  if (std::exchange(refused.steps[RingSlot(step)], step + 1) != step + 1) ++refused.count;
+  if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;
   return verdict;
 }
 
 void RecordRule::WriteStatus(TimePoint now) {
-  RealtimeRule::WriteStatus(now);
+  runtime::RealtimeRule::WriteStatus(now);
   for (std::size_t i = 0; i < status().input_late.size(); ++i) {
     status().input_late[i] = refused_[i].count;
   }
@@ -60,11 +63,11 @@ void RecordRule::WriteStatus(TimePoint now) {
 void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
   OpenUpTo(step, time);
   OpenAt(step, time);
-  RealtimeRule::OnInput(input, step, time);
+  runtime::RealtimeRule::OnInput(input, step, time);
 }
 
 void RecordRule::OnProgress() {
-  RealtimeRule::OnProgress();
+  runtime::RealtimeRule::OnProgress();
   const TimePoint now = Clock::now();
   const std::int64_t step = std::min(progress(), NewestPossible(now));
   if (step <= newest()) return;
@@ -73,13 +76,14 @@ void RecordRule::OnProgress() {
 }
 
 void RecordRule::OpenUpTo(std::int64_t step, TimePoint now) {
-  for (std::int64_t k = std::max({next(), newest() + 1, step - kRingSteps + 1}); k <= step; ++k) {
+  for (std::int64_t k = std::max({next(), newest() + 1, step - runtime::kRingSteps + 1}); k <= step;
+       ++k) {
     OpenAt(k, now);
   }
 }
 
 RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
-  Open& open = open_[RingSlot(step)];
+  Open& open = open_[runtime::RingSlot(step)];
   if (open.step != step) open = {.step = step, .seen = now};
   return open;
 }
@@ -130,4 +134,4 @@ void RecordRule::AskForHoles(TimePoint now) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::recorder

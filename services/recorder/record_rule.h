@@ -12,20 +12,21 @@
 
 #include "services/runtime/realtime/realtime_rule.h"
 
-namespace fogline {
+namespace fogline::recorder {
 
-class RecordRule final : public RealtimeRule {
+class RecordRule final : public runtime::RealtimeRule {
  public:
-  RecordRule(Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
+  RecordRule(runtime::Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
 
-  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
+  runtime::StepRing::Verdict Classify(std::size_t input, std::int64_t step,
+                                      runtime::Bytes bytes) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   void OnProgress() override;
   /// Late is only what the log does not have: `unlogged_messages` is counted with that.
   void WriteStatus(TimePoint now) override;
 
   /// Passes the STATUS messages that came in this step or before to `use`, each once.
-  void TakeStatus(std::int64_t step, const std::function<void(Bytes)>& use);
+  void TakeStatus(std::int64_t step, const std::function<void(runtime::Bytes)>& use);
 
  private:
   /// A step that is under way and not written yet.
@@ -43,7 +44,8 @@ class RecordRule final : public RealtimeRule {
   /// Messages of an input that came when their step was written, each counted once.
   struct Refused {
     std::int64_t count = 0;
-    std::array<std::int64_t, kRingSteps> steps{};  // plus one: those that were counted last
+    std::array<std::int64_t, runtime::kRingSteps>
+        steps{};  // plus one: those that were counted last
   };
 
   TimePoint Fire(TimePoint now) override;
@@ -58,11 +60,11 @@ class RecordRule final : public RealtimeRule {
   void ListenToStatus();
 
   std::int64_t run_id_;
-  std::array<Open, kRingSteps> open_{};
+  std::array<Open, runtime::kRingSteps> open_{};
   std::array<Refused, kNumChannels> refused_{};  // by input
   std::deque<Heard> heard_;
   TimePoint ask_at_{};
   bool listening_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::recorder

@@ -9,11 +9,11 @@
 #include "services/recorder/record_rule.h"
 #include "services/runtime/lockstep/lockstep_rule.h"
 
-namespace fogline {
+namespace fogline::recorder {
 namespace {
 
 // Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
-constexpr std::int64_t kAcknowledgeEvery = kMaxAhead / 4;
+constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
 // The limits for repeated messages, per second and at once: about a fifth of a processor. Every
 // role that starts again asks for its inputs of 63 steps at a time; a role with six inputs asks for
 // 378 messages.
@@ -33,24 +33,25 @@ constexpr Duration kBudgetPatience = milliseconds(1);
 }  // namespace
 
 /// Lockstep that also answers requests for old steps.
-class Recorder::AnsweringRule final : public LockstepRule {
+class Recorder::AnsweringRule final : public runtime::LockstepRule {
  public:
-  explicit AnsweringRule(Recorder& recorder) : LockstepRule(recorder), recorder_(recorder) {}
+  explicit AnsweringRule(Recorder& recorder)
+      : runtime::LockstepRule(recorder), recorder_(recorder) {}
 
   TimePoint Poll(TimePoint now) override {
-    return std::min(LockstepRule::Poll(now), recorder_.AnswerSome(now));
+    return std::min(runtime::LockstepRule::Poll(now), recorder_.AnswerSome(now));
   }
 
  private:
   Recorder& recorder_;
 };
 
-Recorder::Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
-                   Existing existing)
-    : Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
+Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
+                   const std::filesystem::path& file, Existing existing)
+    : runtime::Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
   // In memory no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
-  budget_ = RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  budget_ = runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
@@ -59,7 +60,7 @@ void Recorder::Configure(const Scenario& scenario) {
   step_us_ = std::llround(scenario.step_s * 1e6);
 }
 
-std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
+std::unique_ptr<runtime::FireRule> Recorder::MakeRule(const Scenario& scenario) {
   if (!realtime()) return std::make_unique<AnsweringRule>(*this);
   auto rule = std::make_unique<RecordRule>(*this, scenario, pace(), run_id());
   recording_ = rule.get();
@@ -69,7 +70,7 @@ std::unique_ptr<FireRule> Recorder::MakeRule(const Scenario& scenario) {
 bool Recorder::Resume() {
   std::error_code missing;
   const bool is_there = std::filesystem::file_size(file_, missing) > 0 && !missing;
-  const LogFront front = is_there ? ReadFront(file_) : LogFront();
+  const log::LogFront front = is_there ? log::ReadFront(file_) : log::LogFront();
   if (!front.parts.empty() && front.run_id != run_id()) {
     throw InputError(fmt::format("{}: the log is that of run {}, not of {}", file_.string(),
                                  front.run_id, run_id()));
@@ -77,7 +78,7 @@ bool Recorder::Resume() {
   if (!front.parts.empty() && front.parts.hash() != parts().hash()) {
     throw InputError(fmt::format("{}: the log is that of another scenario", file_.string()));
   }
-  const Remains remains = ReadOwnRemains(front);
+  const log::Remains remains = ReadOwnRemains(front);
   if (!front.parts.Complete()) return false;
   log_.emplace(file_, remains.head);
   history_.emplace(file_, front, remains);
@@ -88,27 +89,28 @@ bool Recorder::Resume() {
   return true;
 }
 
-Remains Recorder::ReadOwnRemains(const LogFront& front) {
+log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   const auto say_so_far = [this](std::int64_t steps) {
     status().header.step = steps - 1;
     PublishStatus();
   };
-  Remains remains;
-  if (front.parts.Complete()) remains = ReadRemains(file_, front, say_so_far);
+  log::Remains remains;
+  if (front.parts.Complete()) remains = log::ReadRemains(file_, front, say_so_far);
   // The world begins a step only after the step kMaxAhead before it is on disk. In real time it
   // does not wait, and a missing step is a hole.
-  if (!realtime() && remains.steps <= progress() - kMaxAhead) {
+  if (!realtime() && remains.steps <= progress() - runtime::kMaxAhead) {
     throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
-                                 remains.steps, progress() - kMaxAhead + 1));
+                                 remains.steps, progress() - runtime::kMaxAhead + 1));
   }
   return remains;
 }
 
 void Recorder::RememberLastSteps() {
   const std::int64_t steps = history_->steps();
-  for (std::int64_t step = std::max<std::int64_t>(0, steps - kRingSteps); step < steps; ++step) {
+  for (std::int64_t step = std::max<std::int64_t>(0, steps - runtime::kRingSteps); step < steps;
+       ++step) {
     auto input = inputs().begin();  // the inputs stand in the order of the log, too
-    history_->ForEachMessage(step, [&](std::string_view /*channel*/, Bytes bytes) {
+    history_->ForEachMessage(step, [&](std::string_view /*channel*/, runtime::Bytes bytes) {
       (input++)->ring.Store(step, bytes);
     });
   }
@@ -118,31 +120,33 @@ void Recorder::WriteScenario() {
   if (!log_) log_.emplace(file_);
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts().parts().size(); ++i) {
-    run_t run = MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
+    run_t run =
+        runtime::MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
     if (realtime()) {
       run.realtime = 1;
       run.pace = pace();
     }
-    Encode(run, buffer);
+    runtime::Encode(run, buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
   log_->Flush();
-  const LogHead head{.bytes = log_->size(), .events = std::ssize(parts().parts())};
-  history_.emplace(file_,
-                   LogFront{.run_id = run_id(), .parts = {}, .realtime = realtime(), .head = head},
-                   Remains{.head = head, .last = head.bytes});
+  const log::LogHead head{.bytes = log_->size(), .events = std::ssize(parts().parts())};
+  history_.emplace(
+      file_, log::LogFront{.run_id = run_id(), .parts = {}, .realtime = realtime(), .head = head},
+      log::Remains{.head = head, .last = head.bytes});
 }
 
-RefusalCounter Recorder::Wrong(std::size_t input, Arrival& arrival) {
-  RefusalCounter wrong = nullptr;
+runtime::RefusalCounter Recorder::Wrong(std::size_t input, runtime::Arrival& arrival) {
+  runtime::RefusalCounter wrong = nullptr;
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     if (channel == inputs()[input].channel) wrong = arrival.Wrong<M>();
   });
   return wrong;
 }
 
-RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step, Arrival& arrival) {
-  RefusalCounter wrong = nullptr;
+runtime::RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step,
+                                         runtime::Arrival& arrival) {
+  runtime::RefusalCounter wrong = nullptr;
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     if (channel != inputs()[input].channel) return;
     const M* message = arrival.As<M>();
@@ -157,15 +161,16 @@ RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step, Arrival& a
 void Recorder::Write(std::int64_t step) {
   for (const Input& input : inputs()) {
     if (!input.ring.Has(step)) continue;
-    const Bytes bytes = input.ring.Get(step);
-    constexpr std::size_t kTimeOffset = kStepOffset + 8;
-    log_->Write(kChannels[input.channel].name, ReadInt64(bytes, kTimeOffset), bytes);
+    const runtime::Bytes bytes = input.ring.Get(step);
+    constexpr std::size_t kTimeOffset = runtime::kStepOffset + 8;
+    log_->Write(kChannels[input.channel].name, runtime::ReadInt64(bytes, kTimeOffset), bytes);
   }
 }
 
 void Recorder::WriteStatus(std::int64_t step) {
-  recording_->TakeStatus(
-      step, [&](Bytes bytes) { log_->Write(ChannelOf<status_t>().name, step * step_us_, bytes); });
+  recording_->TakeStatus(step, [&](runtime::Bytes bytes) {
+    log_->Write(ChannelOf<status_t>().name, step * step_us_, bytes);
+  });
 }
 
 void Recorder::Compute(std::int64_t step) {
@@ -183,21 +188,21 @@ void Recorder::Compute(std::int64_t step) {
 }
 
 void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
-  rule().Expect(std::min(step, next() + kRingSteps - 1));
+  rule().Expect(std::min(step, next() + runtime::kRingSteps - 1));
   if (next() > step) PublishStatus();
 }
 
-void Recorder::OnAsked(std::string_view channel, StepRange steps, TimePoint now) {
+void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
   // Newer steps are in the rings of their producers. Steps that are kMaxAhead old are acknowledged,
   // so they can be read from the file.
-  static_assert(kAcknowledgeEvery <= kMaxAhead);
-  steps.count = std::min(steps.count, next() - kMaxAhead - steps.first);
+  static_assert(kAcknowledgeEvery <= runtime::kMaxAhead);
+  steps.count = std::min(steps.count, next() - runtime::kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);
   if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
     // All roles receive an answer, so one is enough.
-    const Answered& last = answered_[place][RingSlot(k)];
+    const Answered& last = answered_[place][runtime::RingSlot(k)];
     if (last.step == k && now - last.at < kAnswerHolds) continue;
     asked_.Add(k, AskedSteps::Channels{1} << place);
   }
@@ -218,19 +223,19 @@ TimePoint Recorder::AnswerSome(TimePoint now) {
 }
 
 void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
-  history_->ForEachMessage(asked.step, [&](std::string_view name, Bytes bytes) {
+  history_->ForEachMessage(asked.step, [&](std::string_view name, runtime::Bytes bytes) {
     const std::size_t channel = ChannelNamed(name);
     const AskedSteps::Channels bit = AskedSteps::Channels{1} << channel;
     if ((asked.channels & bit) == 0) return;
     if (!budget_.Has(now)) return asked_.Add(asked.step, bit);
-    answered_[channel][RingSlot(asked.step)] = {.step = asked.step, .at = now};
+    answered_[channel][runtime::RingSlot(asked.step)] = {.step = asked.step, .at = now};
     Answer(name, bytes, now);
   });
 }
 
 // In real time no role computes old steps again. A restarted world needs the positions of the cars:
 // it is the only role that asks for TRUTH, and the process that produced it is dead.
-void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint now) {
+void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (channel != ChannelOf<truth_t>().name || !budget_.Has(now)) return;
   const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
   bool answered = false;
@@ -249,7 +254,7 @@ void Recorder::AnswerRecent(std::string_view channel, StepRange steps, TimePoint
 }
 
 std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
-  if (step >= first_) return Node::Contradiction(step, channel);
+  if (step >= first_) return runtime::Node::Contradiction(step, channel);
   return fmt::format(
       "step {}: {} is not what the log has: {} is another program, or another "
       "version, than the one that was recorded",
@@ -293,4 +298,4 @@ void Recorder::OnLeave() {
   for (int i = 0; i < kLastWords; ++i) PublishStatus();
 }
 
-}  // namespace fogline
+}  // namespace fogline::recorder

@@ -13,11 +13,11 @@
 #include "services/recorder/history.h"
 #include "services/runtime/lockstep/node.h"
 
-namespace fogline {
+namespace fogline::recorder {
 
 class RecordRule;
 
-class Recorder final : public Node {
+class Recorder final : public runtime::Node {
  public:
   /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
@@ -25,19 +25,20 @@ class Recorder final : public Node {
   /// With a run id an existing file is replaced at once, without one as soon as a run has been
   /// found.
   /// @throws InputError if the file cannot be written
-  Recorder(Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
+  Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
 
  private:
   class AnsweringRule;
 
   void Configure(const Scenario& scenario) override;
-  std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override;
-  RefusalCounter Wrong(std::size_t input, Arrival& arrival) override;
-  RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override;
+  std::unique_ptr<runtime::FireRule> MakeRule(const Scenario& scenario) override;
+  runtime::RefusalCounter Wrong(std::size_t input, runtime::Arrival& arrival) override;
+  runtime::RefusalCounter Accept(std::size_t input, std::int64_t step,
+                                 runtime::Arrival& arrival) override;
   void Compute(std::int64_t step) override;
   void OnStatusAsked(std::int64_t step, TimePoint now) override;
-  void OnAsked(std::string_view channel, StepRange steps, TimePoint now) override;
+  void OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) override;
   std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const override;
   void BeforeStatus() override;
   void OnLeave() override;
@@ -46,7 +47,7 @@ class Recorder final : public Node {
   bool Resume();
   /// The steps of this run in the file.
   /// @throws InputError if it has fewer steps than were acknowledged
-  Remains ReadOwnRemains(const LogFront& front);
+  log::Remains ReadOwnRemains(const log::LogFront& front);
   /// Stores the last steps of the log as inputs, so that a role that computes them again must come
   /// to the same bytes.
   void RememberLastSteps();
@@ -55,14 +56,14 @@ class Recorder final : public Node {
   void WriteStatus(std::int64_t step);
   /// Writes into STATUS how much of the log the operating system has, and its checksum.
   void TellWritten();
-  void AnswerRecent(std::string_view channel, StepRange steps, TimePoint now);
+  void AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now);
   /// Answers some of the requests. @return when to call it again
   TimePoint AnswerSome(TimePoint now);
   void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
 
   const std::filesystem::path file_;
   const Existing existing_;
-  std::optional<EventLogWriter> log_;
+  std::optional<log::EventLogWriter> log_;
   std::optional<History> history_;
   std::int64_t first_ = 0;   // first step that it records; the log had those before it
   std::int64_t final_ = -1;  // last step of the run; -1 until it is known
@@ -73,7 +74,7 @@ class Recorder final : public Node {
     std::int64_t step = -1;
     TimePoint at{};
   };
-  std::array<std::array<Answered, kRingSteps>, kChannels.size()> answered_{};
+  std::array<std::array<Answered, runtime::kRingSteps>, kChannels.size()> answered_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::recorder

@@ -23,17 +23,17 @@ constexpr const char* kHelpFooter =
 
 int main(int argc, char** argv) {
   using fogline::FileLock;
-  using fogline::LogOfRun;
-  using fogline::Recorder;
+  using fogline::log::LogOfRun;
+  using fogline::recorder::Recorder;
   std::string file;
   bool resume = false;
   bool shared = false;
   // The lock on the log while the recorder writes it.
   std::optional<FileLock> lock;
   std::unique_ptr<LogOfRun> log;
-  return fogline::RunProcess(
+  return fogline::runtime::RunProcess(
       argc, argv, fogline::Role::kRecorder,
-      [&](fogline::Bus& bus, std::optional<std::int64_t> run_id) {
+      [&](fogline::runtime::Bus& bus, std::optional<std::int64_t> run_id) {
         if (shared) {
           lock.emplace(file, FileLock::Kind::kShared, "--log", "run");
         } else {

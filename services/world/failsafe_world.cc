@@ -2,7 +2,7 @@
 
 #include "fogline/status_t.hpp"
 
-namespace fogline {
+namespace fogline::world {
 
 void FailsafeWorld::Resume(const truth_t& truth, std::int8_t minimal_risk) {
   world_.Resume(truth);
@@ -41,4 +41,4 @@ void FailsafeWorld::Describe(const WorldInputs& inputs) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::world

@@ -9,7 +9,7 @@
 #include "services/world/vehicle_fallback.h"
 #include "services/world/world.h"
 
-namespace fogline {
+namespace fogline::world {
 
 /// Everything that the world reads, as far as it has come.
 struct WorldInputs {
@@ -43,4 +43,4 @@ class FailsafeWorld {
   std::string fallback_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::world

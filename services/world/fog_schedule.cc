@@ -6,7 +6,7 @@
 #include "services/graph.h"
 #include "services/models/driver/visibility.h"
 
-namespace fogline {
+namespace fogline::world {
 double FogLevel(FogProfile profile, double x) {
   using std::numbers::pi;
   switch (profile) {
@@ -36,11 +36,11 @@ Fog FogSchedule::At(std::int64_t utime) const {
   Fog fog{
       .present = true, .level = FogLevel(fog_.profile, x), .visibility_m = fog_.clear_visibility_m};
   if (fog_.model == FogModel::kBeam) {
-    const double clear_pm = ExtinctionOf(fog_.clear_visibility_m);
-    const double dense_pm = ExtinctionOf(fog_.visibility_m);
-    fog.visibility_m = VisibilityOf(clear_pm + fog.level * (dense_pm - clear_pm));
+    const double clear_pm = models::ExtinctionOf(fog_.clear_visibility_m);
+    const double dense_pm = models::ExtinctionOf(fog_.visibility_m);
+    fog.visibility_m = models::VisibilityOf(clear_pm + fog.level * (dense_pm - clear_pm));
   }
   return fog;
 }
 
-}  // namespace fogline
+}  // namespace fogline::world

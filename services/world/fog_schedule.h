@@ -5,7 +5,7 @@
 
 #include "scenario/sections/road.h"
 
-namespace fogline {
+namespace fogline::world {
 
 /// Fog at one moment.
 struct Fog {
@@ -33,4 +33,4 @@ class FogSchedule {
   std::int64_t duration_us_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::world

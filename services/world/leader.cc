@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace fogline {
+namespace fogline::world {
 
 Leader::Leader(const LeadSection& lead) : lead_(lead) {
   if (lead_.profile == LeadProfile::kRecorded && lead_.recorded.speeds_mps.empty()) {
@@ -67,4 +67,4 @@ double Leader::RecordedSpeed(std::int64_t step) const {
   return speeds_mps[std::min(static_cast<std::size_t>(step), speeds_mps.size() - 1)];
 }
 
-}  // namespace fogline
+}  // namespace fogline::world

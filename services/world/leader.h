@@ -7,7 +7,7 @@
 
 #include "scenario/sections/road.h"
 
-namespace fogline {
+namespace fogline::world {
 
 /// The preceding car's speed profile.
 class Leader {
@@ -29,4 +29,4 @@ class Leader {
   std::vector<double> ends_s_;  // end time of each breakpoint, from the start of the run
 };
 
-}  // namespace fogline
+}  // namespace fogline::world

@@ -15,7 +15,7 @@
 #include "services/models/minimal_risk/minimal_risk.h"
 #include "services/models/minimal_risk/modes.h"
 
-namespace fogline {
+namespace fogline::world {
 
 /// One car:
 ///
@@ -39,7 +39,7 @@ class CarFallback {
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
 
  private:
-  MinimalRisk minimal_risk_;
+  models::MinimalRisk minimal_risk_;
   std::optional<double> last_mps2_;
 };
 
@@ -74,7 +74,7 @@ class VehicleFallback {
   /// The host is in a manoeuvre that no command ends: its own, or one that the arbitrator has
   /// commanded.
   bool host_in_minimal_risk() const {
-    return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
+    return host_.in_minimal_risk() || (commanded_ && models::IsLocked(host_out_.mode));
   }
   /// The vehicle makes the manoeuvre by itself; the arbitrator has to know this.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
@@ -106,4 +106,4 @@ class VehicleFallback {
   follower_command_t followers_out_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::world

@@ -11,7 +11,7 @@
 #include "common/errors.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::world {
 namespace {
 
 double Finite(double acceleration_mps2, const char* channel) {
@@ -19,22 +19,23 @@ double Finite(double acceleration_mps2, const char* channel) {
   throw std::invalid_argument(std::string(channel) + ": acceleration is not finite");
 }
 
-GradeProfile RoadOf(const Scenario& scenario) {
+models::GradeProfile RoadOf(const Scenario& scenario) {
   try {
-    return GradeProfile(scenario.road.grade);
+    return models::GradeProfile(scenario.road.grade);
   } catch (const std::invalid_argument& error) {
     throw InputError(error.what());
   }
 }
 
 // The vehicle model; nothing for a point mass. @param section name of `vehicle` in the scenario
-std::optional<LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle, const char* section,
-                                             const Scenario& scenario, const GradeProfile& road,
-                                             double step_s) {
+std::optional<models::LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle,
+                                                     const char* section, const Scenario& scenario,
+                                                     const models::GradeProfile& road,
+                                                     double step_s) {
   if (vehicle.model == VehicleModel::kPointMass) return std::nullopt;
   try {
-    return LongitudinalVehicle(ParametersOf(vehicle.car), FrictionOf(scenario.road.surface), road,
-                               step_s);
+    return models::LongitudinalVehicle(models::ParametersOf(vehicle.car),
+                                       models::FrictionOf(scenario.road.surface), road, step_s);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("/step_s: {} s is too short for {}: {}", scenario.step_s, section,
                                  error.what()));
@@ -62,9 +63,9 @@ World::World(const Scenario& scenario)
 }
 
 void World::MakeVehicles(const Scenario& scenario) {
-  const GradeProfile road = RoadOf(scenario);
+  const models::GradeProfile road = RoadOf(scenario);
   vehicles_[kHost] = VehicleOf(scenario.host_vehicle, "/host_vehicle", scenario, road, step_s_);
-  const std::optional<LongitudinalVehicle> follower =
+  const std::optional<models::LongitudinalVehicle> follower =
       VehicleOf(scenario.follower_vehicle, "/follower_vehicle", scenario, road, step_s_);
   std::fill(vehicles_.begin() + kFirstFollower, vehicles_.end(), follower);
 }
@@ -103,7 +104,7 @@ void World::Resume(const truth_t& truth) {
   Publish();
 }
 
-void World::Place(std::size_t car, const Motion& motion, double acceleration_mps2) {
+void World::Place(std::size_t car, const models::Motion& motion, double acceleration_mps2) {
   cars_[car] = {.motion = motion,
                 .begin_mps = motion.speed_mps,
                 .acceleration_mps2 = acceleration_mps2,
@@ -143,7 +144,7 @@ void World::Command(const arbitration_t& host, const follower_command_t& followe
 
 void World::Obey(std::size_t car, double command_mps2) {
   Car& moved = cars_[car];
-  std::optional<LongitudinalVehicle>& vehicle = vehicles_[car];
+  std::optional<models::LongitudinalVehicle>& vehicle = vehicles_[car];
   moved.begin_mps = moved.motion.speed_mps;
   moved.acceleration_mps2 = vehicle ? vehicle->Step(command_mps2, moved.motion) : command_mps2;
 }
@@ -154,7 +155,8 @@ void World::Integrate() {
     if (collision_ == truth_t::COLLISION_NONE) {
       RecordCollision(TimeOf(step_) + static_cast<double>(i) * substep_s, substep_s);
     }
-    for (Car& car : cars_) car.motion = Advance(car.motion, car.acceleration_mps2, substep_s);
+    for (Car& car : cars_)
+      car.motion = models::Advance(car.motion, car.acceleration_mps2, substep_s);
   }
   // The exact speed of the profile, without the rounding of v + a t.
   cars_[kPreceding].motion.speed_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
@@ -171,8 +173,8 @@ void World::RecordCollision(double begin_s, double duration_s) {
     const Car& ahead = cars_[i - 1];
     const Car& behind = cars_[i];
     const std::optional<double> contact_s =
-        TimeToContact(GapOf(i), ahead.motion.speed_mps, ahead.acceleration_mps2,
-                      behind.motion.speed_mps, behind.acceleration_mps2, duration_s);
+        models::TimeToContact(GapOf(i), ahead.motion.speed_mps, ahead.acceleration_mps2,
+                              behind.motion.speed_mps, behind.acceleration_mps2, duration_s);
     const bool first = contact_s && (collision_ == truth_t::COLLISION_NONE || *contact_s < first_s);
     if (!first) continue;
     first_s = *contact_s;
@@ -219,4 +221,4 @@ const World::Output& World::Publish() {
   return output_;
 }
 
-}  // namespace fogline
+}  // namespace fogline::world

@@ -18,7 +18,7 @@
 #include "services/world/fog_schedule.h"
 #include "services/world/leader.h"
 
-namespace fogline {
+namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
 /// speed of its profile. Each other car is a point mass, which has exactly the commanded
@@ -58,7 +58,7 @@ class World {
 
  private:
   struct Car {
-    Motion motion;
+    models::Motion motion;
     double begin_mps = 0;          // speed at the beginning of the step
     double acceleration_mps2 = 0;  // in force during the step, or until the car rests
     double applied_mps2 = 0;       // mean over the step that ended
@@ -71,7 +71,7 @@ class World {
   std::size_t num_followers() const { return cars_.size() - kFirstFollower; }
   void MakeVehicles(const Scenario& scenario);
   // Puts a car on the road as if it had had this acceleration for a long time.
-  void Place(std::size_t car, const Motion& motion, double acceleration_mps2);
+  void Place(std::size_t car, const models::Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
   void Obey(std::size_t car, double command_mps2);
   void Integrate();
@@ -88,10 +88,11 @@ class World {
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;
   std::vector<Car> cars_;
-  std::vector<std::optional<LongitudinalVehicle>> vehicles_;  // of each car; none of a point mass
+  std::vector<std::optional<models::LongitudinalVehicle>>
+      vehicles_;  // of each car; none of a point mass
   std::int8_t collision_ = truth_t::COLLISION_NONE;
   double collision_time_s_ = 0;
   Output output_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::world

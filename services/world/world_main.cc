@@ -5,5 +5,6 @@
 #include "services/world/world.h"
 
 int main(int argc, char** argv) {
-  return fogline::RunService<fogline::World, fogline::FailsafeWorld>(argc, argv);
+  return fogline::runtime::RunService<fogline::world::World, fogline::world::FailsafeWorld>(argc,
+                                                                                            argv);
 }

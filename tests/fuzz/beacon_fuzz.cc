@@ -14,8 +14,8 @@ constexpr std::size_t kMaxDatagrams = 512;
 constexpr const char* kHost = "lab1";
 constexpr std::int64_t kNow_us = 1'700'000'000'000'000;
 
-void DemandSoundRuns(Bytes input) {
-  Announcements announcements(kHost);
+void DemandSoundRuns(runtime::Bytes input) {
+  runtime::Announcements announcements(kHost);
   TimePoint now{};
   Cutter cutter(input);
   std::int64_t heard = 0;
@@ -23,22 +23,23 @@ void DemandSoundRuns(Bytes input) {
     now += milliseconds(1);
     announcements.Hear(cutter.Datagram(), now, kNow_us);
   }
-  const std::vector<Announcement> runs = announcements.Current(now);
+  const std::vector<runtime::Announcement> runs = announcements.Current(now);
   if (!runs.empty()) Took();
-  Demand(runs.size() <= Announcements::kMax, "runs fill no memory");
+  Demand(runs.size() <= runtime::Announcements::kMax, "runs fill no memory");
   Demand(static_cast<std::int64_t>(runs.size()) + announcements.refused() <= heard,
          "a beacon is taken or refused");
-  for (const Announcement& run : runs) {
-    Demand(MayBeAnnounced(run.url), "a program may go where a run is said to be");
+  for (const runtime::Announcement& run : runs) {
+    Demand(runtime::MayBeAnnounced(run.url), "a program may go where a run is said to be");
     Demand(Printable(run.Text()) && run.Text().find('\n') == std::string::npos,
            "a run can be written to a terminal");
     Demand(IsUtf8(run.scenario) && run.host == kHost, "a title is text, of this machine");
     Demand(run.awaited.size() <= kRoles.size(), "a role is waited for once");
   }
-  for (const Line& line : AnnouncedLines(runs, true)) {
+  for (const watch::Line& line : watch::AnnouncedLines(runs, true)) {
     Demand(Printable(line.text), "a line can be written to a terminal");
   }
-  Demand(nlohmann::json::accept(AnnouncedJson(runs, true).dump()), "what is said in JSON is JSON");
+  Demand(nlohmann::json::accept(watch::AnnouncedJson(runs, true).dump()),
+         "what is said in JSON is JSON");
 }
 
 Input Seed(const std::vector<beacon_t>& beacons) {

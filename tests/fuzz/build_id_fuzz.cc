@@ -12,13 +12,13 @@
 namespace fogline::fuzz {
 namespace {
 
-void DemandBytesOfTheFile(Bytes file) {
-  const BuildId id = BuildIdIn(file);
-  if (id == kUnknownBuild) return;
+void DemandBytesOfTheFile(runtime::Bytes file) {
+  const runtime::BuildId id = runtime::BuildIdIn(file);
+  if (id == runtime::kUnknownBuild) return;
   Took();
   bool found = false;
   for (std::size_t at = 0; at + sizeof(id) <= file.size() && !found; ++at) {
-    found = ReadInt64(file, at) == id;
+    found = runtime::ReadInt64(file, at) == id;
   }
   Demand(found, "a build id stands in the file");
 }

@@ -8,12 +8,12 @@ namespace fogline::fuzz {
 namespace {
 
 /// Reads all events. They are views into `reader`.
-std::vector<Event> ReadAll(EventLogReader& reader, std::size_t file_size) {
-  std::vector<Event> events;
+std::vector<log::Event> ReadAll(log::EventLogReader& reader, std::size_t file_size) {
+  std::vector<log::Event> events;
   std::size_t bytes = 0;
   while (const auto event = reader.Next()) {
     events.push_back(*event);
-    bytes += SizeInFile(*event);
+    bytes += log::SizeInFile(*event);
     Demand(reader.good_bytes() == bytes, "events follow one another without a gap");
   }
   Demand(bytes <= file_size, "no event is larger than the file");
@@ -22,36 +22,37 @@ std::vector<Event> ReadAll(EventLogReader& reader, std::size_t file_size) {
   return events;
 }
 
-bool SameBut(std::int64_t number, const Event& a, const Event& b) {
+bool SameBut(std::int64_t number, const log::Event& a, const log::Event& b) {
   return b.number == number && a.utime == b.utime && a.channel == b.channel &&
          std::ranges::equal(a.data, b.data);
 }
 
 /// The reader maps the file, so no sanitizer sees a read beyond the file's end. This function
 /// parses the same bytes in a block of memory that ends where the input ends.
-void DemandSameInMemory(Bytes bytes, const std::vector<Event>& events) {
+void DemandSameInMemory(runtime::Bytes bytes, const std::vector<log::Event>& events) {
   std::string_view why;
-  for (const Event& event : events) {
-    const auto again = ParseEvent(bytes, why);
+  for (const log::Event& event : events) {
+    const auto again = log::ParseEvent(bytes, why);
     Demand(again && SameBut(event.number, event, *again), "an event in memory is the same");
-    bytes = bytes.subspan(SizeInFile(event));
+    bytes = bytes.subspan(log::SizeInFile(event));
   }
-  Demand(!ParseEvent(bytes, why) && !why.empty(), "after the last event there is none in memory");
+  Demand(!log::ParseEvent(bytes, why) && !why.empty(),
+         "after the last event there is none in memory");
 }
 
-void DemandLogOrRefusal(Bytes bytes) {
+void DemandLogOrRefusal(runtime::Bytes bytes) {
   const MemoryFile file(bytes);
   try {
-    EventLogReader reader(file.path());
-    const std::vector<Event> events = ReadAll(reader, bytes.size());
+    log::EventLogReader reader(file.path());
+    const std::vector<log::Event> events = ReadAll(reader, bytes.size());
     DemandSameInMemory(bytes, events);
     const MemoryFile copy;
     {
-      EventLogWriter writer(copy.path());
-      for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
+      log::EventLogWriter writer(copy.path());
+      for (const log::Event& event : events) writer.Write(event.channel, event.utime, event.data);
     }
-    EventLogReader again(copy.path());
-    const std::vector<Event> rewritten = ReadAll(again, reader.good_bytes());
+    log::EventLogReader again(copy.path());
+    const std::vector<log::Event> rewritten = ReadAll(again, reader.good_bytes());
     Demand(rewritten.size() == events.size() && again.torn().empty(), "a copy has all events");
     for (std::size_t i = 0; i < events.size(); ++i) {
       Demand(SameBut(static_cast<std::int64_t>(i), events[i], rewritten[i]),

@@ -28,7 +28,7 @@ void Demand(bool holds, const char* what) {
 void Took() { ++taken; }
 long Taken() { return taken; }
 
-MemoryFile::MemoryFile(Bytes content) : fd_(memfd_create("fuzz", MFD_CLOEXEC)) {
+MemoryFile::MemoryFile(runtime::Bytes content) : fd_(memfd_create("fuzz", MFD_CLOEXEC)) {
   Demand(fd_ >= 0 &&
              write(fd_, content.data(), content.size()) == static_cast<ssize_t>(content.size()),
          "a file in memory can be made");
@@ -53,15 +53,16 @@ std::uint8_t Cutter::Byte() {
   return byte;
 }
 
-Bytes Cutter::Datagram() {
+runtime::Bytes Cutter::Datagram() {
   std::size_t size = Byte();
   size = size << 8 | Byte();
-  const Bytes datagram = rest_.first(std::min({size, rest_.size(), kMaxMessageBytes}));
+  const runtime::Bytes datagram =
+      rest_.first(std::min({size, rest_.size(), runtime::kMaxMessageBytes}));
   rest_ = rest_.subspan(datagram.size());
   return datagram;
 }
 
-void AddDatagram(Bytes bytes, Input& input) {
+void AddDatagram(runtime::Bytes bytes, Input& input) {
   input.push_back(static_cast<std::uint8_t>(bytes.size() >> 8));
   input.push_back(static_cast<std::uint8_t>(bytes.size()));
   input.insert(input.end(), bytes.begin(), bytes.end());

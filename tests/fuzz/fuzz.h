@@ -35,7 +35,7 @@ long Taken();
 /// A file in memory, for code that reads files.
 class MemoryFile {
  public:
-  explicit MemoryFile(Bytes content = {});
+  explicit MemoryFile(runtime::Bytes content = {});
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
@@ -51,20 +51,20 @@ class MemoryFile {
 /// Takes an input apart from front to back. Beyond the end, bytes are 0 and datagrams are empty.
 class Cutter {
  public:
-  explicit Cutter(Bytes input) : rest_(input) {}
+  explicit Cutter(runtime::Bytes input) : rest_(input) {}
 
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
   /// A datagram: its length in two bytes, big endian, then its bytes. It is shorter than that
   /// length if the input ends, or if a message may not be so long.
-  Bytes Datagram();
+  runtime::Bytes Datagram();
 
  private:
-  Bytes rest_;
+  runtime::Bytes rest_;
 };
 
 /// Appends a datagram to `input` in the form that Datagram() reads.
-void AddDatagram(Bytes bytes, Input& input);
+void AddDatagram(runtime::Bytes bytes, Input& input);
 
 /// Whether a text may be written to any terminal: it has no control characters except line feeds.
 bool Printable(std::string text);

@@ -15,7 +15,8 @@ namespace {
 // does not.
 constexpr std::int64_t kShortTail = 2500;
 
-void DemandWhereabouts(const LogFront& front, const Remains& remains, std::int64_t file_size) {
+void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
+                       std::int64_t file_size) {
   Demand(front.head.bytes <= remains.head.bytes, "steps follow the scenario");
   Demand(remains.head.bytes <= file_size, "what is kept is in the file");
   Demand(front.head.bytes <= remains.last && remains.last <= remains.head.bytes,
@@ -26,17 +27,17 @@ void DemandWhereabouts(const LogFront& front, const Remains& remains, std::int64
          "no last step without a step");
   if (front.realtime) return;
   Demand(remains.head.events ==
-             front.head.events + remains.steps * static_cast<std::int64_t>(kStepChannels),
+             front.head.events + remains.steps * static_cast<std::int64_t>(log::kStepChannels),
          "what is kept is whole steps");
 }
 
 /// Checks the log that the recorder goes on with, if it was read from front to back.
-void DemandWholeRun(const Remains& remains, const std::filesystem::path& file) {
-  EventLogReader events(file);
+void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& file) {
+  log::EventLogReader events(file);
   std::int64_t count = 0;
   while (events.Next()) ++count;
   Demand(count == remains.head.events && events.torn().empty(), "what is kept is whole events");
-  RunLogReader run(file);
+  log::RunLogReader run(file);
   std::int64_t steps = 0;
   try {
     while (run.Next() != nullptr) ++steps;
@@ -47,24 +48,26 @@ void DemandWholeRun(const Remains& remains, const std::filesystem::path& file) {
 }
 
 /// Checks the messages that the recorder would send again.
-void DemandAllMessages(const LogFront& front, const Remains& remains,
+void DemandAllMessages(const log::LogFront& front, const log::Remains& remains,
                        const std::filesystem::path& file, std::int64_t first) {
-  History history(file, front, remains);
+  recorder::History history(file, front, remains);
   Demand(history.steps() == remains.steps, "steps are counted");
   for (std::int64_t step = first; step < remains.steps; ++step) {
     std::size_t messages = 0;
-    history.ForEachMessage(step, [&](std::string_view channel, Bytes bytes) {
-      Demand(channel == kStepNames[messages++], "each channel has a message of each step");
-      Demand(ReadInt64(bytes, kRunIdOffset) == front.run_id, "what is handed out is of the run");
-      Demand(ReadInt64(bytes, kStepOffset) == step, "what is handed out is of the step");
+    history.ForEachMessage(step, [&](std::string_view channel, runtime::Bytes bytes) {
+      Demand(channel == log::kStepNames[messages++], "each channel has a message of each step");
+      Demand(runtime::ReadInt64(bytes, runtime::kRunIdOffset) == front.run_id,
+             "what is handed out is of the run");
+      Demand(runtime::ReadInt64(bytes, runtime::kStepOffset) == step,
+             "what is handed out is of the step");
     });
-    Demand(messages == kStepChannels, "each step has all its messages");
+    Demand(messages == log::kStepChannels, "each step has all its messages");
   }
 }
 
 /// If only the end of the log was read, the part before it may hold anything: messages or a
 /// refusal.
-void DemandMessagesOrRefusal(const LogFront& front, const Remains& remains,
+void DemandMessagesOrRefusal(const log::LogFront& front, const log::Remains& remains,
                              const std::filesystem::path& file) {
   const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
   for (std::int64_t step = first; step < remains.steps; ++step) {
@@ -76,33 +79,33 @@ void DemandMessagesOrRefusal(const LogFront& front, const Remains& remains,
   }
 }
 
-void DemandGoesOn(const LogFront& front, const Remains& remains, const std::filesystem::path& file,
-                  std::int64_t tail) {
+void DemandGoesOn(const log::LogFront& front, const log::Remains& remains,
+                  const std::filesystem::path& file, std::int64_t tail) {
   {
-    EventLogWriter log(file, remains.head);
+    log::EventLogWriter log(file, remains.head);
     ForEachStepChannel([&]<class M>(std::size_t channel) {
       M message = Sample<M>(remains.steps);
       message.header.run_id = front.run_id;
       log.Write(kChannels[channel].name, 0, Encoded(message));
     });
   }
-  const Remains longer = ReadRemains(file, front, {}, tail);
+  const log::Remains longer = log::ReadRemains(file, front, {}, tail);
   Demand(longer.steps == remains.steps + 1 && longer.last == remains.head.bytes,
          "another step can be added, and those before it stay where they are");
 }
 
-void DemandUsefulRemains(Bytes bytes) {
+void DemandUsefulRemains(runtime::Bytes bytes) {
   const MemoryFile file(bytes);
   const auto size = static_cast<std::int64_t>(bytes.size());
   try {
-    const LogFront front = ReadFront(file.path());
+    const log::LogFront front = log::ReadFront(file.path());
     Demand(front.head.bytes <= size, "the scenario is in the file");
     if (!front.parts.Complete()) return;
-    const Remains all = ReadRemains(file.path(), front, {}, size);
-    const Remains end = ReadRemains(file.path(), front, {}, kShortTail);
+    const log::Remains all = log::ReadRemains(file.path(), front, {}, size);
+    const log::Remains end = log::ReadRemains(file.path(), front, {}, kShortTail);
     DemandWhereabouts(front, all, size);
     DemandWhereabouts(front, end, size);
-    OddEnd(file.path(), front, end);
+    log::OddEnd(file.path(), front, end);
     if (front.realtime) return;
     const MemoryFile kept(bytes.first(static_cast<std::size_t>(all.head.bytes)));
     DemandWholeRun(all, kept.path());

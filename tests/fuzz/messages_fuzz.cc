@@ -11,45 +11,48 @@ namespace fogline::fuzz {
 namespace {
 
 template <class M>
-void DemandOneMeaning(Bytes bytes) {
+void DemandOneMeaning(runtime::Bytes bytes) {
   M message{};
-  const bool whole = Decode(bytes, message);
-  const bool finite = FirstNonFiniteField(message).empty();
-  Arrival arrival;
+  const bool whole = runtime::Decode(bytes, message);
+  const bool finite = runtime::FirstNonFiniteField(message).empty();
+  runtime::Arrival arrival;
   arrival.Renew(bytes, {});
   Demand((arrival.As<M>() != nullptr) == (whole && finite),
          "a reader is given what is whole and finite, and nothing else");
-  const RefusalCounter expected = bytes.size() < kHeaderEnd             ? &status_t::malformed
-                                  : ReadInt64(bytes, 0) != M::getHash() ? &status_t::wrong_type
-                                  : !whole                              ? &status_t::malformed
-                                  : !finite                             ? &status_t::not_finite
-                                                                        : nullptr;
+  const runtime::RefusalCounter expected = bytes.size() < runtime::kHeaderEnd ? &status_t::malformed
+                                           : runtime::ReadInt64(bytes, 0) != M::getHash()
+                                               ? &status_t::wrong_type
+                                           : !whole  ? &status_t::malformed
+                                           : !finite ? &status_t::not_finite
+                                                     : nullptr;
   Demand(arrival.Wrong<M>() == expected, "what is refused is refused for what is wrong with it");
   if (!whole) return;
   Demand(std::ranges::equal(Encoded(message), bytes), "what decodes encodes to the same bytes");
   M used = Sample<M>(1);
-  Demand(Decode(bytes, used) && std::ranges::equal(Encoded(used), bytes),
+  Demand(runtime::Decode(bytes, used) && std::ranges::equal(Encoded(used), bytes),
          "nothing is left of an earlier message");
-  Demand(!Decode(bytes.first(bytes.size() - 1), used), "a message without its end is none");
+  Demand(!runtime::Decode(bytes.first(bytes.size() - 1), used),
+         "a message without its end is none");
   Input longer(bytes.begin(), bytes.end());
   longer.push_back(0);
-  Demand(!Decode(longer, used), "a message with something behind it is none");
+  Demand(!runtime::Decode(longer, used), "a message with something behind it is none");
   if (finite) Took();
 }
 
 template <class M>
-void DemandNoOther(Bytes bytes) {
+void DemandNoOther(runtime::Bytes bytes) {
   M message{};
-  Demand(!Decode(bytes, message), "a message is of one type only");
+  Demand(!runtime::Decode(bytes, message), "a message is of one type only");
 }
 
 template <std::size_t... I>
-void TryAll(std::size_t channel, Bytes bytes, std::index_sequence<I...>) {
+void TryAll(std::size_t channel, runtime::Bytes bytes, std::index_sequence<I...>) {
   (
       [&] {
         using M = typename std::tuple_element_t<I, decltype(kGraph)>::Message;
         if (channel == I) DemandOneMeaning<M>(bytes);
-        const bool of_another = bytes.size() >= kHeaderEnd && ReadInt64(bytes, 0) != M::getHash();
+        const bool of_another =
+            bytes.size() >= runtime::kHeaderEnd && runtime::ReadInt64(bytes, 0) != M::getHash();
         if (of_another) DemandNoOther<M>(bytes);
       }(),
       ...);

@@ -31,24 +31,24 @@ enum Action : std::uint8_t {
 /// Checks the messages of the roles as other processes receive them.
 class Listener {
  public:
-  explicit Listener(Bus& bus) {
+  explicit Listener(runtime::Bus& bus) {
     Listen<truth_t>(bus);
     Listen<ego_t>(bus);
     Listen<driver_command_t>(bus);
-    bus.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) { OnStatus(bytes); });
+    bus.Subscribe(ChannelOf<status_t>().name, [this](runtime::Bytes bytes) { OnStatus(bytes); });
   }
 
   /// The listener does not judge messages with these bytes: the fuzzer has sent them.
-  void Ignore(Bytes bytes) { foreign_.assign(bytes.begin(), bytes.end()); }
+  void Ignore(runtime::Bytes bytes) { foreign_.assign(bytes.begin(), bytes.end()); }
   std::size_t steps() const { return said_.size(); }
 
  private:
   template <class M>
-  void Listen(Bus& bus) {
-    bus.Subscribe(ChannelOf<M>().name, [this](Bytes bytes) {
+  void Listen(runtime::Bus& bus) {
+    bus.Subscribe(ChannelOf<M>().name, [this](runtime::Bytes bytes) {
       if (std::ranges::equal(bytes, foreign_)) return;
       M message{};
-      Demand(Examine(bytes, message) == nullptr, "a role says what is sound");
+      Demand(runtime::Examine(bytes, message) == nullptr, "a role says what is sound");
       const auto [said, fresh] =
           said_.try_emplace({IndexOf<M>(), message.header.step}, bytes.begin(), bytes.end());
       Demand(fresh || std::ranges::equal(said->second, bytes),
@@ -56,11 +56,11 @@ class Listener {
     });
   }
 
-  void OnStatus(Bytes bytes) {
+  void OnStatus(runtime::Bytes bytes) {
     if (std::ranges::equal(bytes, foreign_)) return;
     status_t status{};
-    Demand(Examine(bytes, status) == nullptr, "a STATUS is sound");
-    for (const RefusalKind& kind : kRefusals) {
+    Demand(runtime::Examine(bytes, status) == nullptr, "a STATUS is sound");
+    for (const runtime::RefusalKind& kind : runtime::kRefusals) {
       Demand(status.*kind.counter >= 0, "fewer than none are not refused");
     }
     Demand(status.header.step >= -1, "no step is before the first");
@@ -91,11 +91,11 @@ class Run {
         return Say(follower);
       }
       case kPoll:
-        for (Node* node : nodes_) node->Poll(Clock::now());
+        for (runtime::Node* node : nodes_) node->Poll(Clock::now());
         return bus_.Drain();
       default: {
         const std::size_t channel = cutter.Byte() % kNumChannels;
-        const Bytes datagram = cutter.Datagram();
+        const runtime::Bytes datagram = cutter.Datagram();
         listener_.Ignore(datagram);
         return Publish(kChannels[channel].name, datagram);
       }
@@ -103,7 +103,7 @@ class Run {
   }
 
   void DemandSound() const {
-    for (const Node* node : nodes_) {
+    for (const runtime::Node* node : nodes_) {
       Demand(node->left() || node->error().empty(), "who fails leaves");
     }
     if (listener_.steps() > 0) Took();
@@ -125,18 +125,18 @@ class Run {
     run.sequence = ++sequence_;
     Say(run);
   }
-  void Publish(std::string_view channel, Bytes bytes) {
+  void Publish(std::string_view channel, runtime::Bytes bytes) {
     bus_.Publish(channel, bytes);
     bus_.Drain();
   }
 
-  Bus bus_{"memq://"};
+  runtime::Bus bus_{"memq://"};
   Listener listener_{bus_};
   MemoryFile log_;
-  StepNode<World, FailsafeWorld> world_{bus_, {}};
-  StepNode<Driver> driver_{bus_, {}};
-  Recorder recorder_{bus_, {}, log_.path()};
-  std::array<Node*, 3> nodes_{&world_, &driver_, &recorder_};
+  runtime::StepNode<world::World, world::FailsafeWorld> world_{bus_, {}};
+  runtime::StepNode<driver::Driver> driver_{bus_, {}};
+  recorder::Recorder recorder_{bus_, {}, log_.path()};
+  std::array<runtime::Node*, 3> nodes_{&world_, &driver_, &recorder_};
   std::int64_t step_ = 0;
   std::int64_t sequence_ = 0;
   bool realtime_ = false;  // true from the first kAnnounceRealtime on

@@ -189,7 +189,7 @@ std::vector<fs::path> FilesIn(const fs::path& path) {
 }
 
 std::string finding_path;
-Bytes running;
+runtime::Bytes running;
 
 void SaveFinding() {
   std::ofstream out(finding_path, std::ios::binary);

@@ -14,14 +14,14 @@ namespace {
 struct Reading {
   std::vector<std::array<Input, kNumChannels>> steps;
   bool refused = false;
-  RunLog run;
+  log::RunLog run;
 };
 
 Reading Read(const std::filesystem::path& file) {
   Reading reading;
-  RunLogReader reader(file);
+  log::RunLogReader reader(file);
   try {
-    while (const StepMessages* messages = reader.Next()) {
+    while (const log::StepMessages* messages = reader.Next()) {
       auto& step = reading.steps.emplace_back();
       for (std::size_t i = 0; i < kNumChannels; ++i) {
         step[i].assign((*messages)[i].begin(), (*messages)[i].end());
@@ -44,8 +44,9 @@ void DemandWholeSteps(const Reading& reading) {
       const bool hole = expected && message.empty() && reading.run.realtime;
       Demand(hole || message.empty() != expected, "a step has a message of each of its channels");
       if (message.empty()) continue;
-      Demand(ReadInt64(message, kRunIdOffset) == reading.run.run_id, "all is of one run");
-      Demand(ReadInt64(message, kStepOffset) == static_cast<std::int64_t>(step),
+      Demand(runtime::ReadInt64(message, runtime::kRunIdOffset) == reading.run.run_id,
+             "all is of one run");
+      Demand(runtime::ReadInt64(message, runtime::kStepOffset) == static_cast<std::int64_t>(step),
              "steps come once each, in order");
     }
   }
@@ -55,11 +56,11 @@ void DemandWholeSteps(const Reading& reading) {
 
 /// Writes the run as the recorder would have written it.
 void Rewrite(const Reading& reading, const std::filesystem::path& file) {
-  EventLogWriter log(file);
-  const std::vector<std::string> parts = SplitScenario(reading.run.scenario_text);
+  log::EventLogWriter log(file);
+  const std::vector<std::string> parts = runtime::SplitScenario(reading.run.scenario_text);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const run_t run =
-        MakeRunPart(reading.run.run_id, run_t::PREPARE, 0, reading.run.scenario_hash, parts, i);
+    const run_t run = runtime::MakeRunPart(reading.run.run_id, run_t::PREPARE, 0,
+                                           reading.run.scenario_hash, parts, i);
     log.Write(ChannelOf<run_t>().name, 0, Encoded(run));
   }
   for (const auto& step : reading.steps) {
@@ -69,7 +70,7 @@ void Rewrite(const Reading& reading, const std::filesystem::path& file) {
   }
 }
 
-void DemandRunOrRefusal(Bytes bytes) {
+void DemandRunOrRefusal(runtime::Bytes bytes) {
   const MemoryFile file(bytes);
   try {
     const Reading reading = Read(file.path());
@@ -100,11 +101,11 @@ Input WithLogSeal(const Input& log) {
   seal.steps = reading.run.steps;
   seal.complete = 1;
   seal.scenario_hash = reading.run.scenario_hash;
-  seal.file_hash = HashOf({reinterpret_cast<const char*>(log.data()), log.size()});
+  seal.file_hash = runtime::HashOf({reinterpret_cast<const char*>(log.data()), log.size()});
   seal.role = {"world"};
   seal.build_id = {4711};
   seal.num_roles = 1;
-  SealLog(file.path(), reading.run.events, seal, nullptr);
+  log::SealLog(file.path(), reading.run.events, seal, nullptr);
   return file.Content();
 }
 
@@ -114,28 +115,28 @@ std::vector<Input> Seeds() {
   const Input log = SampleLog();
   const Input torn(log.begin(), log.end() - 9);
   const MemoryFile file(log);
-  EventLogReader reader(file.path());
-  std::vector<Event> events;
+  log::EventLogReader reader(file.path());
+  std::vector<log::Event> events;
   while (const auto event = reader.Next()) events.push_back(*event);
 
   // The log of signed traffic as lcm-logger writes it.
   const MemoryFile sealed;
-  MessageSigner seal(SigningKey({}), {});
+  runtime::MessageSigner seal(runtime::SigningKey({}), {});
   {
-    EventLogWriter writer(sealed.path());
-    for (const Event& event : events) {
+    log::EventLogWriter writer(sealed.path());
+    for (const log::Event& event : events) {
       writer.Write(event.channel, event.utime, seal.Sign(event.channel, event.data));
     }
   }
   // The same events in reverse order. The scenario's parts still come first.
   const auto steps = std::ranges::find_if(
-      events, [](const Event& event) { return event.channel != ChannelOf<run_t>().name; });
+      events, [](const log::Event& event) { return event.channel != ChannelOf<run_t>().name; });
   std::reverse(steps, events.end());
   std::reverse(events.begin(), steps);
   const MemoryFile reversed;
   {
-    EventLogWriter writer(reversed.path());
-    for (const Event& event : events) writer.Write(event.channel, event.utime, event.data);
+    log::EventLogWriter writer(reversed.path());
+    for (const log::Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
   return {log, torn, sealed.Content(), reversed.Content(), WithLogSeal(log)};
 }

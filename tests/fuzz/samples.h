@@ -38,7 +38,7 @@ M Sample(std::int64_t step) {
     message.host = "lab2";
     message.state = status_t::RUNNING;
     message.sequence = 1 + step;
-    message.scenario_hash = HashOf(kScenarioText);
+    message.scenario_hash = runtime::HashOf(kScenarioText);
     message.type_fingerprint = TypeFingerprint();
     message.waiting_for = "RADAR";
   } else if constexpr (std::is_same_v<M, resend_t>) {
@@ -46,8 +46,8 @@ M Sample(std::int64_t step) {
     message.count = 1;
     message.requester = "radar";
   } else if constexpr (std::is_same_v<M, run_t>) {
-    message = MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenarioText),
-                          {std::string(kScenarioText)}, 0);
+    message = runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenarioText),
+                                   {std::string(kScenarioText)}, 0);
   }
   return message;
 }
@@ -55,7 +55,7 @@ M Sample(std::int64_t step) {
 template <class M>
 Input Encoded(const M& message) {
   Input bytes;
-  Encode(message, bytes);
+  runtime::Encode(message, bytes);
   return bytes;
 }
 
@@ -67,7 +67,8 @@ inline std::vector<run_t> RunParts(std::string_view text, std::size_t part_size)
   }
   std::vector<run_t> messages;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    messages.push_back(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(text), parts, i));
+    messages.push_back(
+        runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(text), parts, i));
   }
   return messages;
 }
@@ -76,7 +77,7 @@ inline std::vector<run_t> RunParts(std::string_view text, std::size_t part_size)
 inline Input SampleLog() {
   const MemoryFile file;
   {
-    EventLogWriter log(file.path());
+    log::EventLogWriter log(file.path());
     for (const run_t& run : RunParts(kScenarioText, 10)) {
       log.Write(ChannelOf<run_t>().name, 0, Encoded(run));
     }

@@ -13,7 +13,7 @@ struct Model {
   std::map<std::int64_t, std::string> parts;
 
   void Add(const run_t& run) {
-    if (run.num_parts < 1 || run.num_parts > ScenarioParts::kMaxParts) return;
+    if (run.num_parts < 1 || run.num_parts > runtime::ScenarioParts::kMaxParts) return;
     if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return;
     if (num_parts == 0) {
       num_parts = run.num_parts;
@@ -28,7 +28,7 @@ struct Model {
   }
 };
 
-void DemandWholeText(const Model& model, const ScenarioParts& parts) {
+void DemandWholeText(const Model& model, const runtime::ScenarioParts& parts) {
   Demand(parts.Complete() == model.Complete(), "it is complete when every part is there");
   if (!parts.Complete()) {
     const std::int64_t missing = parts.FirstMissing();
@@ -38,7 +38,8 @@ void DemandWholeText(const Model& model, const ScenarioParts& parts) {
   std::string text;
   for (const auto& [number, part] : model.parts) text += part;
   Demand(parts.Text() == text, "the text is the first that came of each part, in order");
-  Demand(parts.HashHolds() == (HashOf(text) == model.hash), "another text has another hash");
+  Demand(parts.HashHolds() == (runtime::HashOf(text) == model.hash),
+         "another text has another hash");
   if (parts.HashHolds()) Took();
 }
 
@@ -60,10 +61,10 @@ std::vector<Input> Seeds() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fogline;
   fuzz::Model model;
-  ScenarioParts parts;
+  runtime::ScenarioParts parts;
   for (fuzz::Cutter cutter({data, size}); !cutter.empty();) {
     run_t run{};
-    if (!Decode(cutter.Datagram(), run)) continue;
+    if (!runtime::Decode(cutter.Datagram(), run)) continue;
     model.Add(run);
     static_cast<void>(parts.Add(run));
   }

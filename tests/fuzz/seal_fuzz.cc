@@ -9,28 +9,30 @@
 namespace fogline::fuzz {
 namespace {
 
-SigningKey Key(std::uint8_t byte) {
-  SigningKey::Secret secret{};
+runtime::SigningKey Key(std::uint8_t byte) {
+  runtime::SigningKey::Secret secret{};
   secret.fill(byte);
-  return SigningKey(secret);
+  return runtime::SigningKey(secret);
 }
 
-bool IsGood(const MessageSigner& seal, std::string_view channel, Bytes message) {
-  return seal.Open(channel, message).verdict == MessageSigner::Verdict::kGood;
+bool IsGood(const runtime::MessageSigner& seal, std::string_view channel, runtime::Bytes message) {
+  return seal.Open(channel, message).verdict == runtime::MessageSigner::Verdict::kGood;
 }
 
 /// A message with a good verdict was signed with the key, by a role that may publish it.
-void DemandUnforgeable(const MessageSigner& seal, const ChannelInfo& channel, Bytes message) {
-  const MessageSigner::Opened opened = seal.Open(channel.name, message);
-  Demand((opened.verdict == MessageSigner::Verdict::kNotSigned) == !LooksSigned(message),
+void DemandUnforgeable(const runtime::MessageSigner& seal, const ChannelInfo& channel,
+                       runtime::Bytes message) {
+  const runtime::MessageSigner::Opened opened = seal.Open(channel.name, message);
+  Demand((opened.verdict == runtime::MessageSigner::Verdict::kNotSigned) ==
+             !runtime::LooksSigned(message),
          "what looks signed is good or badly signed");
-  if (opened.verdict != MessageSigner::Verdict::kGood) {
+  if (opened.verdict != runtime::MessageSigner::Verdict::kGood) {
     Demand(opened.payload.empty(), "what is not good is not given to anybody");
     return;
   }
   bool signed_by_a_role = false;
   for (int role = 0; role <= static_cast<int>(Role::kRunner); ++role) {
-    MessageSigner signer(Key(1), static_cast<Role>(role));
+    runtime::MessageSigner signer(Key(1), static_cast<Role>(role));
     signed_by_a_role |= std::ranges::equal(signer.Sign(channel.name, opened.payload), message);
   }
   Demand(signed_by_a_role, "what is good was signed");
@@ -38,17 +40,18 @@ void DemandUnforgeable(const MessageSigner& seal, const ChannelInfo& channel, By
 }
 
 /// A signed message is good only with its own channel, its own key and its own bytes.
-void DemandBinding(MessageSigner& seal, std::size_t place, Cutter& cutter, Bytes payload) {
+void DemandBinding(runtime::MessageSigner& seal, std::size_t place, Cutter& cutter,
+                   runtime::Bytes payload) {
   const ChannelInfo& channel = kChannels[place];
-  const Bytes sent = seal.Sign(channel.name, payload);
+  const runtime::Bytes sent = seal.Sign(channel.name, payload);
   Input message(sent.begin(), sent.end());
-  const MessageSigner::Opened opened = seal.Open(channel.name, message);
-  Demand(opened.verdict == MessageSigner::Verdict::kGood &&
+  const runtime::MessageSigner::Opened opened = seal.Open(channel.name, message);
+  Demand(opened.verdict == runtime::MessageSigner::Verdict::kGood &&
              std::ranges::equal(opened.payload, payload),
          "what is signed is good, and is what it was");
   Demand(!IsGood(seal, kChannels[(place + 1) % kNumChannels].name, message),
          "it is not good for another channel");
-  Demand(!IsGood(MessageSigner(Key(2), {}), channel.name, message),
+  Demand(!IsGood(runtime::MessageSigner(Key(2), {}), channel.name, message),
          "it is not good for another key");
   std::size_t at = cutter.Byte();
   at = at << 8 | cutter.Byte();
@@ -57,11 +60,11 @@ void DemandBinding(MessageSigner& seal, std::size_t place, Cutter& cutter, Bytes
   Demand(!IsGood(seal, channel.name, message), "altered it is not good");
 }
 
-void DemandNoOthersMessages(std::size_t place, std::uint8_t role, Bytes payload) {
+void DemandNoOthersMessages(std::size_t place, std::uint8_t role, runtime::Bytes payload) {
   const ChannelInfo& channel = kChannels[place];
   const auto sender = static_cast<Role>(role % (static_cast<int>(Role::kRunner) + 1));
-  MessageSigner seal(Key(1), sender);
-  const Bytes sent = seal.Sign(channel.name, payload);
+  runtime::MessageSigner seal(Key(1), sender);
+  const runtime::Bytes sent = seal.Sign(channel.name, payload);
   if (channel.pace != Pace::kStep) return;
   Demand(IsGood(seal, channel.name, sent) == (sender == channel.from || sender == Role::kRecorder),
          "a step's message is good from its producer and the recorder");
@@ -71,13 +74,13 @@ void DemandNoOthersMessages(std::size_t place, std::uint8_t role, Bytes payload)
 
 std::vector<Input> Seeds() {
   std::vector<Input> seeds;
-  MessageSigner seal(Key(1), {});
+  runtime::MessageSigner seal(Key(1), {});
   const auto add = [&](std::size_t channel, const Input& message) {
     Input seed{static_cast<std::uint8_t>(channel), 1, 0, 40, 1};
     seed.insert(seed.end(), message.begin(), message.end());
     seeds.push_back(seed);
     seed.resize(5);
-    const Bytes sent = seal.Sign(kChannels[channel].name, message);
+    const runtime::Bytes sent = seal.Sign(kChannels[channel].name, message);
     seed.insert(seed.end(), sent.begin(), sent.end());
     seeds.push_back(seed);
   };
@@ -96,8 +99,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Cutter head({data, kHead});
   const std::size_t channel = head.Byte() % kNumChannels;
   const std::uint8_t role = head.Byte();
-  const Bytes message{data + kHead, size - kHead};
-  MessageSigner seal(fuzz::Key(1), {});
+  const runtime::Bytes message{data + kHead, size - kHead};
+  runtime::MessageSigner seal(fuzz::Key(1), {});
   fuzz::DemandUnforgeable(seal, kChannels[channel], message);
   fuzz::DemandBinding(seal, channel, head, message);
   fuzz::DemandNoOthersMessages(channel, role, message);

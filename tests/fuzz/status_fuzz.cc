@@ -11,23 +11,25 @@ namespace {
 constexpr std::size_t kMaxDatagrams = 64;
 constexpr Duration kLongAfter = milliseconds(60'000);
 
-void DemandPrintable(const RunCoordinator& coordinator) {
+void DemandPrintable(const runtime::RunCoordinator& coordinator) {
   Demand(Printable(coordinator.error()), "an error can be printed");
-  Demand((coordinator.phase() == RunCoordinator::Phase::kFailed) == !coordinator.error().empty(),
+  Demand((coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) ==
+             !coordinator.error().empty(),
          "who fails says why");
   Demand(Printable(coordinator.NotReady()), "who is not ready can be printed");
-  const ForeignPeers& foreign_peers = coordinator.foreign_peers();
-  Demand(foreign_peers.known().size() <= ForeignPeers::kMax, "strangers fill no memory");
+  const runtime::ForeignPeers& foreign_peers = coordinator.foreign_peers();
+  Demand(foreign_peers.known().size() <= runtime::ForeignPeers::kMax, "strangers fill no memory");
   const std::string text = foreign_peers.Text();
   Demand(Printable(text), "strangers can be printed");
-  Demand(static_cast<std::size_t>(std::ranges::count(text, '\n')) <= ForeignPeers::kMax,
+  Demand(static_cast<std::size_t>(std::ranges::count(text, '\n')) <= runtime::ForeignPeers::kMax,
          "a stranger takes one line");
   static_cast<void>(coordinator.Refused());
 }
 
-void DemandSoundRunner(Bytes input) {
-  Bus bus("memq://");
-  RunCoordinator coordinator(bus, {.run_id = kRunId, .scenario_text = std::string(kScenarioText)});
+void DemandSoundRunner(runtime::Bytes input) {
+  runtime::Bus bus("memq://");
+  runtime::RunCoordinator coordinator(
+      bus, {.run_id = kRunId, .scenario_text = std::string(kScenarioText)});
   Cutter cutter(input);
   for (std::size_t i = 0; i < kMaxDatagrams && !cutter.empty(); ++i) {
     const bool resend = cutter.Byte() % 2 == 1;

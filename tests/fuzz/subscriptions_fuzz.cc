@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxSubscriptions = 8;
 constexpr std::size_t kMaxActions = 16;
-constexpr std::size_t kMaxPattern = 1024;  // as in tcpq::Limits
+constexpr std::size_t kMaxPattern = 1024;  // as in runtime::tcpq::Limits
 constexpr std::size_t kMaxChannel = 63;
 
 bool IsPlain(std::string_view pattern) {
@@ -20,7 +20,7 @@ bool IsPlain(std::string_view pattern) {
 }
 
 /// Whether a subscription matches, or nothing if the answer would take too long.
-std::optional<bool> Ask(Subscriptions& subscriptions, std::string_view channel) {
+std::optional<bool> Ask(relay::Subscriptions& subscriptions, std::string_view channel) {
   try {
     return subscriptions.Match(channel, TimePoint{});
   } catch (const std::runtime_error&) {
@@ -51,7 +51,7 @@ class Client {
   void AskFor(std::string_view channel) {
     const std::optional<bool> answer = Ask(subscriptions_, channel);
     if (!answer) return;
-    Subscriptions fresh(kMaxSubscriptions);
+    relay::Subscriptions fresh(kMaxSubscriptions);
     for (const std::string& pattern : patterns_) fresh.Add(pattern);
     Demand(Ask(fresh, channel) == answer, "an answer depends on the subscriptions in force only");
     Demand(Ask(subscriptions_, channel) == answer, "asked again, the same");
@@ -63,11 +63,11 @@ class Client {
   }
 
  private:
-  Subscriptions subscriptions_{kMaxSubscriptions};
+  relay::Subscriptions subscriptions_{kMaxSubscriptions};
   std::vector<std::string> patterns_;
 };
 
-void Act(std::uint8_t action, Bytes bytes, Client& client) {
+void Act(std::uint8_t action, runtime::Bytes bytes, Client& client) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   text = text.substr(0, std::min(text.find('\0'), kMaxPattern));  // names in frames have no zeros
   switch (action % 4) {

@@ -9,7 +9,7 @@
 namespace fogline::fuzz {
 namespace {
 
-constexpr tcpq::Limits kLimits{.channel = 63, .pattern = 100, .payload = 200};
+constexpr runtime::tcpq::Limits kLimits{.channel = 63, .pattern = 100, .payload = 200};
 // Type, length, channel, length, payload.
 constexpr std::size_t kLargestFrame = 4 + 4 + kLimits.channel + 4 + kLimits.payload;
 constexpr std::size_t kHello = 8;
@@ -22,17 +22,18 @@ struct Reading {
   friend bool operator==(const Reading&, const Reading&) = default;
 };
 
-void DemandFaithful(const tcpq::Frame& frame) {
+void DemandFaithful(const runtime::tcpq::Frame& frame) {
   Input again;
-  tcpq::AppendFrame(frame.type, frame.name, frame.payload, again);
+  runtime::tcpq::AppendFrame(frame.type, frame.name, frame.payload, again);
   Demand(std::ranges::equal(again, frame.wire), "a frame says what came");
   Demand(frame.wire.size() <= kLargestFrame, "no frame is larger than the limits");
 }
 
 /// @param piece gives the number of bytes that arrive next
-Reading Read(std::uint32_t magic, Bytes stream, const std::function<std::size_t()>& piece) {
+Reading Read(std::uint32_t magic, runtime::Bytes stream,
+             const std::function<std::size_t()>& piece) {
   Reading reading;
-  tcpq::FrameParser parser(magic, kLimits);
+  runtime::tcpq::FrameParser parser(magic, kLimits);
   std::size_t held = 0;
   while (!stream.empty()) {
     const std::size_t size = std::min(piece(), stream.size());
@@ -54,15 +55,15 @@ Reading Read(std::uint32_t magic, Bytes stream, const std::function<std::size_t(
   Demand(Printable(reading.error), "an error can be printed");
   if (!reading.error.empty()) {
     Input sound;
-    tcpq::AppendHello(magic, sound);
-    tcpq::AppendFrame(tcpq::FrameType::kSubscribe, ".*", {}, sound);
+    runtime::tcpq::AppendHello(magic, sound);
+    runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kSubscribe, ".*", {}, sound);
     parser.Append(sound);
     Demand(!parser.Next() && parser.error() == reading.error, "there is no way back");
   }
   return reading;
 }
 
-void DemandSameInAnyPieces(std::uint32_t magic, Bytes stream) {
+void DemandSameInAnyPieces(std::uint32_t magic, runtime::Bytes stream) {
   const Reading whole = Read(magic, stream, [&stream] { return stream.size(); });
   Demand(Read(magic, stream, [] { return std::size_t{1}; }) == whole, "bytes may come one by one");
   std::size_t at = 0;
@@ -76,14 +77,14 @@ void DemandSameInAnyPieces(std::uint32_t magic, Bytes stream) {
 std::vector<Input> Seeds() {
   const Input truth = Encoded(Sample<ego_t>(1));
   Input client{0};
-  tcpq::AppendHello(tcpq::kClientMagic, client);
-  tcpq::AppendFrame(tcpq::FrameType::kSubscribe, "HOST_.*", {}, client);
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, "HOST_EGO", truth, client);
-  tcpq::AppendFrame(tcpq::FrameType::kUnsubscribe, "HOST_.*", {}, client);
+  runtime::tcpq::AppendHello(runtime::tcpq::kClientMagic, client);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kSubscribe, "HOST_.*", {}, client);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kPublish, "HOST_EGO", truth, client);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kUnsubscribe, "HOST_.*", {}, client);
   Input relay{1};
-  tcpq::AppendHello(tcpq::kRelayMagic, relay);
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, "HOST_EGO", truth, relay);
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, "", {}, relay);
+  runtime::tcpq::AppendHello(runtime::tcpq::kRelayMagic, relay);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kPublish, "HOST_EGO", truth, relay);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kPublish, "", {}, relay);
   return {client, relay};
 }
 
@@ -92,7 +93,8 @@ std::vector<Input> Seeds() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fogline;
   if (size == 0) return 0;
-  fuzz::DemandSameInAnyPieces(data[0] % 2 == 1 ? tcpq::kRelayMagic : tcpq::kClientMagic,
-                              {data + 1, size - 1});
+  fuzz::DemandSameInAnyPieces(
+      data[0] % 2 == 1 ? runtime::tcpq::kRelayMagic : runtime::tcpq::kClientMagic,
+      {data + 1, size - 1});
   return 0;
 }

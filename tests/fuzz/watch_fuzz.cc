@@ -14,27 +14,27 @@ constexpr std::size_t kMaxDatagrams = 256;
 constexpr std::size_t kMaxChannel = 63;
 constexpr Duration kBetween = milliseconds(7);
 
-std::string_view Text(Bytes bytes) {
+std::string_view Text(runtime::Bytes bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text.substr(0, std::min(text.find('\0'), kMaxChannel));
 }
 
-void DemandShowable(const TrafficView& view) {
-  for (const Line& line : TrafficLines(view, "udpm://239.255.76.67:7667")) {
+void DemandShowable(const watch::TrafficView& view) {
+  for (const watch::Line& line : watch::TrafficLines(view, "udpm://239.255.76.67:7667")) {
     Demand(Printable(line.text) && line.text.find('\n') == std::string::npos,
            "a line can be written to a terminal");
   }
-  const std::string text = TrafficJson(view, "udpm://239.255.76.67:7667")
+  const std::string text = watch::TrafficJson(view, "udpm://239.255.76.67:7667")
                                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   Demand(nlohmann::json::accept(text), "what is said in JSON is JSON");
 }
 
-void DemandBounded(const TrafficView& view) {
-  Demand(view.runs.size() <= TrafficStatistics::kMaxRuns, "runs fill no memory");
-  Demand(view.others.size() <= TrafficStatistics::kMaxOthers, "channels fill no memory");
-  for (const RunView& run : view.runs) {
-    Demand(run.roles.size() <= TrafficStatistics::kMaxRoles, "roles fill no memory");
-    for (const ChannelView& channel : run.channels) {
+void DemandBounded(const watch::TrafficView& view) {
+  Demand(view.runs.size() <= watch::TrafficStatistics::kMaxRuns, "runs fill no memory");
+  Demand(view.others.size() <= watch::TrafficStatistics::kMaxOthers, "channels fill no memory");
+  for (const watch::RunView& run : view.runs) {
+    Demand(run.roles.size() <= watch::TrafficStatistics::kMaxRoles, "roles fill no memory");
+    for (const watch::ChannelView& channel : run.channels) {
       if (!channel.steps) continue;
       Demand(channel.steps->lost >= 0 && channel.steps->missing >= 0, "less than none is not lost");
       Demand(channel.NumUndecodable() <= channel.arrivals.messages, "each message counts once");
@@ -42,9 +42,9 @@ void DemandBounded(const TrafficView& view) {
   }
 }
 
-void DemandSoundView(Bytes input) {
+void DemandSoundView(runtime::Bytes input) {
   TimePoint now{};
-  TrafficStatistics statistics(now);
+  watch::TrafficStatistics statistics(now);
   Cutter cutter(input);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < kMaxDatagrams && !cutter.empty(); ++i) {
@@ -55,10 +55,10 @@ void DemandSoundView(Bytes input) {
     statistics.Add(name, cutter.Datagram(), now);
     if (place % 16 == 15) DemandShowable(statistics.Observe(now));
   }
-  const TrafficView view = statistics.Observe(now + kBetween);
+  const watch::TrafficView view = statistics.Observe(now + kBetween);
   DemandBounded(view);
   DemandShowable(view);
-  for (const RunView& run : view.runs) taken += run.channels.size() + run.roles.size();
+  for (const watch::RunView& run : view.runs) taken += run.channels.size() + run.roles.size();
   if (taken > 0) Took();
 }
 

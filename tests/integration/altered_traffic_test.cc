@@ -36,20 +36,20 @@ class Bridge {
   }
 
  private:
-  void Carry(Bus& from, Bus& to, const std::string& channel) {
-    from.Subscribe(channel, [this, &to, channel](Bytes bytes) {
+  void Carry(runtime::Bus& from, runtime::Bus& to, const std::string& channel) {
+    from.Subscribe(channel, [this, &to, channel](runtime::Bytes bytes) {
       Payload payload(bytes.begin(), bytes.end());
       lidar_t lidar{};
-      if (Decode(payload, lidar) && lidar.header.step == altered_) {
+      if (runtime::Decode(payload, lidar) && lidar.header.step == altered_) {
         lidar.range_m += 0.25;
-        Encode(lidar, payload);
+        runtime::Encode(lidar, payload);
       }
       to.Publish(channel, payload);
     });
   }
 
-  Bus run_;
-  Bus role_;
+  runtime::Bus run_;
+  runtime::Bus role_;
   std::int64_t altered_ = -1;
 };
 
@@ -69,8 +69,8 @@ class AlteredTrafficTest : public testing::Test {
   }
 
   const ScratchFolder folder_;
-  const std::string url_ = Bus(FreshMulticastUrl()).url();
-  const std::string lidar_url_ = Bus(FreshMulticastUrl()).url();
+  const std::string url_ = runtime::Bus(runtime::FreshMulticastUrl()).url();
+  const std::string lidar_url_ = runtime::Bus(runtime::FreshMulticastUrl()).url();
   Bridge bridge_{url_, lidar_url_};
 };
 

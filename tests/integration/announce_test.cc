@@ -65,10 +65,10 @@ beacon_t Beacon(std::int64_t run_id, const std::string& url) {
   return beacon;
 }
 
-void Say(Bus& bus, const beacon_t& beacon) {
+void Say(runtime::Bus& bus, const beacon_t& beacon) {
   std::vector<std::uint8_t> bytes;
-  Encode(beacon, bytes);
-  bus.Publish(kBeaconChannel, bytes);
+  runtime::Encode(beacon, bytes);
+  bus.Publish(runtime::kBeaconChannel, bytes);
 }
 
 std::string DirectDigest(const std::vector<std::string>& more = {}) {
@@ -271,7 +271,7 @@ TEST(AnnounceTest, ARoleWhoseRunnerWasKilledGoesToTheNextRunThatWaitsForIt) {
 
 TEST(AnnounceTest, ARunSaysThatTheRoleItWaitsForIsInARunWhoseRunnerIsSilent) {
   Meeting meeting;
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   Background driver(meeting.Command("fogline-driver", {"--lcm-url", url}));
   KillRunner(meeting, {"--lcm-url", url});
   const Outcome run = RunCommand(meeting.Run({"--lcm-url", url, "--json", "--external", "driver"}));
@@ -286,12 +286,12 @@ TEST(AnnounceTest, ARunSaysThatTheRoleItWaitsForIsInARunWhoseRunnerIsSilent) {
 
 TEST(AnnounceTest, ARoleComesBackFromARunThatIsNotThere) {
   Meeting meeting;
-  Bus bus(meeting.url());
+  runtime::Bus bus(meeting.url());
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run", kPatience));
   const TimePoint end = Clock::now() + kPatience;
   while (driver.Err().find("joins run 4711 ") == std::string::npos && Clock::now() < end) {
-    Say(bus, Beacon(4711, FreshMulticastUrl()));
+    Say(bus, Beacon(4711, runtime::FreshMulticastUrl()));
     bus.Wait(milliseconds(20));
   }
   ASSERT_TRUE(driver.WaitForErr(" again\n", kPatience)) << driver.Err();
@@ -302,7 +302,7 @@ TEST(AnnounceTest, ARoleComesBackFromARunThatIsNotThere) {
 
 TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   Meeting meeting;
-  Bus bus(meeting.url());
+  runtime::Bus bus(meeting.url());
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run", kPatience));
   Top top(meeting);
@@ -313,7 +313,8 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
       if (i % 3 == 0) beacon.url = "tcpq://192.0.2.1:7700";
       if (i % 5 == 0) beacon.scenario = "\x1b[2J";
       Say(bus, beacon);
-      bus.Publish(kBeaconChannel, std::vector<std::uint8_t>(static_cast<std::size_t>(i), 0xff));
+      bus.Publish(runtime::kBeaconChannel,
+                  std::vector<std::uint8_t>(static_cast<std::size_t>(i), 0xff));
     }
   };
   attack();
@@ -349,13 +350,13 @@ TEST(AnnounceTest, ABeaconIsNeitherInTheLogNorInTheDigest) {
       meeting.Run({"--transport", "udpm", "--json", "--set", "/steps=30", "--pace", "20"}));
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest({"--set", "/steps=30"}));
-  EventLogReader log(meeting.Log());
+  log::EventLogReader log(meeting.Log());
   while (const auto event = log.Next()) {
-    EXPECT_TRUE(IsLogSeal(*event) || std::ranges::any_of(kChannels,
-                                                         [&event](const ChannelInfo& channel) {
-                                                           return channel.name == event->channel &&
-                                                                  channel.Logged();
-                                                         }))
+    EXPECT_TRUE(log::IsLogSeal(*event) ||
+                std::ranges::any_of(kChannels,
+                                    [&event](const ChannelInfo& channel) {
+                                      return channel.name == event->channel && channel.Logged();
+                                    }))
         << event->channel;
   }
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 // Longer than a role waits for its runner.
-constexpr auto kAway = RunnerWatch::kGone + milliseconds(2000);
+constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
 
 /// A run with its driver on another machine.
 struct RunOnTwoMachines {

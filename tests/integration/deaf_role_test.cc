@@ -30,9 +30,10 @@ class DeafRoleTest : public NetworkTest {
   /// The newest step of a channel in the log of the last run.
   std::int64_t NewestStepOf(std::string_view channel) {
     std::int64_t newest = -1;
-    EventLogReader reader(Log());
+    log::EventLogReader reader(Log());
     while (const auto event = reader.Next()) {
-      if (event->channel == channel) newest = std::max(newest, ReadInt64(event->data, kStepOffset));
+      if (event->channel == channel)
+        newest = std::max(newest, runtime::ReadInt64(event->data, runtime::kStepOffset));
     }
     return newest;
   }

@@ -23,7 +23,7 @@ TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
   EXPECT_EQ(seen["runs"].size(), 1U);
   EXPECT_TRUE(seen["announced"].empty()) << "it is where programs listen";
   // AND the command line has precedence over the variable
-  const std::string other = FreshMulticastUrl();
+  const std::string other = runtime::FreshMulticastUrl();
   Background told(meeting.Run({"--pace", "1", "--lcm-url", other}));
   EXPECT_THAT(PlaceOf(told).url, testing::StartsWith(other));
   const Outcome direct =
@@ -114,7 +114,7 @@ TEST(WaitTest, OfATableHasALimitToo) {
 }
 
 TEST(WaitTest, OfARoleHasALimitToo) {
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   const Outcome driver = RunCommand({Program("fogline-driver"), "--lcm-url", url, "--wait", "0.5"});
   EXPECT_EQ(driver.code, 3);
   const std::string full = url + "&recv_buf_size=2097152";
@@ -126,8 +126,9 @@ TEST(WaitTest, OfARoleHasALimitToo) {
 }
 
 TEST(WaitTest, OfARoleThatTheRunnerStartsIsSilent) {
-  const Outcome role = RunCommand({Program("fogline-driver"), "--lcm-url", FreshMulticastUrl(),
-                                   "--run-id", "4711", "--wait", "0.2"});
+  const Outcome role =
+      RunCommand({Program("fogline-driver"), "--lcm-url", runtime::FreshMulticastUrl(), "--run-id",
+                  "4711", "--wait", "0.2"});
   EXPECT_EQ(role.code, 3);
   EXPECT_THAT(role.err, testing::StartsWith("fogline-driver: error: waited 0.2 s for a run on "));
 }
@@ -145,7 +146,7 @@ TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
   std::string lines = LinesOfLogger();
   const std::string port = "udpm://239.255.76.67:7700?ttl=0";
   ASSERT_THAT(lines, HasSubstr(port));
-  lines.replace(lines.find(port), port.size(), FreshMulticastUrl());
+  lines.replace(lines.find(port), port.size(), runtime::FreshMulticastUrl());
   const std::string run = "fogline run scenario/paper.json";
   ASSERT_THAT(lines, HasSubstr(run));
   lines.insert(lines.find(run) + run.size(), " --set /steps=30 --log run.lcm");
@@ -158,7 +159,7 @@ TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
                   "cd " + folder.path().string() + " && PATH=" + ProgramDirectory().string() +
                       ":$PATH\n" + lines + "\nkill -INT $!; wait"});
   // THEN lcm-logger has logged steps of the run; the first is the step at which it began to listen
-  EventLogReader log(folder.File("copy.lcm"));
+  log::EventLogReader log(folder.File("copy.lcm"));
   std::int64_t truths = 0;
   while (const auto event = log.Next()) truths += event->channel == "TRUTH" ? 1 : 0;
   EXPECT_GT(truths, 0) << shell.out << shell.err;

@@ -52,7 +52,7 @@ TEST(DoctorTest, ExaminesThisMachineWithoutFindingAProblemThatTheOtherTestsWould
 }
 
 TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   const Background role({Program("fogline-radar"), "--lcm-url", url, "--run-id", "4711"});
   const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
   const TimePoint end = Clock::now() + kPatience;
@@ -132,7 +132,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const json own = json::parse(here.out);
   EXPECT_EQ(Find(own["findings"], "check", "multicast_route")["level"], "warning");
   EXPECT_THAT(Find(own["findings"], "check", "multicast_route")["remedy"].get<std::string>(),
-              HasSubstr(std::string(kLoopbackRoute)));
+              HasSubstr(std::string(runtime::kLoopbackRoute)));
   EXPECT_EQ(Levels(own, "multicast_loopback"), std::multiset<std::string>{"ok"});
   const Outcome before = Doctor(island, kEverywhere);
   EXPECT_EQ(before.code, 1) << before.err;
@@ -141,9 +141,9 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const json& route = Find(document["findings"], "check", "multicast_route");
   EXPECT_EQ(route["level"], "problem");
   EXPECT_EQ(route["what"], "no route to 239.255.76.67: Network is unreachable");
-  EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(kLoopbackRoute)));
+  EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(runtime::kLoopbackRoute)));
   // WHEN that is done
-  island.Do(std::string(kLoopbackRoute));
+  island.Do(std::string(runtime::kLoopbackRoute));
   const Outcome after = Doctor(island, kHere);
   EXPECT_EQ(after.code, 0) << after.out << after.err;
   const json mended = json::parse(after.out);

@@ -56,10 +56,10 @@ void ForEachField(const M& message, const Visit& visit) {
 
 /// Calls visit.operator()<M>(message) for every message of a step.
 template <class Visit>
-void ForEachMessage(const StepMessages& messages, const Visit& visit) {
+void ForEachMessage(const log::StepMessages& messages, const Visit& visit) {
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     M message{};
-    ASSERT_TRUE(Decode(messages[channel], message));
+    ASSERT_TRUE(runtime::Decode(messages[channel], message));
     visit(message);
   });
 }
@@ -83,8 +83,8 @@ struct Field {
 /// The fields of every channel, by names such as "TRUTH.header.step".
 std::map<std::string, Field> FieldsOf(const std::string& log) {
   std::map<std::string, Field> fields;
-  RunLogReader reader(log);
-  while (const StepMessages* messages = reader.Next()) {
+  log::RunLogReader reader(log);
+  while (const log::StepMessages* messages = reader.Next()) {
     ForEachMessage(*messages, [&]<class M>(const M& message) {
       ForEachField(message, [&]<class T>(const std::string& name, std::span<const T> values, bool) {
         Field& field = fields[fmt::format("{}.{}", ChannelOf<M>().name, name)];
@@ -193,8 +193,8 @@ TEST_F(ExportTest, WritesEveryNumberOfEveryChannelAsCsvToTheLastBit) {
     const std::string_view name = kChannels[channel].name;
     files.emplace(name, out_ + "/" + std::string(name) + ".csv");
   });
-  RunLogReader reader(log_);
-  while (const StepMessages* messages = reader.Next()) {
+  log::RunLogReader reader(log_);
+  while (const log::StepMessages* messages = reader.Next()) {
     ForEachMessage(*messages, [&]<class M>(const M& message) {
       Csv& file = files.at(ChannelOf<M>().name);
       const Words cells = file.Cells();
@@ -252,7 +252,7 @@ TEST_F(ExportTest, WritesEveryNumberOfEveryChannelIntoTheMatFileToTheLastBit) {
   EXPECT_GT(matrices, 5U) << "there is something that could be transposed";
   const matvar_t* scenario = mat.Find("scenario");
   ASSERT_NE(scenario, nullptr);
-  RunLogReader reader(log_);
+  log::RunLogReader reader(log_);
   while (reader.Next() != nullptr) {
   }
   const std::string_view text(static_cast<const char*>(scenario->data), scenario->nbytes);

@@ -29,7 +29,7 @@ class JsonOutputTest : public testing::Test {
   /// The arguments of each verb.
   std::map<std::string, std::vector<std::string>> Calls() const {
     const std::string paper = "scenario/paper.json";
-    const std::string url = FreshMulticastUrl();
+    const std::string url = runtime::FreshMulticastUrl();
     return {
         {"run", {paper, "--set", "/steps=20", "--transport", "memq", "--log", File("memq.lcm")}},
         {"table", {paper, "--seeds", "1:2"}},

@@ -33,7 +33,7 @@ using Traffic = std::map<std::string, std::vector<Payload>, std::less<>>;
 
 Traffic ReadTraffic(const std::string& log) {
   Traffic traffic;
-  EventLogReader reader(log);
+  log::EventLogReader reader(log);
   while (const auto event = reader.Next()) {
     traffic[std::string(event->channel)].emplace_back(event->data.begin(), event->data.end());
   }
@@ -45,7 +45,8 @@ Traffic ReadTraffic(const std::string& log) {
 std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
   std::map<std::int64_t, Payload> steps;
   for (const Payload& payload : payloads) {
-    const auto [at, is_new] = steps.emplace(ReadInt64(payload, kStepOffset), payload);
+    const auto [at, is_new] =
+        steps.emplace(runtime::ReadInt64(payload, runtime::kStepOffset), payload);
     EXPECT_TRUE(is_new || at->second == payload) << "two messages of step " << at->first;
   }
   return steps;
@@ -56,7 +57,7 @@ std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& pa
   std::map<std::int64_t, std::string> parts;
   for (const Payload& payload : payloads) {
     run_t run{};
-    EXPECT_TRUE(Decode(payload, run));
+    EXPECT_TRUE(runtime::Decode(payload, run));
     parts[run.header.step] = run.text;
   }
   return parts;
@@ -64,11 +65,11 @@ std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& pa
 
 /// Publishes on a channel of no role until `seen` is true. The program that has seen the mark
 /// listens and has got everything that was sent before it. @return false after kPatience
-bool Mark(Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
+bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
   const auto end = Clock::now() + kPatience;
   while (!seen()) {
     if (Clock::now() > end) return false;
-    bus.Publish(channel, Payload(kHeaderEnd));
+    bus.Publish(channel, Payload(runtime::kHeaderEnd));
     bus.Wait(milliseconds(10));
   }
   return true;
@@ -87,7 +88,7 @@ std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
 /// Debian's lcm-logger.
 class Logger {
  public:
-  Logger(Bus& bus, std::string file)
+  Logger(runtime::Bus& bus, std::string file)
       : bus_(bus),
         file_(std::move(file)),
         process_(BeforeOtherWork(
@@ -111,7 +112,7 @@ class Logger {
     return content.str();
   }
 
-  Bus& bus_;
+  runtime::Bus& bus_;
   const std::string file_;
   Background process_;
 };
@@ -119,7 +120,7 @@ class Logger {
 /// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads its window.
 class Spy {
  public:
-  explicit Spy(Bus& bus)
+  explicit Spy(runtime::Bus& bus)
       : bus_(bus),
         screen_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
     EXPECT_TRUE(screen_.WaitForOut("\n", kPatience)) << "no X server: " << screen_.Err();
@@ -174,7 +175,7 @@ class Spy {
     return jar;
   }
 
-  Bus& bus_;
+  runtime::Bus& bus_;
   ScratchFolder folder_;
   Background screen_;
   std::optional<Background> process_;
@@ -195,8 +196,8 @@ void RemoveSignatures(Traffic& traffic) {
     const auto found = traffic.find(channel.name);
     if (found == traffic.end()) continue;
     for (Payload& payload : found->second) {
-      ASSERT_TRUE(LooksSigned(payload)) << channel.name;
-      payload.resize(payload.size() - kSignatureBytes);
+      ASSERT_TRUE(runtime::LooksSigned(payload)) << channel.name;
+      payload.resize(payload.size() - runtime::kSignatureBytes);
     }
   }
 }
@@ -204,11 +205,12 @@ void RemoveSignatures(Traffic& traffic) {
 /// Plays a log of signed traffic to a receiver that has the key. @return how many TRUTH messages
 /// the receiver accepts
 std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
-  Bus bus(FreshMulticastUrl());
-  bus.Secure(MessageSigner(SigningKey::Load(key), Role::kFusion));
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  bus.Secure(runtime::MessageSigner(runtime::SigningKey::Load(key), Role::kFusion));
   std::size_t truths = 0;
-  bus.Subscribe(
-      "TRUTH", [&truths](Arrival& arrival) { truths += arrival.As<truth_t>() != nullptr ? 1 : 0; });
+  bus.Subscribe("TRUTH", [&truths](runtime::Arrival& arrival) {
+    truths += arrival.As<truth_t>() != nullptr ? 1 : 0;
+  });
   Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
   EXPECT_EQ(player.Wait(), 0) << player.Err();
   while (bus.Wait(milliseconds(200))) {
@@ -228,8 +230,11 @@ class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
       : bus_(url), logger_(logger), spy_(spy) {
-    if (!key.empty()) bus_.Secure(MessageSigner(SigningKey::Load(key), Role::kDriver));
-    bus_.Subscribe("TRUTH", [this](Bytes truth) { begun_ = ReadInt64(truth, kStepOffset) + 1; });
+    if (!key.empty())
+      bus_.Secure(runtime::MessageSigner(runtime::SigningKey::Load(key), Role::kDriver));
+    bus_.Subscribe("TRUTH", [this](runtime::Bytes truth) {
+      begun_ = runtime::ReadInt64(truth, runtime::kStepOffset) + 1;
+    });
     node_.emplace(bus_, std::nullopt);
   }
 
@@ -251,9 +256,9 @@ class DriverThatWaits {
   }
 
  private:
-  Bus bus_;
+  runtime::Bus bus_;
   std::int64_t begun_ = 0;  // the number of steps that have begun
-  std::optional<StepNode<Driver>> node_;
+  std::optional<runtime::StepNode<driver::Driver>> node_;
   Logger& logger_;
   Spy& spy_;
 };
@@ -268,7 +273,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   constexpr int kSteps = 40;
   const std::string own = folder.File("own.lcm");
   const std::string debian = folder.File("debian.lcm");
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Logger logger(bus, debian);
   Spy spy(bus);
   ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
@@ -289,7 +294,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
                                    "--log",
                                    own};
   if (!key.empty()) {
-    SigningKey::Create(key);
+    runtime::SigningKey::Create(key);
     command.insert(command.end(), {"--key", key});
   }
   Background run(command);
@@ -354,21 +359,21 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
                                   "memq", "--quiet", "--log", log});
   ASSERT_EQ(run.code, 0) << run.err;
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Traffic received;
   std::map<std::string, int> undecodable;
   const auto listen = [&]<class M>() {
     const std::string channel(ChannelOf<M>().name);
-    bus.Subscribe(channel, [&received, &undecodable, channel](Bytes bytes) {
+    bus.Subscribe(channel, [&received, &undecodable, channel](runtime::Bytes bytes) {
       received[channel].emplace_back(bytes.begin(), bytes.end());
       M message{};
-      if (!Decode(bytes, message)) ++undecodable[channel];
+      if (!runtime::Decode(bytes, message)) ++undecodable[channel];
     });
   };
   listen.operator()<run_t>();
   ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
   bool ended = false;
-  bus.Subscribe("END", [&ended](Bytes) { ended = true; });
+  bus.Subscribe("END", [&ended](runtime::Bytes) { ended = true; });
   // WHEN lcm-logplayer plays it, 25 times as fast as the 50 s that its event times span
   Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
   ASSERT_EQ(player.Wait(), 0) << player.Err();
@@ -378,7 +383,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   }));
   // THEN every message has arrived, in order, and decodes
   Traffic logged = ReadTraffic(log);
-  EXPECT_EQ(logged.erase(std::string(kLogSealChannel)), 1U);  // no process sends it
+  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);  // no process sends it
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());

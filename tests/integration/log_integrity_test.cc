@@ -36,10 +36,10 @@ struct Place {
   std::size_t size = 0;
 };
 Place PlaceOf(const std::string& log, std::string_view channel) {
-  EventLogReader reader(log);
+  log::EventLogReader reader(log);
   std::size_t at = 0;
   while (const auto event = reader.Next()) {
-    if (event->channel == channel) return {.at = at, .size = SizeInFile(*event)};
+    if (event->channel == channel) return {.at = at, .size = log::SizeInFile(*event)};
     at = reader.good_bytes();
   }
   ADD_FAILURE() << "no " << channel << " in " << log;
@@ -58,10 +58,10 @@ void FlipLowestBit(const std::string& file, std::size_t at) {
 /// Copies the events of a log into another file, altered by `change` and without the log's seal.
 void Rewrite(const std::string& from, const std::string& to,
              const std::function<void(std::string_view channel, Payload&)>& change) {
-  EventLogReader reader(from);
-  EventLogWriter writer(to);
+  log::EventLogReader reader(from);
+  log::EventLogWriter writer(to);
   while (const auto event = reader.Next()) {
-    if (event->channel == kLogSealChannel) continue;
+    if (event->channel == log::kLogSealChannel) continue;
     Payload bytes(event->data.begin(), event->data.end());
     change(event->channel, bytes);
     writer.Write(event->channel, event->utime, bytes);
@@ -70,7 +70,7 @@ void Rewrite(const std::string& from, const std::string& to,
 
 void PutRunId(std::int64_t run_id, Payload& bytes) {
   for (int i = 0; i < 8; ++i) {
-    bytes[kRunIdOffset + static_cast<std::size_t>(i)] =
+    bytes[runtime::kRunIdOffset + static_cast<std::size_t>(i)] =
         static_cast<std::uint8_t>(run_id >> (8 * (7 - i)));
   }
 }
@@ -105,7 +105,7 @@ class LogIntegrityTest : public testing::Test {
 
   ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
-  const std::string url_ = Bus(FreshMulticastUrl()).url();
+  const std::string url_ = runtime::Bus(runtime::FreshMulticastUrl()).url();
 };
 
 // ---- the log of a run, while it goes on ---------------------------------------------------------
@@ -246,8 +246,8 @@ TEST_F(LogIntegrityTest, TheFileOfASealedLogIsComparedByDigest) {
 TEST_F(LogIntegrityTest, ALogIsSignedWithTheKeyOfItsRun) {
   const std::string key = folder_.File("key");
   const std::string other = folder_.File("other_key");
-  SigningKey::Create(key);
-  SigningKey::Create(other);
+  runtime::SigningKey::Create(key);
+  runtime::SigningKey::Create(other);
   for (const char* transport : {"direct", "memq", "udpm"}) {
     SCOPED_TRACE(transport);
     const std::string log = folder_.File(std::string(transport) + ".lcm");
@@ -272,7 +272,7 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   const std::string log = DirectLog("log.lcm");
   const std::string copy = folder_.File("copy.lcm");
   {
-    Bus bus(url_);
+    runtime::Bus bus(url_);
     Background logger({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url_, copy});
     // Until it listens, and until it has all. That takes less on a busy machine.
     constexpr auto kPatience = std::chrono::seconds(20);
@@ -284,7 +284,7 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
       };
       const TimePoint end = Clock::now() + kPatience;
       while (!has() && IsAlive(logger.pid()) && Clock::now() < end) {
-        bus.Publish(channel, Payload(kHeaderEnd));
+        bus.Publish(channel, Payload(runtime::kHeaderEnd));
         bus.Wait(milliseconds(10));
       }
       return has();
@@ -305,7 +305,7 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
 
 TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInRealTime) {
   const std::string key = folder_.File("key");
-  SigningKey::Create(key);
+  runtime::SigningKey::Create(key);
   const std::string lockstep = DirectLog("lockstep.lcm", {"--key", key});
   ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--speed",
                         "10", "--quiet", "--set", "/steps=50", "--key", key, "--log", log_})
@@ -315,7 +315,7 @@ TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARun
   constexpr std::size_t kTimeInEvent = 19;  // the last byte of it: sync word, number, time
   for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
     FlipLowestBit(log, kTimeInEvent);
-    FlipLowestBit(log, PlaceOf(log, kLogSealChannel).at + kTimeInEvent);
+    FlipLowestBit(log, PlaceOf(log, log::kLogSealChannel).at + kTimeInEvent);
     const auto digest = Digest({log, "--key", key}, code);
     EXPECT_EQ(digest["seal"], "copy") << log;
     EXPECT_EQ(digest["signature"], "holds") << log;
@@ -325,8 +325,8 @@ TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARun
 TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
   const std::string key = folder_.File("key");
   const std::string other = folder_.File("other_key");
-  SigningKey::Create(key);
-  SigningKey::Create(other);
+  runtime::SigningKey::Create(key);
+  runtime::SigningKey::Create(other);
   // GIVEN the signed log of a run that was interrupted
   Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "memq", "--pace",
                   "10", "--key", key, "--log", log_});

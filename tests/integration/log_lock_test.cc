@@ -59,7 +59,7 @@ class LogLockTest : public testing::Test {
 
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
-  const std::string url_ = FreshMulticastUrl();
+  const std::string url_ = runtime::FreshMulticastUrl();
   const std::vector<std::string> run_{Program("fogline"), "run", "scenario/paper.json", "--log",
                                       log_};
 };
@@ -120,7 +120,7 @@ TEST_F(LogLockTest, ARunInOneProcessLocksItsLogToo) {
 
 TEST_F(LogLockTest, ARecorderThatIsStartedByHandTakesNoLogOfARunAndLocksItsOwn) {
   const std::vector<std::string> recorder{Program("fogline-recorder"), "--log", log_, "--lcm-url",
-                                          FreshMulticastUrl()};
+                                          runtime::FreshMulticastUrl()};
   {
     Background run(WaitingForADriver(run_));
     ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
@@ -207,8 +207,8 @@ TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
   EXPECT_THAT(run.err, HasSubstr("\n  no log was written\n"));
   EXPECT_FALSE(std::filesystem::exists(log_));
   // AND a recorder that waits for a run that never comes
-  const std::vector<std::string> recorder{Program("fogline-recorder"), "--log",  log_, "--lcm-url",
-                                          FreshMulticastUrl(),         "--wait", "0.5"};
+  const std::vector<std::string> recorder{Program("fogline-recorder"),  "--log",  log_, "--lcm-url",
+                                          runtime::FreshMulticastUrl(), "--wait", "0.5"};
   EXPECT_EQ(RunCommand(recorder).code, 3);
   EXPECT_FALSE(std::filesystem::exists(log_));
   // AND such a recorder does not touch an older log that it would have replaced

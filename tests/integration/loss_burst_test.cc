@@ -93,12 +93,12 @@ class Listener {
     machine.Enter([this] {
       bus_.emplace(kUrl);
       ForEachStepChannel([this]<class M>(std::size_t channel) {
-        bus_->Subscribe(kChannels[channel].name, [this, channel](Arrival& arrival) {
-          const std::int64_t step = ReadInt64(arrival.bytes(), kStepOffset);
+        bus_->Subscribe(kChannels[channel].name, [this, channel](runtime::Arrival& arrival) {
+          const std::int64_t step = runtime::ReadInt64(arrival.bytes(), runtime::kStepOffset);
           Heard(kChannels[channel].from, step, arrival.time());
         });
       });
-      bus_->Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+      bus_->Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
         const auto* status = arrival.As<status_t>();
         if (status == nullptr || status->role != NameOf(Role::kRecorder)) return;
         // The recorder sends STATUS only now and then, so its period does not count: it is back if
@@ -149,7 +149,7 @@ class Listener {
   }
 
   Duration period_;
-  std::optional<Bus> bus_;
+  std::optional<runtime::Bus> bus_;
   std::int64_t newest_ = -1;
   TimePoint newest_heard_{};
   std::map<std::int64_t, TimePoint> began_;

@@ -41,7 +41,7 @@ class Meeting {
   std::string Log() const { return folder_.File(std::to_string(logs_) + ".lcm"); }
 
  private:
-  std::string url_ = FreshMulticastUrl();
+  std::string url_ = runtime::FreshMulticastUrl();
   ScratchFolder folder_;
   int logs_ = 0;
 };

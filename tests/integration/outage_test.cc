@@ -187,7 +187,7 @@ TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   // WHEN it hears nothing of its runner for long enough to look for another run
   machine.Do("ip addr flush dev eth0");
-  LastFor(RunnerWatch::kSilent + milliseconds(1000));
+  LastFor(runtime::RunnerWatch::kSilent + milliseconds(1000));
   machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
   // THEN it goes on with its own
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
@@ -201,7 +201,7 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
       " ip addr add 192.0.$i.1/24 dev eth$i; ip link set eth$i up; ip link set peer$i up; done;"
       "ip route add 239.0.0.0/8 dev eth0");
   const auto has_group = [&machine](const std::string& interface) {
-    return HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
+    return runtime::HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
   };
   Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run")) << driver.Err();
@@ -216,9 +216,10 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
 /// The steps of TRUTH in a log that a program has written or is writing.
 std::set<std::int64_t> StepsIn(const std::string& log) {
   std::set<std::int64_t> steps;
-  EventLogReader reader(log);
+  log::EventLogReader reader(log);
   while (const auto event = reader.Next()) {
-    if (event->channel == "TRUTH") steps.insert(ReadInt64(event->data, kStepOffset));
+    if (event->channel == "TRUTH")
+      steps.insert(runtime::ReadInt64(event->data, runtime::kStepOffset));
   }
   return steps;
 }

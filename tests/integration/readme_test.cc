@@ -40,11 +40,11 @@ class Clone {
   /// Executes a script in the clone. make fails, and the home folder is empty at first.
   Outcome Run(const std::string& script) const {
     std::vector<std::string> command = WithoutMake(home_);
-    command.insert(command.end(),
-                   {"bash", "-c",
-                    "set -e; cd " + folder_.path().string() + "; export HOME=" +
-                        home_.path().string() + " PATH=" + ProgramDirectory().string() +
-                        ":$PATH LCM_DEFAULT_URL='" + FreshMulticastUrl() + "'\n" + script});
+    command.insert(command.end(), {"bash", "-c",
+                                   "set -e; cd " + folder_.path().string() +
+                                       "; export HOME=" + home_.path().string() + " PATH=" +
+                                       ProgramDirectory().string() + ":$PATH LCM_DEFAULT_URL='" +
+                                       runtime::FreshMulticastUrl() + "'\n" + script});
     return RunCommand(command, std::chrono::seconds(250));
   }
 
@@ -137,7 +137,7 @@ TEST(DocsTest, TheCommandsOfGettingStartedPrintWhatThePageShows) {
   std::string page = ReadSource("docs/getting-started.md");
   // GIVEN a port that no other test has
   const std::string port = "udpm://239.255.76.67:7700?ttl=0";
-  const std::string own = FreshMulticastUrl();
+  const std::string own = runtime::FreshMulticastUrl();
   ASSERT_NE(page.find(port), std::string::npos);
   for (std::size_t at = page.find(port); at != std::string::npos; at = page.find(port, at)) {
     page.replace(at, port.size(), own);

@@ -29,26 +29,28 @@ inline constexpr double kRounding = 1e-9;
 /// A log in real time, by step.
 struct Log {
   explicit Log(const std::string& file) {
-    EventLogReader reader(file);
+    log::EventLogReader reader(file);
     while (const auto event = reader.Next()) {
       Take(event->channel, event->data, truth);
       Take(event->channel, event->data, command);
       Take(event->channel, event->data, driver);
       Take(event->channel, event->data, follower);
-      if (event->data.size() >= kHeaderEnd) {
-        steps[std::string(event->channel)].insert(ReadInt64(event->data, kStepOffset));
+      if (event->data.size() >= runtime::kHeaderEnd) {
+        steps[std::string(event->channel)].insert(
+            runtime::ReadInt64(event->data, runtime::kStepOffset));
       }
       status_t heard{};
-      if (event->channel == ChannelOf<status_t>().name && Decode(event->data, heard)) {
+      if (event->channel == ChannelOf<status_t>().name && runtime::Decode(event->data, heard)) {
         status.push_back(heard);
       }
     }
   }
 
   template <class M>
-  static void Take(std::string_view channel, Bytes data, std::map<std::int64_t, M>& messages) {
+  static void Take(std::string_view channel, runtime::Bytes data,
+                   std::map<std::int64_t, M>& messages) {
     M message{};
-    if (channel == ChannelOf<M>().name && Decode(data, message)) {
+    if (channel == ChannelOf<M>().name && runtime::Decode(data, message)) {
       messages[message.header.step] = message;
     }
   }

@@ -34,16 +34,16 @@ class RealtimeRun {
  public:
   RealtimeRun(const std::string& scenario, int steps, double speed = kSpeed,
               const std::vector<std::string>& settings = {})
-      : bus_(FreshMulticastUrl()),
+      : bus_(runtime::FreshMulticastUrl()),
         log_(folder_.File("run.lcm")),
         run_(Command(scenario, steps, speed, settings)) {
-    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
+    bus_.Subscribe(ChannelOf<truth_t>().name, [this](runtime::Arrival& arrival) {
       const auto* truth = arrival.As<truth_t>();
       if (truth == nullptr || truth->header.step <= step_) return;
       step_ = truth->header.step;
       truth_at_ = arrival.time();
     });
-    bus_.Subscribe(ChannelOf<status_t>().name, [this](Arrival& arrival) {
+    bus_.Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
       if (const auto* status = arrival.As<status_t>()) Heard(*status, arrival.time());
     });
   }
@@ -114,7 +114,7 @@ class RealtimeRun {
   }
 
   ScratchFolder folder_;
-  Bus bus_;
+  runtime::Bus bus_;
   std::string log_;
   Background run_;
   std::int64_t step_ = -1;

@@ -42,10 +42,11 @@ class Load {
 /// The resident memory of every role during a run, by role, from its STATUS.
 std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::string& log) {
   std::map<std::string, std::vector<std::int64_t>> memory;
-  EventLogReader reader(log);
+  log::EventLogReader reader(log);
   while (const auto event = reader.Next()) {
     status_t status{};
-    if (event->channel != ChannelOf<status_t>().name || !Decode(event->data, status)) continue;
+    if (event->channel != ChannelOf<status_t>().name || !runtime::Decode(event->data, status))
+      continue;
     if (status.state == status_t::RUNNING) memory[status.role].push_back(status.rss_bytes);
   }
   return memory;

@@ -38,7 +38,7 @@ class RawSocket {
   RawSocket& operator=(const RawSocket&) = delete;
 
   /// Sends all bytes; the test fails if that blocks. @return false if the other side has closed
-  bool Send(Bytes bytes) const {
+  bool Send(runtime::Bytes bytes) const {
     while (!bytes.empty()) {
       const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (size < 0) {
@@ -71,19 +71,19 @@ class RawSocket {
 
 Payload Greeting() {
   Payload bytes;
-  tcpq::AppendHello(tcpq::kClientMagic, bytes);
+  runtime::tcpq::AppendHello(runtime::tcpq::kClientMagic, bytes);
   return bytes;
 }
 
 Payload SubscriptionTo(std::string_view pattern) {
   Payload bytes = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, bytes);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kSubscribe, pattern, {}, bytes);
   return bytes;
 }
 
 Payload Message(std::string_view channel, const Payload& payload) {
   Payload bytes;
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, channel, payload, bytes);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kPublish, channel, payload, bytes);
   return bytes;
 }
 
@@ -91,11 +91,11 @@ TEST(HostileRelayClientTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTh
   Relay relay({"--max-queue", "4"});
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   int heard = 0;
-  bus.Subscribe("DATA", [&heard](Bytes) { ++heard; });
+  bus.Subscribe("DATA", [&heard](runtime::Bytes) { ++heard; });
   // WHEN more messages are published than the client's socket and its queue hold
-  const Payload payload(kMaxMessageBytes, 1);
+  const Payload payload(runtime::kMaxMessageBytes, 1);
   constexpr int kMessages = 17'000;
   for (int i = 0; i < kMessages; ++i) {
     bus.Publish("DATA", payload);
@@ -123,16 +123,17 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
 
 TEST(HostileRelayClientTest, DisconnectsWhoSendsGarbageByNameAndReason) {
   Relay relay({"--max-subscriptions", "2", "--max-message", "1"});
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   const std::string http = "GET / HTTP/1.1\r\n\r\n";
   Payload subscriptions = Greeting();
   for (const char* pattern : {"A", "B", "C"}) {
-    tcpq::AppendFrame(tcpq::FrameType::kSubscribe, pattern, {}, subscriptions);
+    runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kSubscribe, pattern, {}, subscriptions);
   }
   Payload oversized = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType::kPublish, "BIG", Payload((1 << 20) + 1), oversized);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType::kPublish, "BIG", Payload((1 << 20) + 1),
+                             oversized);
   Payload unknown = Greeting();
-  tcpq::AppendFrame(tcpq::FrameType{9}, "A", {}, unknown);
+  runtime::tcpq::AppendFrame(runtime::tcpq::FrameType{9}, "A", {}, unknown);
   const std::vector<std::pair<Payload, std::string>> cases{
       {Payload(http.begin(), http.end()), "begins with 0x47455420"},
       {unknown, "frame of unknown type 9"},
@@ -164,7 +165,7 @@ TEST(HostileRelayClientTest, DisconnectsWhoNeverSaysThatItIsAClient) {
 
 TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
   Relay relay({"--max-clients", "1"});
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   const RawSocket second(relay.port());
   EXPECT_TRUE(second.WaitForClose());
   EXPECT_TRUE(relay.process().WaitForErr(second.Name() + " disconnected: 1 clients are here"));
@@ -177,9 +178,9 @@ TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   // relay gives it up (long expressions may visit more), and a client that wants everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   int heard = 0;
-  bus.Subscribe("LAST", [&heard](Bytes) { ++heard; });
+  bus.Subscribe("LAST", [&heard](runtime::Bytes) { ++heard; });
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
   // WHEN another client publishes more and more new names of that kind

@@ -25,7 +25,7 @@ class Relay {
     url_ = process_.Out().substr(0, process_.Out().find('\n'));
   }
   const std::string& url() const { return url_; }
-  std::uint16_t port() const { return tcpq::ResolveUrl(url_).port; }
+  std::uint16_t port() const { return runtime::tcpq::ResolveUrl(url_).port; }
   Background& process() { return process_; }
   /// Ends the relay with Ctrl-C, as a person does. @return its exit code
   int End() {
@@ -45,11 +45,11 @@ class Relay {
 
 /// Publishes a message that this bus hears itself, and waits for it. When it comes, it and all
 /// earlier messages of this bus have passed the relay. @return false after kPatience
-[[nodiscard]] inline bool RoundTrip(Bus& bus) {
+[[nodiscard]] inline bool RoundTrip(runtime::Bus& bus) {
   static int trips = 0;
   const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);
   bool back = false;
-  bus.Subscribe(channel, [&back](Bytes) { back = true; });
+  bus.Subscribe(channel, [&back](runtime::Bytes) { back = true; });
   bus.Publish(channel, Payload(1));
   const TimePoint end = Clock::now() + kPatience;
   while (!back && Clock::now() < end) bus.Wait(milliseconds(100));

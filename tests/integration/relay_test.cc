@@ -45,9 +45,9 @@ std::string DigestOf(const Outcome& run) {
 
 TEST(RelayTest, GivesAPublisherItsOwnMessagesOnceAndInOrder) {
   Relay relay;
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   std::vector<std::uint8_t> heard;
-  bus.Subscribe("A", [&](Bytes bytes) { heard.push_back(bytes[0]); });
+  bus.Subscribe("A", [&](runtime::Bytes bytes) { heard.push_back(bytes[0]); });
   for (std::uint8_t i = 0; i < 100; ++i) bus.Publish("A", Payload{i});
   bus.Publish("B", Payload{0});
   ASSERT_TRUE(RoundTrip(bus));
@@ -73,13 +73,13 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_STOCK"], large.size());
   // THEN it hears our messages too
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
   // AND after it has unsubscribed (no other message is on its way), only our bus hears its message
   std::size_t heard = 0;
-  bus.Subscribe("LAST", [&heard](Bytes bytes) { heard = bytes.size(); });
+  bus.Subscribe("LAST", [&heard](runtime::Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   ASSERT_EQ(got.size(), 3U);
@@ -95,9 +95,9 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
 TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
   // GIVEN a relay with a queue that, together with both sockets, holds less than the burst
   Relay relay({"--max-queue", "4", "--quiet"});
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   int heard = 0;
-  bus.Subscribe("BURST", [&heard](Bytes) { ++heard; });
+  bus.Subscribe("BURST", [&heard](runtime::Bytes) { ++heard; });
   // WHEN the whole burst is published at once
   const Payload payload(1000, 1);
   constexpr int kMessages = 20'000;
@@ -117,7 +117,7 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
             "fogline-relay: error: cannot listen on " + here + ": Address already in use\n");
   EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
   {
-    Bus bus(relay.url());
+    runtime::Bus bus(relay.url());
     bus.Publish("A", Payload(1));
     ASSERT_TRUE(RoundTrip(bus));
   }
@@ -151,7 +151,7 @@ TEST(RelayTest, IsMissedByNameOfItsAddress) {
 
 TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
   Relay relay;
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   ASSERT_TRUE(RoundTrip(bus));
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
@@ -159,7 +159,7 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
     const TimePoint end = Clock::now() + kPatience;
     while (Clock::now() < end) bus.Wait(milliseconds(100));
     FAIL() << "not noticed";
-  } catch (const tcpq::ConnectionLost& lost) {
+  } catch (const runtime::tcpq::ConnectionLost& lost) {
     EXPECT_THAT(lost.what(), HasSubstr("lost the relay " + relay.url() + ": "));
   }
   bus.Publish("A", Payload(1));
@@ -169,10 +169,10 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
 TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
   const auto relay = std::make_unique<Relay>();
   const std::string url = relay->url();
-  Bus bus(url);
-  Bus other(url);
+  runtime::Bus bus(url);
+  runtime::Bus other(url);
   int heard = 0;
-  bus.Subscribe("A", [&heard](Bytes) { ++heard; });
+  bus.Subscribe("A", [&heard](runtime::Bytes) { ++heard; });
   ASSERT_TRUE(RoundTrip(bus));
   // GIVEN a relay that is killed: messages are lost, and the sender counts them
   relay->process().Signal(SIGKILL);
@@ -233,11 +233,11 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   Relay relay;
   Background logger(
       {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), stock});
-  Bus bus(relay.url());
+  runtime::Bus bus(relay.url());
   const auto caught_up = [&](const std::string& mark) {
     const TimePoint end = Clock::now() + kPatience;
     while (Clock::now() < end) {
-      bus.Publish(mark, Payload(kHeaderEnd));
+      bus.Publish(mark, Payload(runtime::kHeaderEnd));
       bus.Wait(milliseconds(20));
       std::ifstream in(stock, std::ios::binary);
       std::ostringstream content;
@@ -261,7 +261,7 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   // AND it has every payload that our log has
   const auto payloads = [](const std::string& log) {
     std::multimap<std::string, Payload> all;
-    EventLogReader reader(log);
+    log::EventLogReader reader(log);
     while (const auto event = reader.Next()) {
       all.emplace(event->channel, Payload(event->data.begin(), event->data.end()));
     }
@@ -270,10 +270,10 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
     // These differ: our log keeps one RUN, in another phase, and a seal, which no process sends.
-    if (channel == ChannelOf<run_t>().name || channel == kLogSealChannel) continue;
+    if (channel == ChannelOf<run_t>().name || channel == log::kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))
-        << channel << ", step " << ReadInt64(payload, kStepOffset);
+        << channel << ", step " << runtime::ReadInt64(payload, runtime::kStepOffset);
   }
 }
 

@@ -63,15 +63,15 @@ class ReplayTest : public testing::Test {
   /// A copy of a log without its seal. In step `step`, the distance in TRACK is 0.25 m larger.
   std::string Altered(const std::string& log, std::int64_t step) const {
     const std::string altered = folder_.File("altered.lcm");
-    EventLogReader reader(log);
-    EventLogWriter writer(altered);
+    log::EventLogReader reader(log);
+    log::EventLogWriter writer(altered);
     while (const auto event = reader.Next()) {
-      if (IsLogSeal(*event)) continue;
+      if (log::IsLogSeal(*event)) continue;
       std::vector<std::uint8_t> bytes(event->data.begin(), event->data.end());
       track_t track{};
-      if (event->channel == "TRACK" && Decode(bytes, track) && track.header.step == step) {
+      if (event->channel == "TRACK" && runtime::Decode(bytes, track) && track.header.step == step) {
         track.state[0] += 0.25;
-        Encode(track, bytes);
+        runtime::Encode(track, bytes);
       }
       writer.Write(event->channel, event->utime, bytes);
     }

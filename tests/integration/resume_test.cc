@@ -103,9 +103,12 @@ class ResumeTest : public testing::Test {
 class SeenRun {
  public:
   SeenRun(const Words& command, const std::string& log)
-      : bus_(FreshMulticastUrl()), run_(command + Words{"--lcm-url", bus_.url(), "--log", log}) {
-    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
-      step_ = std::max(step_, ReadInt64(bytes, kStepOffset));  // this works for signed messages too
+      : bus_(runtime::FreshMulticastUrl()),
+        run_(command + Words{"--lcm-url", bus_.url(), "--log", log}) {
+    bus_.Subscribe(ChannelOf<truth_t>().name, [this](runtime::Bytes bytes) {
+      step_ = std::max(
+          step_,
+          runtime::ReadInt64(bytes, runtime::kStepOffset));  // this works for signed messages too
     });
   }
 
@@ -125,7 +128,7 @@ class SeenRun {
   Background& run() { return run_; }
 
  private:
-  Bus bus_;
+  runtime::Bus bus_;
   Background run_;
   std::int64_t step_ = -1;
 };
@@ -330,8 +333,8 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
 /// Copies a log event by event. `change` may alter an event, add others, and end the copy by false.
 template <class Change>
 void Copy(const std::string& from, const std::string& to, const Change& change) {
-  EventLogReader reader(from);
-  EventLogWriter writer(to);
+  log::EventLogReader reader(from);
+  log::EventLogWriter writer(to);
   while (const auto event = reader.Next()) {
     std::vector<std::uint8_t> data(event->data.begin(), event->data.end());
     if (!change(writer, *event, data)) return;
@@ -345,14 +348,15 @@ TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   status_t status{};
   status.header.run_id = 1;
   std::vector<std::uint8_t> encoded;
-  Encode(status, encoded);
+  runtime::Encode(status, encoded);
   Copy(File("whole.lcm"), log_,
-       [&](EventLogWriter& log, const Event& event, const std::vector<std::uint8_t>& data) {
-         const bool is_step_17 = ReadInt64(data, kStepOffset) == 17;
+       [&](log::EventLogWriter& log, const log::Event& event,
+           const std::vector<std::uint8_t>& data) {
+         const bool is_step_17 = runtime::ReadInt64(data, runtime::kStepOffset) == 17;
          if (is_step_17 && event.channel == "TRUTH") log.Write("STATUS", 0, encoded);
-         return ReadInt64(data, kStepOffset) < 250;
+         return runtime::ReadInt64(data, runtime::kStepOffset) < 250;
        });
-  EventLogReader reader(log_);
+  log::EventLogReader reader(log_);
   std::size_t at = 0;
   while (reader.Next()->channel != "STATUS") at = reader.good_bytes();
   ExpectRefusal("an event on channel STATUS (byte " + std::to_string(at) +
@@ -363,9 +367,9 @@ TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
   Undisturbed();
   // GIVEN a log in which a command of the driver was altered
   Copy(File("whole.lcm"), log_,
-       [](EventLogWriter&, const Event& event, std::vector<std::uint8_t>& data) {
-         const std::int64_t step = ReadInt64(data, kStepOffset);
-         if (step == 190 && event.channel == "DRIVER_COMMAND") data[kHeaderEnd + 7] ^= 1;
+       [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+         const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
+         if (step == 190 && event.channel == "DRIVER_COMMAND") data[runtime::kHeaderEnd + 7] ^= 1;
          return step < 200;
        });
   const Outcome direct = Resume({"--transport", "direct"});
@@ -389,9 +393,9 @@ TEST_F(ResumeTest, ComputesAgainWhatItGoesOnFrom) {
   // GIVEN a log that was changed before the steps that every role says again
   const auto resume = [&](std::int64_t steps, const Words& more) {
     Copy(File("whole.lcm"), log_,
-         [&](EventLogWriter&, const Event& event, std::vector<std::uint8_t>& data) {
-           const std::int64_t step = ReadInt64(data, kStepOffset);
-           if (step == 100 && event.channel == "DRIVER_COMMAND") data[kHeaderEnd + 7] ^= 1;
+         [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+           const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
+           if (step == 100 && event.channel == "DRIVER_COMMAND") data[runtime::kHeaderEnd + 7] ^= 1;
            return step < steps && event.channel != "FOGLINE_SEAL";
          });
     return Resume(more);
@@ -409,7 +413,7 @@ TEST_F(ResumeTest, ComputesAgainWhatItGoesOnFrom) {
 TEST_F(ResumeTest, VerifiesAndSealsTheCompleteLogOfARunnerThatDiedBeforeItSealed) {
   const auto whole = Undisturbed();
   Copy(File("whole.lcm"), log_,
-       [](EventLogWriter&, const Event& event, std::vector<std::uint8_t>&) {
+       [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
          return event.channel != "FOGLINE_SEAL";
        });
   EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), 8U);

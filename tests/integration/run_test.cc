@@ -192,7 +192,7 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   Background run({Program("fogline"), "run", "scenario/paper.json", "--log", log, "--external",
-                  "driver", "--lcm-url", FreshMulticastUrl()});
+                  "driver", "--lcm-url", runtime::FreshMulticastUrl()});
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log));
   // WHEN a role dies, and then the runner

@@ -25,8 +25,8 @@ class Intruder {
  public:
   explicit Intruder(const std::string& url) : bus_(url) {
     for (const ChannelInfo& channel : kChannels) {
-      bus_.Subscribe(channel.name, [this, name = std::string(channel.name)](Bytes bytes) {
-        if (bytes.size() >= kHeaderEnd) Hear(name, bytes);
+      bus_.Subscribe(channel.name, [this, name = std::string(channel.name)](runtime::Bytes bytes) {
+        if (bytes.size() >= runtime::kHeaderEnd) Hear(name, bytes);
       });
     }
   }
@@ -50,7 +50,7 @@ class Intruder {
   }
 
   void Say(const std::string& channel, const Message& message) {
-    if (message.size() > kMaxMessageBytes) return;
+    if (message.size() > runtime::kMaxMessageBytes) return;
     said_.insert(message);
     bus_.Publish(channel, message);
     ++count_;
@@ -59,15 +59,17 @@ class Intruder {
   const std::vector<std::pair<std::string, Message>>& heard() const { return heard_; }
   int count() const { return count_; }
 
-  static std::int64_t RunIdOf(Bytes message) { return ReadInt64(message, kRunIdOffset); }
+  static std::int64_t RunIdOf(runtime::Bytes message) {
+    return runtime::ReadInt64(message, runtime::kRunIdOffset);
+  }
 
  private:
-  void Hear(const std::string& channel, Bytes bytes) {
+  void Hear(const std::string& channel, runtime::Bytes bytes) {
     Message message(bytes.begin(), bytes.end());
     if (known_.insert(message).second) heard_.emplace_back(channel, std::move(message));
   }
 
-  Bus bus_;
+  runtime::Bus bus_;
   std::set<Message> known_;
   std::set<Message> said_;
   std::vector<std::pair<std::string, Message>> heard_;
@@ -77,17 +79,18 @@ class Intruder {
 /// A message with a later step number, for which its receivers still wait, and with other contents.
 Message Forged(Message payload) {
   constexpr std::uint8_t kStepsAhead = 3;
-  payload[kStepOffset + 7] = static_cast<std::uint8_t>(payload[kStepOffset + 7] + kStepsAhead);
+  payload[runtime::kStepOffset + 7] =
+      static_cast<std::uint8_t>(payload[runtime::kStepOffset + 7] + kStepsAhead);
   payload.back() ^= 1;
   return payload;
 }
 
-Message Copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+Message Copy(runtime::Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 class SignedTrafficTest : public testing::Test {
  protected:
   SignedTrafficTest() {
-    for (const std::string& file : {key_, other_key_}) SigningKey::Create(file);
+    for (const std::string& file : {key_, other_key_}) runtime::SigningKey::Create(file);
   }
 
   std::vector<std::string> Run(const std::vector<std::string>& more) {
@@ -115,7 +118,7 @@ class SignedTrafficTest : public testing::Test {
   ScratchFolder folder_;
   const std::string key_ = folder_.File("key");
   const std::string other_key_ = folder_.File("other_key");
-  const std::string url_ = Bus(FreshMulticastUrl()).url();
+  const std::string url_ = runtime::Bus(runtime::FreshMulticastUrl()).url();
 
  private:
   int logs_ = 0;
@@ -132,15 +135,15 @@ TEST_F(SignedTrafficTest,
   ASSERT_GT(recorded.size(), 300U);
   const std::int64_t earlier_id = Intruder::RunIdOf(recorded.front().second);
   // WHEN an intruder answers every message of a run with forgeries, a STOP among them
-  MessageSigner wrong_key(SigningKey::Load(other_key_), std::nullopt);
-  MessageSigner wrong_sender(SigningKey::Load(key_), Role::kLidar);
+  runtime::MessageSigner wrong_key(runtime::SigningKey::Load(other_key_), std::nullopt);
+  runtime::MessageSigner wrong_sender(runtime::SigningKey::Load(key_), Role::kLidar);
   std::size_t next = 0;
   Background run(Run({"--key", key_, "--set", "/steps=60", "--pace", "3"}));
   intruder.AccompanyUntilTheEnd(run, {earlier_id},
                                 [&](const std::string& channel, const Message& message) {
-                                  const Message payload = Copy(WithoutSignature(message));
+                                  const Message payload = Copy(runtime::WithoutSignature(message));
                                   Message forged = Forged(payload);
-                                  if (channel == "RUN") forged[kHeaderEnd] = run_t::STOP;
+                                  if (channel == "RUN") forged[runtime::kHeaderEnd] = run_t::STOP;
                                   Message altered = message;
                                   altered[payload.size() - 1] ^= 1;
                                   for (const Message& attack : {forged, altered, message})
@@ -210,11 +213,11 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
     intruder.Say(channel, too_long);
     if (channel == "ACC_COMMAND") {
       accel_command_t command{};
-      ASSERT_TRUE(Decode(message, command));
+      ASSERT_TRUE(runtime::Decode(message, command));
       command.header.step += 3;
       command.acceleration_mps2 = std::numeric_limits<double>::quiet_NaN();
       Message nan;
-      Encode(command, nan);
+      runtime::Encode(command, nan);
       intruder.Say(channel, nan);
       // It comes in fragments, which the kernel's filter keeps from LCM's parser.
       const Message huge(300'000, 1);
@@ -271,7 +274,7 @@ TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
   Intruder intruder(url_);
   bool signed_steps = false;
   intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
-    signed_steps = signed_steps || (channel == "TRUTH" && LooksSigned(message));
+    signed_steps = signed_steps || (channel == "TRUTH" && runtime::LooksSigned(message));
   });
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=20"));
   EXPECT_TRUE(signed_steps);

@@ -70,8 +70,8 @@ TEST(SpyTest, HasTheTypesOfItsInstallationToo) {
   const Outcome install =
       RunCommand({"cmake", "--install", FOGLINE_BINARY_DIR, "--prefix", folder.path().string()});
   ASSERT_EQ(install.code, 0) << install.err;
-  const Outcome spy =
-      RunCommand(parts.Command(folder.File("bin/fogline"), {"--lcm-url", FreshMulticastUrl()}));
+  const Outcome spy = RunCommand(
+      parts.Command(folder.File("bin/fogline"), {"--lcm-url", runtime::FreshMulticastUrl()}));
   EXPECT_EQ(spy.code, 0) << spy.err;
   EXPECT_THAT(spy.out, HasSubstr(":" + folder.File("share/java/fogline_lcmtypes.jar") + " "));
 }
@@ -119,7 +119,7 @@ class SpyAtMeetingTest : public testing::Test {
   SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }
   ~SpyAtMeetingTest() override { unsetenv("LCM_DEFAULT_URL"); }
 
-  const std::string url_ = FreshMulticastUrl();
+  const std::string url_ = runtime::FreshMulticastUrl();
   const Parts parts_;
 };
 
@@ -140,7 +140,7 @@ TEST_F(SpyAtMeetingTest, WaitsForARunAndLooksWhereItIs) {
 }
 
 TEST_F(SpyAtMeetingTest, LooksAtTheMeetingAddressWhereThereIsTraffic) {
-  Bus bus(url_);
+  runtime::Bus bus(url_);
   Background spy(parts_.Command(Program("fogline"), {}));
   const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(spy.pid()) && Clock::now() < end) {

@@ -74,7 +74,7 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
   for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
   // AND the table has every measure in two fog models, five visibilities and three noises
-  const std::size_t measures = ConflictMeasures().size();
+  const std::size_t measures = conflict::ConflictMeasures().size();
   EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + measures * 2 * 5 * 3);
   EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["findings"][0]));
 }

@@ -118,10 +118,10 @@ class ListeningDriver {
 template <class M>
 class Heard {
  public:
-  explicit Heard(Bus& bus) : bus_(bus) {
-    bus.Subscribe(ChannelOf<M>().name, [this](Bytes bytes) {
+  explicit Heard(runtime::Bus& bus) : bus_(bus) {
+    bus.Subscribe(ChannelOf<M>().name, [this](runtime::Bytes bytes) {
       M message{};
-      EXPECT_TRUE(Decode(bytes, message));
+      EXPECT_TRUE(runtime::Decode(bytes, message));
       if constexpr (std::is_same_v<M, resend_t>) {
         if (message.requester == kTest) return;
       }
@@ -140,14 +140,14 @@ class Heard {
   }
 
  private:
-  Bus& bus_;
+  runtime::Bus& bus_;
   std::deque<M> messages_;
 };
 
 template <class M>
-void Say(Bus& bus, const M& message) {
+void Say(runtime::Bus& bus, const M& message) {
   std::vector<std::uint8_t> bytes;
-  Encode(message, bytes);
+  runtime::Encode(message, bytes);
   bus.Publish(ChannelOf<M>().name, bytes);
 }
 
@@ -155,7 +155,7 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
   const Elsewhere elsewhere;
   const std::string bare = elsewhere.BareDriver();
   const std::string fogline = Program("fogline");
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   // GIVEN a run with our own driver and a headway of 1.6 s
   const Outcome outcome =
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
@@ -175,17 +175,17 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
 TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   const Elsewhere elsewhere;
   const std::string driver = elsewhere.MyDriver();
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   const std::string log = elsewhere.File("run.lcm");
   const auto run = RunWith(elsewhere.Installed("fogline"), {driver, "--lcm-url", url}, url, log);
   EXPECT_EQ(run["steps"], 500);
   // THEN every command in the log is the one that this driver computes from the TRUTH of its step
-  RunLogReader reader(log);
+  log::RunLogReader reader(log);
   truth_t truth{};
   driver_command_t command{};
-  while (const StepMessages* step = reader.Next()) {
-    ASSERT_TRUE(Decode((*step)[IndexOf<truth_t>()], truth));
-    ASSERT_TRUE(Decode((*step)[IndexOf<driver_command_t>()], command));
+  while (const log::StepMessages* step = reader.Next()) {
+    ASSERT_TRUE(runtime::Decode((*step)[IndexOf<truth_t>()], truth));
+    ASSERT_TRUE(runtime::Decode((*step)[IndexOf<driver_command_t>()], command));
     const double gap_error_m = truth.host_gap_m - (2.0 + 1.2 * truth.host_speed_mps);
     const double closing_speed_mps = truth.host_speed_mps - truth.preceding_speed_mps;
     ASSERT_EQ(command.acceleration_mps2, 0.125 * gap_error_m - 0.5 * closing_speed_mps);
@@ -195,13 +195,14 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
 
 TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   const Elsewhere elsewhere;
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Heard<status_t> status(bus);
   Heard<driver_command_t> commands(bus);
   Heard<resend_t> requests(bus);
   ListeningDriver driver(elsewhere.BareDriver(), bus.url());
   const auto say_run = [&](std::int64_t run_id, std::int8_t phase) {
-    Say(bus, MakeRunPart(run_id, phase, 0, HashOf("{}"), SplitScenario("{}"), 0));
+    Say(bus, runtime::MakeRunPart(run_id, phase, 0, runtime::HashOf("{}"),
+                                  runtime::SplitScenario("{}"), 0));
   };
   const auto say_truth = [&](std::int64_t run_id, std::int64_t step) {
     truth_t truth{};
@@ -222,7 +223,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   const status_t ready = status.WaitForNext();
   EXPECT_EQ(ready.header.run_id, 7);
   EXPECT_EQ(ready.state, status_t::READY);
-  EXPECT_EQ(ready.scenario_hash, HashOf("{}"));
+  EXPECT_EQ(ready.scenario_hash, runtime::HashOf("{}"));
   EXPECT_EQ(ready.type_fingerprint, TypeFingerprint());
   // WHEN a step of another run comes, and a step of run 7 twice, THEN the driver answers once
   say_truth(8, 0);
@@ -255,7 +256,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
 
 TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const Elsewhere elsewhere;
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Heard<driver_command_t> commands(bus);
   // GIVEN a run in real speed that is under way
   ListeningDriver driver(elsewhere.BareDriver(), bus.url());
@@ -278,7 +279,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   ASSERT_TRUE(std::regex_search(err, line, kLine)) << err;
   EXPECT_EQ(std::stoi(line[1]), std::stoi(line[2]) + 1);
   // AND the log has the complete steps
-  RunLogReader reader(elsewhere.File("run.lcm"));
+  log::RunLogReader reader(elsewhere.File("run.lcm"));
   while (reader.Next() != nullptr) {
   }
   EXPECT_EQ(reader.run().steps, std::stoi(line[1]));
@@ -287,7 +288,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
 TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   const Elsewhere elsewhere;
   const std::string bare = elsewhere.BareDriver();
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
   const Outcome run =
@@ -302,7 +303,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
 
 TEST(SwapTest, APartThatWasBuiltWithOtherMessageTypesIsRefusedByName) {
   const Elsewhere elsewhere;
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   // GIVEN a driver built with a lidar_t that has one field more, although it never reads a lidar_t
   ListeningDriver driver(elsewhere.BareDriver(elsewhere.OtherTypes()), url);
   const Outcome run =

@@ -143,7 +143,7 @@ TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
 
 TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun) {
   const std::vector<std::string> what{"--thresholds", "0.5", "--set", "/steps=250"};
-  const std::string url = FreshMulticastUrl();
+  const std::string url = runtime::FreshMulticastUrl();
   // GIVEN a driver that a shell starts again each time it has exited
   Background drivers(
       {"bash", "-c", "while \"$@\"; do :; done", "-", Program("fogline-driver"), "--lcm-url", url});

@@ -33,7 +33,7 @@ constexpr seconds kTopFor(240);
 /// `fogline top --json`, which prints a document for each interval until the test ends.
 class Top {
  public:
-  explicit Top(Bus& bus)
+  explicit Top(runtime::Bus& bus)
       : bus_(bus),
         process_({Program("fogline"), "top", "--json", "--interval", "0.2", "--for",
                   std::to_string(kTopFor.count()), "--lcm-url", bus.url()}) {}
@@ -59,19 +59,19 @@ class Top {
   }
 
  private:
-  Bus& bus_;
+  runtime::Bus& bus_;
   Background process_;
 };
 
 TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   // GIVEN a run in real speed, 10 steps a second, that is under way
   const ScratchFolder folder;
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   std::int64_t step = -1;
   TimePoint heard{};
   int uneven = 0;  // steps that the machine held up, or that make up for such a one
-  bus.Subscribe(ChannelOf<truth_t>().name, [&](Bytes bytes) {
-    step = ReadInt64(bytes, kStepOffset);
+  bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Bytes bytes) {
+    step = runtime::ReadInt64(bytes, runtime::kStepOffset);
     const TimePoint now = Clock::now();
     uneven += now - heard < milliseconds(50) || now - heard > milliseconds(150) ? 1 : 0;
     heard = now;
@@ -105,7 +105,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
     EXPECT_NEAR(row["rate_hz"].get<double>(), 10, 1.5);
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["undecodable"], 0);
-    EXPECT_GT(row["bandwidth_bytes_per_s"], 10.0 * kHeaderEnd * 0.8);
+    EXPECT_GT(row["bandwidth_bytes_per_s"], 10.0 * runtime::kHeaderEnd * 0.8);
   }
   // AND every role runs
   ASSERT_EQ(seen["roles"].size(), kRoles.size());
@@ -122,13 +122,13 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
 
 /// Expects that top counts messages on RADAR that are not a radar_t.
 void ExpectUndecodableCounted(const std::string& url) {
-  Bus bus(url);
+  runtime::Bus bus(url);
   Top top(bus);
   ASSERT_TRUE(top.CatchUp("BEFORE"));
   std::vector<std::uint8_t> lidar;
-  Encode(lidar_t{}, lidar);
+  runtime::Encode(lidar_t{}, lidar);
   std::vector<std::uint8_t> cut;
-  Encode(radar_t{}, cut);
+  runtime::Encode(radar_t{}, cut);
   cut.pop_back();
   for (int i = 0; i < 3; ++i) bus.Publish("RADAR", std::vector<std::uint8_t>{1, 2, 3});
   for (int i = 0; i < 2; ++i) bus.Publish("RADAR", lidar);
@@ -143,7 +143,7 @@ void ExpectUndecodableCounted(const std::string& url) {
 }
 
 TEST(TopTest, CountsWhatItCannotDecodeByTheTypeThatItSeemsToBe) {
-  ExpectUndecodableCounted(FreshMulticastUrl());
+  ExpectUndecodableCounted(runtime::FreshMulticastUrl());
 }
 
 TEST(TopTest, LooksAtARelayToo) {
@@ -160,7 +160,7 @@ TEST(TopTest, ShowsALogThatLogplayerPlays) {
                                   "/steps=" + std::to_string(kSteps), "--transport", "memq",
                                   "--quiet", "--log", log});
   ASSERT_EQ(run.code, 0) << run.err;
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Top top(bus);
   ASSERT_TRUE(top.CatchUp("BEFORE"));
   const Outcome player = RunCommand({"lcm-logplayer", "--speed=10", "--lcm-url=" + bus.url(), log});
@@ -183,7 +183,7 @@ TEST(TopTest, ShowsALogThatLogplayerPlays) {
 
 TEST(TopTest, DrawsOnATerminalAndGivesItBackWhenQIsPressed) {
   const Outcome top =
-      RunCommand({"env", "LCM_DEFAULT_URL=" + FreshMulticastUrl(), "sh", "-c",
+      RunCommand({"env", "LCM_DEFAULT_URL=" + runtime::FreshMulticastUrl(), "sh", "-c",
                   "printf q | script -qec '" + Program("fogline") + " top' /dev/null"},
                  kPatience);
   EXPECT_EQ(top.code, 0);
@@ -211,7 +211,7 @@ TEST(TopTest, EndsWhenItsTerminalIsGone) {
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
   Background top({"sh", "-c", "exec <\"$0\" >\"$0\"; exec \"$@\"", ptsname(terminal),
                   Program("fogline"), "top", "--interval", "0.2", "--lcm-url",
-                  FreshMulticastUrl()});
+                  runtime::FreshMulticastUrl()});
   std::array<char, 64> buffer{};
   ASSERT_GT(read(terminal, buffer.data(), buffer.size()), 0) << "it draws";
   // WHEN the terminal's window is closed
@@ -229,7 +229,7 @@ std::int64_t MemoryOf(pid_t pid) {
 }
 
 TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
-  Bus bus(FreshMulticastUrl());
+  runtime::Bus bus(runtime::FreshMulticastUrl());
   Top top(bus);
   ASSERT_TRUE(top.CatchUp("BEGUN"));
   const std::int64_t before = MemoryOf(top.pid());

@@ -52,16 +52,16 @@ class WatchedRun {
                       int pace = kPace, const std::vector<std::string>& changes = {})
       : steps_(steps),
         changes_(changes),
-        bus_(FreshMulticastUrl()),
+        bus_(runtime::FreshMulticastUrl()),
         log_(folder_.File("run.lcm")),
         run_(Command(more, pace)) {
-    bus_.Subscribe(ChannelOf<truth_t>().name, [this](Bytes bytes) {
+    bus_.Subscribe(ChannelOf<truth_t>().name, [this](runtime::Bytes bytes) {
       truth_t truth{};
-      if (Decode(bytes, truth)) step_ = std::max(step_, truth.header.step);
+      if (runtime::Decode(bytes, truth)) step_ = std::max(step_, truth.header.step);
     });
-    bus_.Subscribe(ChannelOf<status_t>().name, [this](Bytes bytes) {
+    bus_.Subscribe(ChannelOf<status_t>().name, [this](runtime::Bytes bytes) {
       status_t status{};
-      if (Decode(bytes, status)) last_[status.role][status.pid] = status;
+      if (runtime::Decode(bytes, status)) last_[status.role][status.pid] = status;
     });
   }
 
@@ -140,7 +140,7 @@ class WatchedRun {
   const int steps_;
   const std::vector<std::string> changes_;
   ScratchFolder folder_;
-  Bus bus_;
+  runtime::Bus bus_;
   std::string log_;
   Background run_;
   std::int64_t step_ = -1;

@@ -46,7 +46,7 @@ constexpr std::size_t kMaxDatagram = 65507;
 volatile std::sig_atomic_t stopped = 0;
 
 void Append(Buffer& to, std::string_view text) { to.insert(to.end(), text.begin(), text.end()); }
-void Append(Buffer& to, Bytes bytes) { to.insert(to.end(), bytes.begin(), bytes.end()); }
+void Append(Buffer& to, runtime::Bytes bytes) { to.insert(to.end(), bytes.begin(), bytes.end()); }
 template <class Integer>
 void AppendBigEndian(Buffer& to, Integer value) {
   for (int shift = 8 * (static_cast<int>(sizeof(value)) - 1); shift >= 0; shift -= 8) {
@@ -84,9 +84,9 @@ class Group {
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 
-  bool Send(Bytes bytes) const { return send(out_, bytes.data(), bytes.size(), 0) >= 0; }
+  bool Send(runtime::Bytes bytes) const { return send(out_, bytes.data(), bytes.size(), 0) >= 0; }
   /// A datagram of another process, empty if there is none.
-  Bytes Receive() {
+  runtime::Bytes Receive() {
     const ssize_t size = recv(in_, heard_.data(), heard_.size(), 0);
     return {heard_.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size))};
   }
@@ -122,9 +122,10 @@ class Group {
 /// of another type or has no numbers
 /// is not, or has no numbers.
 template <class M>
-bool Poison(Bytes genuine, double value, std::uint64_t which, std::int64_t later, Buffer& payload) {
+bool Poison(runtime::Bytes genuine, double value, std::uint64_t which, std::int64_t later,
+            Buffer& payload) {
   M message{};
-  if (!Decode(genuine, message)) return false;
+  if (!runtime::Decode(genuine, message)) return false;
   std::vector<double*> numbers;
   VisitFields(message, [&numbers](std::string_view, const auto& field) {
     using V = std::decay_t<decltype(field)>;
@@ -137,7 +138,7 @@ bool Poison(Bytes genuine, double value, std::uint64_t which, std::int64_t later
   if (numbers.empty()) return false;
   *numbers[which % numbers.size()] = value;
   message.header.step += later;
-  Encode(message, payload);
+  runtime::Encode(message, payload);
   return true;
 }
 
@@ -147,12 +148,12 @@ class Attacker {
   Attacker(std::uint64_t seed, const std::string& only);
 
   /// Remembers a genuine message as a template.
-  void Learn(Bytes datagram) {
+  void Learn(runtime::Bytes datagram) {
     const std::string_view text(reinterpret_cast<const char*>(datagram.data()), datagram.size());
     const std::size_t end = text.find('\0', kWholeHeader);
     if (!text.starts_with(kWholeMagic) || end == std::string_view::npos) return;
-    const Bytes payload = datagram.subspan(end + 1);
-    if (payload.size() < kHeaderEnd) return;
+    const runtime::Bytes payload = datagram.subspan(end + 1);
+    if (payload.size() < runtime::kHeaderEnd) return;
     genuine_[std::string(text.substr(kWholeHeader, end - kWholeHeader))] = {payload.begin(),
                                                                             payload.end()};
   }
@@ -233,20 +234,20 @@ class Attacker {
     if (channel_ == ChannelOf<status_t>().name || channel_ == ChannelOf<resend_t>().name) {
       return Noise();
     }
-    const std::int64_t step = ReadInt64(payload_, kStepOffset);
+    const std::int64_t step = runtime::ReadInt64(payload_, runtime::kStepOffset);
     constexpr std::int64_t kFar = 1000;
     using Limits = std::numeric_limits<std::int64_t>;
-    WriteInt64(payload_, kStepOffset,
+    WriteInt64(payload_, runtime::kStepOffset,
                OneOf(std::array{std::int64_t{-1}, -step - 1, step + kFar,
                                 step + (std::int64_t{1} << 32), Limits::min(), Limits::max()}));
     Wrap();
   }
   void ForeignRun() {
-    WriteInt64(payload_, kRunIdOffset, static_cast<std::int64_t>(random_()));
+    WriteInt64(payload_, runtime::kRunIdOffset, static_cast<std::int64_t>(random_()));
     Wrap();
   }
   void WrongType() {
-    payload_[Below(kRunIdOffset)] ^= static_cast<std::uint8_t>(1 + Below(255));
+    payload_[Below(runtime::kRunIdOffset)] ^= static_cast<std::uint8_t>(1 + Below(255));
     Wrap();
   }
   void Truncated() {
@@ -274,8 +275,8 @@ class Attacker {
   }
   void Request() {
     resend_t resend{};
-    resend.header.run_id = ReadInt64(payload_, kRunIdOffset);
-    const std::int64_t step = ReadInt64(payload_, kStepOffset);
+    resend.header.run_id = runtime::ReadInt64(payload_, runtime::kRunIdOffset);
+    const std::int64_t step = runtime::ReadInt64(payload_, runtime::kStepOffset);
     resend.header.step =
         OneOf(std::array{step, step + 1, step / 2, std::int64_t{0}, std::int64_t{-1}, step + 1000,
                          std::numeric_limits<std::int64_t>::max()});
@@ -283,7 +284,7 @@ class Attacker {
                                     std::numeric_limits<std::int32_t>::min()});
     resend.channel = channel_;
     resend.requester = kRoles[Below(kRoles.size())].name;
-    Encode(resend, payload_);
+    runtime::Encode(resend, payload_);
     channel_ = ChannelOf<resend_t>().name;
     Wrap();
   }
@@ -343,7 +344,7 @@ int Main(int argc, char** argv) {
   const auto began = SteadyClock::now();
   double elapsed_s = 0;
   while (stopped == 0 && elapsed_s < seconds) {
-    for (Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
+    for (runtime::Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
       attacker.Learn(heard);
     }
     // The loop catches up when the system gave this process no time, so the rate holds on average.

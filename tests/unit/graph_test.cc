@@ -46,7 +46,8 @@ void ExpectListsWhoHears() {
 }
 
 TEST(GraphTest, ListsThoseOfOurPartsThatHearOnDemandAndNoOthers) {
-  ExpectListsWhoHears<World, Radar, Lidar, Fusion, Acc, Driver, Arbitrator, Follower>();
+  ExpectListsWhoHears<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
+                      driver::Driver, arbitrator::Arbitrator, follower::Follower>();
 }
 
 TEST(GraphTest, SendsNobodyOnDemandWhatItGetsAnyway) {

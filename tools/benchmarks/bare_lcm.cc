@@ -151,7 +151,7 @@ std::vector<BareRole> BareGraph() {
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps) {
   // The URL in the form in which Fogline opens it: with a private port and a receive buffer that
   // bursts do not overflow.
-  const std::string url = Bus(FreshMulticastUrl()).url();
+  const std::string url = runtime::Bus(runtime::FreshMulticastUrl()).url();
   Children children;
   for (std::size_t i = 1; i < roles.size(); ++i) children.Start(url, roles[i]);
   BareProcess first(url, roles.front());

@@ -20,7 +20,7 @@ constexpr double kCars = 3;
 /// Runs of the paper's experiment per second, measured on the single core of this thread.
 double ClosedLoopRunsPerSecond(double duration_s) {
   Scenario scenario = LoadScenario("scenario/paper.json");
-  ClosedLoop loop(scenario);
+  metrics::ClosedLoop loop(scenario);
   std::int64_t runs = 0;
   std::int64_t steps = 0;
   double wall_s = 0;
@@ -29,9 +29,9 @@ double ClosedLoopRunsPerSecond(double duration_s) {
       constexpr int kBatch = 100;
       for (int i = 0; i < kBatch; ++i) {
         ++scenario.seed;
-        MeasureAccumulator measures;
+        metrics::MeasureAccumulator measures;
         loop.Restart(scenario);
-        loop.Run(0, [&](const StepView& step) { measures.Add(step.ToSample()); });
+        loop.Run(0, [&](const metrics::StepView& step) { measures.Add(step.ToSample()); });
         steps += measures.Result().steps;
       }
       runs += kBatch;

@@ -26,7 +26,7 @@ struct Recorded {
 
 std::vector<Recorded> Record(const Scenario& scenario) {
   std::vector<Recorded> steps;
-  ClosedLoop(scenario).Run(0, [&steps](const StepView& step) {
+  metrics::ClosedLoop(scenario).Run(0, [&steps](const metrics::StepView& step) {
     steps.push_back({step.truth, step.ego, step.radar, step.lidar, step.track, step.acc,
                      step.driver, step.host, step.follower});
   });
@@ -54,7 +54,7 @@ const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   static const std::vector<Recorded> steps = [&scenario] {
     std::vector<Recorded> hard = Record(scenario);
     std::erase_if(hard, [](const Recorded& step) {
-      return step.acc.solver != static_cast<std::int8_t>(AccController::Solver::kActiveSet);
+      return step.acc.solver != static_cast<std::int8_t>(acc::AccController::Solver::kActiveSet);
     });
     return hard;
   }();
@@ -74,7 +74,7 @@ void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& 
 
 // Without commands the cars keep their distances, so the benchmark may take any number of steps.
 void WorldStep(benchmark::State& state) {
-  World world(Paper());
+  world::World world(Paper());
   world.Start(0);
   arbitration_t host{};
   follower_command_t follower{};
@@ -86,36 +86,36 @@ void WorldStep(benchmark::State& state) {
 BENCHMARK(WorldStep);
 
 void RadarStep(benchmark::State& state) {
-  Radar radar(Paper());
+  radar::Radar radar(Paper());
   Replay(state, PaperSteps(), [&](const Recorded& in) { return &radar.Step(in.truth); });
 }
 BENCHMARK(RadarStep);
 
 void LidarStep(benchmark::State& state) {
-  Lidar lidar(Paper());
+  lidar::Lidar lidar(Paper());
   Replay(state, PaperSteps(), [&](const Recorded& in) { return &lidar.Step(in.truth); });
 }
 BENCHMARK(LidarStep);
 
 void LidarBeamStep(benchmark::State& state) {
-  Lidar lidar(DenseFog());
+  lidar::Lidar lidar(DenseFog());
   static const std::vector<Recorded> steps = Record(DenseFog());
   Replay(state, steps, [&](const Recorded& in) { return &lidar.Step(in.truth); });
 }
 BENCHMARK(LidarBeamStep);
 
 void FusionStep(benchmark::State& state) {
-  Fusion fusion(Paper());
+  fusion::Fusion fusion(Paper());
   Replay(state, PaperSteps(),
          [&](const Recorded& in) { return &fusion.Step(in.ego, in.radar, in.lidar); });
 }
 BENCHMARK(FusionStep);
 
 void AccUnconstrainedStep(benchmark::State& state) {
-  Acc acc(Paper());
+  acc::Acc acc(Paper());
   std::vector<Recorded> steps = PaperSteps();
   std::erase_if(steps, [](const Recorded& step) {
-    return step.acc.solver != static_cast<std::int8_t>(AccController::Solver::kUnconstrained);
+    return step.acc.solver != static_cast<std::int8_t>(acc::AccController::Solver::kUnconstrained);
   });
   Replay(state, steps, [&](const Recorded& in) { return &acc.Step(in.ego, in.track); });
 }
@@ -125,7 +125,7 @@ void AccConstrainedStep(benchmark::State& state) {
   Scenario scenario = Paper();
   scenario.lead.profile = LeadProfile::kEmergencyBrake;
   scenario.arbitrator.policy = Policy::kNone;
-  Acc acc(scenario);
+  acc::Acc acc(scenario);
   double iterations = 0;
   Replay(state, HardSteps(scenario), [&](const Recorded& in) {
     const accel_command_t& out = acc.Step(in.ego, in.track);
@@ -137,13 +137,13 @@ void AccConstrainedStep(benchmark::State& state) {
 BENCHMARK(AccConstrainedStep);
 
 void DriverStep(benchmark::State& state) {
-  Driver driver(Paper());
+  driver::Driver driver(Paper());
   Replay(state, PaperSteps(), [&](const Recorded& in) { return &driver.Step(in.truth); });
 }
 BENCHMARK(DriverStep);
 
 void ArbitratorStep(benchmark::State& state) {
-  Arbitrator arbitrator(Paper());
+  arbitrator::Arbitrator arbitrator(Paper());
   Replay(state, PaperSteps(), [&](const Recorded& in) {
     return &arbitrator.Step(in.ego, in.radar, in.lidar, in.track, in.acc, in.driver);
   });
@@ -151,7 +151,7 @@ void ArbitratorStep(benchmark::State& state) {
 BENCHMARK(ArbitratorStep);
 
 void FollowerStep(benchmark::State& state) {
-  Follower follower(Paper());
+  follower::Follower follower(Paper());
   Replay(state, PaperSteps(), [&](const Recorded& in) { return &follower.Step(in.truth); });
 }
 BENCHMARK(FollowerStep);
@@ -159,7 +159,8 @@ BENCHMARK(FollowerStep);
 /// A whole run: construction and every step.
 void ClosedLoopRun(benchmark::State& state) {
   for (auto _ : state) {
-    ClosedLoop(Paper()).Run(0, [](const StepView& step) { benchmark::DoNotOptimize(&step); });
+    metrics::ClosedLoop(Paper()).Run(
+        0, [](const metrics::StepView& step) { benchmark::DoNotOptimize(&step); });
   }
   state.counters["per_step"] = benchmark::Counter(
       static_cast<double>(Paper().steps),
@@ -169,7 +170,7 @@ BENCHMARK(ClosedLoopRun);
 
 void ClosedLoopConstruction(benchmark::State& state) {
   for (auto _ : state) {
-    ClosedLoop loop(Paper());
+    metrics::ClosedLoop loop(Paper());
     benchmark::DoNotOptimize(&loop);
   }
 }

@@ -10,7 +10,7 @@
 
 #include "common/errors.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 // The search of the whole range gets this share of the evaluations.
@@ -154,7 +154,8 @@ std::pair<double, double> Around(const FreeField& field, double value) {
   return {field.ValueAt(share - kHalfStep), field.ValueAt(share + kHalfStep)};
 }
 
-std::optional<double> Slope(const Statistics& below, const Statistics& above, double percent) {
+std::optional<double> Slope(const stats::Statistics& below, const stats::Statistics& above,
+                            double percent) {
   if (!below.mean() || !above.mean()) return std::nullopt;
   return (*above.mean() - *below.mean()) / percent;
 }
@@ -185,4 +186,4 @@ std::optional<SensitivityTable> Sensitivities(const Objective& objective,
   return all;
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

@@ -8,7 +8,7 @@
 
 #include "tools/calibrate/objective.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 
 /// Progress of a search: evaluations so far, and the smallest objective among them.
 using SearchProgress = std::function<void(int evaluations, double best)>;
@@ -46,4 +46,4 @@ using SensitivityTable = std::vector<std::vector<Change>>;
 std::optional<SensitivityTable> Sensitivities(const Objective& objective,
                                               const std::vector<double>& values, const GoOn& go_on);
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

@@ -24,7 +24,7 @@
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 struct CalibrateArguments {
@@ -46,10 +46,10 @@ struct CalibrateArguments {
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
     verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE, where that of SI is 1")
-        ->check(NumberIn(0, 1e6))
+        ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--spread-weight", spread_weight, "Weight of SI's variance over the seeds")
-        ->check(NumberIn(0, 1e6))
+        ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--jobs", jobs, "Threads; they change no result")
         ->check(CLI::Range(1, 1024))
@@ -57,7 +57,7 @@ struct CalibrateArguments {
     verb.add_option("--out", out, "Write the scenario with the values that were found");
     verb.add_flag("--force", force, "Replace the file of --out if it is a scenario");
     verb.add_flag("--json", json, "Print as JSON");
-    ShowExitCodes(verb, {.interruptible = true});
+    cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
         "Makes small: the squared differences of mean SI and mean RHE from the target, in points,\n"
         "and SI's variance over the seeds, weighted. Equal arguments give equal results. Ctrl-C\n"
@@ -80,7 +80,7 @@ struct CalibrateArguments {
   int evaluations = 1000;
   double rhe_weight = CalibrationProblem().rhe_weight;
   double spread_weight = CalibrationProblem().spread_weight;
-  int jobs = AllCores();
+  int jobs = sweep::AllCores();
   std::filesystem::path out;
   bool force = false;
   bool json = false;
@@ -91,11 +91,11 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
                              .scenario = LoadScenario(arguments.scenario, arguments.overrides),
                              .fields = ParseFreeFields(arguments.free),
                              .target = {},
-                             .seeds = ReadSeeds(arguments.seeds),
+                             .seeds = cli::ReadSeeds(arguments.seeds),
                              .rhe_weight = arguments.rhe_weight,
                              .spread_weight = arguments.spread_weight,
                              .jobs = arguments.jobs};
-  RequireThreshold(problem.scenario, arguments.scenario);
+  sweep::RequireThreshold(problem.scenario, arguments.scenario);
   problem.target =
       arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
   if (problem.target.empty()) {
@@ -170,7 +170,7 @@ Findings Search(const CalibrateArguments& arguments, const Objective& objective)
 }
 
 int RunCalibrate(const CalibrateArguments& arguments) {
-  RefuseJsonBeside(arguments.out, "--out", arguments.json);
+  cli::RefuseJsonBeside(arguments.out, "--out", arguments.json);
   const Objective objective(MakeProblem(arguments));
   const std::string text =
       arguments.out.empty() ? "" : PrepareOut(arguments, objective.problem().scenario);
@@ -178,9 +178,9 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   const Findings findings = Search(arguments, objective);
   const Calibration& found = findings.calibration;
   if (arguments.json) {
-    PrintJson(FindingsJson(objective.problem(), findings, arguments.scenario.string()));
+    cli::PrintJson(FindingsJson(objective.problem(), findings, arguments.scenario.string()));
   } else {
-    PrintBeside(arguments.out, FindingsText(objective.problem(), findings));
+    cli::PrintBeside(arguments.out, FindingsText(objective.problem(), findings));
   }
   if (!arguments.out.empty()) {
     WriteOut(arguments.out, text, objective.problem(), found.values);
@@ -189,17 +189,19 @@ int RunCalibrate(const CalibrateArguments& arguments) {
     throw Interrupted(fmt::format("interrupted; these are the best values of {} evaluation{}",
                                   found.evaluations, found.evaluations == 1 ? "" : "s"));
   }
-  return kDone;
+  return cli::kDone;
 }
 
-void AddCalibrate(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand(kCalibrate.verb, kCalibrate.purpose);
+void AddCalibrate(CLI::App& app, cli::Action& action) {
+  CLI::App* verb = app.add_subcommand(cli::kCalibrate.verb, cli::kCalibrate.purpose);
   const auto arguments = std::make_shared<CalibrateArguments>(*verb);
   verb->callback(
       [&action, arguments] { action = [arguments] { return RunCalibrate(*arguments); }; });
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::calibrate
 
-int main(int argc, char** argv) { return fogline::RunOneVerb(argc, argv, fogline::AddCalibrate); }
+int main(int argc, char** argv) {
+  return fogline::cli::RunOneVerb(argc, argv, fogline::calibrate::AddCalibrate);
+}

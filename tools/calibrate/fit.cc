@@ -7,7 +7,7 @@
 
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -69,7 +69,7 @@ std::string FieldsText(const CalibrationProblem& problem, const std::vector<doub
 }
 
 /// Target, mean reached, difference and standard deviation of one measure.
-std::string Measure(const Statistics& reached, Number target) {
+std::string Measure(const stats::Statistics& reached, Number target) {
   return fmt::format("{:>10}{:>10}{:>12}{:>8}", Cell(target), Cell(reached.mean()),
                      Signed(Difference(reached.mean(), target)), Cell(reached.deviation()));
 }
@@ -148,4 +148,4 @@ std::string FindingsJson(const CalibrationProblem& problem, const Findings& find
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

@@ -6,7 +6,7 @@
 
 #include "tools/calibrate/calibrate.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 
 struct Findings {
   Calibration calibration;
@@ -21,4 +21,4 @@ std::string FindingsText(const CalibrationProblem& problem, const Findings& find
 std::string FindingsJson(const CalibrationProblem& problem, const Findings& findings,
                          const std::string& scenario);
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

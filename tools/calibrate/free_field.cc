@@ -13,7 +13,7 @@
 #include "scenario/io/catalogue.h"
 #include "scenario/sections/field_text.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 constexpr std::string_view kForm =
@@ -185,4 +185,4 @@ std::vector<FreeField> ParseFreeFields(const std::vector<std::string>& texts) {
   return fields;
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

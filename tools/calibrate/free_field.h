@@ -8,7 +8,7 @@
 #include "scenario/io/assignment.h"
 #include "scenario/sections/scenario.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 
 /// A number or integer outside lists, with its bounds and its scale. A search gives a value as its
 /// share of the range, in [0, 1]. On a logarithmic scale equal shares are equal factors.
@@ -58,4 +58,4 @@ class FreeField {
 /// The free fields of a command line. @throws InputError, also if a field is given twice
 std::vector<FreeField> ParseFreeFields(const std::vector<std::string>& texts);
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

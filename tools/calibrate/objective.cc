@@ -11,7 +11,7 @@
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 // Residual of a seed whose runs do not have the measure: the published SI lies in [-1000, 100] %.
@@ -20,7 +20,7 @@ constexpr double kMissingResidualPts = 1000;
 double Square(double x) { return x * x; }
 
 /// Squared residual of the mean. A seed without the measure counts with kMissingResidualPts.
-double Residual(const Statistics& reached, const std::optional<double>& target,
+double Residual(const stats::Statistics& reached, const std::optional<double>& target,
                 std::int64_t seeds) {
   if (!target) return 0;
   const double missing = static_cast<double>(seeds - reached.count()) / static_cast<double>(seeds);
@@ -32,7 +32,7 @@ double Residual(const Statistics& reached, const std::optional<double>& target,
 
 Objective::Objective(CalibrationProblem problem)
     : problem_(std::move(problem)), thresholds_{.pointer = "/arbitrator/threshold", .values = {}} {
-  RequireThreshold(problem_.scenario, problem_.file);
+  sweep::RequireThreshold(problem_.scenario, problem_.file);
   for (const TargetRow& row : problem_.target) {
     thresholds_.values.push_back(NumberText(row.threshold));
   }
@@ -55,20 +55,21 @@ std::string Objective::NameOf(std::span<const double> values) const {
 
 std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                                               const GoOn& go_on) const {
-  const SweepPlan plan(With(values), {thresholds_}, problem_.seeds, problem_.file);
+  const sweep::SweepPlan plan(With(values), {thresholds_}, problem_.seeds, problem_.file);
   Evaluation evaluation;
   evaluation.rows.resize(problem_.target.size());
   bool complete = true;
   try {
-    RunSweep(plan, 0, plan.units(), problem_.jobs,
-             [&](std::int64_t, const std::vector<SweepRow>& results) {
-               for (std::size_t i = 0; i < results.size(); ++i) {
-                 TableRow& row = evaluation.rows[i];
-                 if (results[i].si_pct) row.si_pct.Add(*results[i].si_pct);
-                 if (results[i].measures.rhe_pct) row.rhe_pct.Add(*results[i].measures.rhe_pct);
-               }
-               return complete = go_on();
-             });
+    sweep::RunSweep(plan, 0, plan.units(), problem_.jobs,
+                    [&](std::int64_t, const std::vector<sweep::SweepRow>& results) {
+                      for (std::size_t i = 0; i < results.size(); ++i) {
+                        TableRow& row = evaluation.rows[i];
+                        if (results[i].si_pct) row.si_pct.Add(*results[i].si_pct);
+                        if (results[i].measures.rhe_pct)
+                          row.rhe_pct.Add(*results[i].measures.rhe_pct);
+                      }
+                      return complete = go_on();
+                    });
   } catch (const InputError& error) {
     // Fields whose values are valid one by one can be invalid together, such as the weights of an
     // ACC.
@@ -95,4 +96,4 @@ double Objective::Sum(const std::vector<TableRow>& rows) const {
   return sum;
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

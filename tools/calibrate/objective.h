@@ -13,7 +13,7 @@
 #include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 
 /// Input of a calibration.
 struct CalibrationProblem {
@@ -21,7 +21,7 @@ struct CalibrationProblem {
   Scenario scenario;
   std::vector<FreeField> fields;
   std::vector<TargetRow> target;
-  SeedRange seeds;
+  sweep::SeedRange seeds;
   /// Weight of a squared residual of RHE, and of the variance of SI over the seeds. The weight of a
   /// squared residual of SI is 1.
   double rhe_weight = 1;
@@ -32,8 +32,9 @@ struct CalibrationProblem {
 
 /// A row of the table over all seeds.
 struct TableRow {
-  Statistics si_pct;  // only of seeds that have SI: it needs compromised safety in the paired run
-  Statistics rhe_pct;
+  stats::Statistics
+      si_pct;  // only of seeds that have SI: it needs compromised safety in the paired run
+  stats::Statistics rhe_pct;
 };
 
 struct Evaluation {
@@ -73,7 +74,7 @@ class Objective {
   double Sum(const std::vector<TableRow>& rows) const;
 
   CalibrationProblem problem_;
-  Axis thresholds_;
+  sweep::Axis thresholds_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

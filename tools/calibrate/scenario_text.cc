@@ -9,7 +9,7 @@
 #include "common/text.h"
 #include "scenario/io/json.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
@@ -113,4 +113,4 @@ std::string WithOverride(std::string_view text, std::string_view override_text) 
                    IsJson(value) ? std::string(value) : Quote(value));
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace fogline {
+namespace fogline::calibrate {
 
 /// `text` with `json` as the value at `pointer`. A missing key is added at the end of its object,
 /// with the layout of the keys before it. The same holds for missing sections on the way to the
@@ -16,4 +16,4 @@ std::string WithValue(std::string_view text, std::string_view pointer, std::stri
 /// The same for an override "/pointer=value". Its value is JSON or, failing that, plain text.
 std::string WithOverride(std::string_view text, std::string_view override_text);
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

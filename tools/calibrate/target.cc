@@ -15,7 +15,7 @@
 #include "scenario/io/json.h"
 #include "scenario/io/loader.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 namespace {
 
 std::optional<double> AsNumber(const JsonValue& value) {
@@ -135,4 +135,4 @@ std::vector<TargetRow> PublishedTarget(const Scenario& scenario) {
   return target;
 }
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

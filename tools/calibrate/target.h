@@ -7,7 +7,7 @@
 
 #include "scenario/sections/scenario.h"
 
-namespace fogline {
+namespace fogline::calibrate {
 
 /// A target row. A missing number does not count in the objective.
 struct TargetRow {
@@ -25,4 +25,4 @@ std::vector<TargetRow> ReadTarget(const std::filesystem::path& file);
 /// The published rows of a scenario.
 std::vector<TargetRow> PublishedTarget(const Scenario& scenario);
 
-}  // namespace fogline
+}  // namespace fogline::calibrate

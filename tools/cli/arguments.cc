@@ -21,7 +21,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/report/measure_text.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 namespace {
 
@@ -47,7 +47,7 @@ void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_v
   }
 }
 
-LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
+log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   RequireFolderOf(log, "--log");
   std::error_code ignored;
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
@@ -61,27 +61,27 @@ LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
     throw InputError(
         fmt::format("{}: error: --log: the file exists; --force replaces it", PathText(log)));
   }
-  if (!IsEventLogOrEmpty(log)) {
+  if (!log::IsEventLogOrEmpty(log)) {
     throw InputError(
         fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
                     PathText(log)));
   }
-  return LogOfRun::InPlaceOf(log, std::move(lock));
+  return log::LogOfRun::InPlaceOf(log, std::move(lock));
 }
 
-LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
+log::LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
   std::error_code ignored;  // Reserve() reports the error
   std::filesystem::create_directories(folder, ignored);
   for (int number = 1;; ++number) {
     std::filesystem::path log =
         folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
-    if (Reserve(log)) return LogOfRun(log);
+    if (Reserve(log)) return log::LogOfRun(log);
   }
 }
 
-SeedRange ReadSeeds(const std::string& text) {
-  const SeedRange seeds = ParseSeeds(text);
+sweep::SeedRange ReadSeeds(const std::string& text) {
+  const sweep::SeedRange seeds = sweep::ParseSeeds(text);
   if (seeds.count() == 1 && seeds.first > 1 && text.find(':') == std::string::npos) {
     Notice(fmt::format("--seeds {0} is the one seed {0}; seeds 1 to {0} are --seeds 1:{0}",
                        seeds.first));
@@ -112,20 +112,20 @@ void PrintBeside(const std::filesystem::path& document, std::string_view text) {
   Complain(text);
 }
 
-nlohmann::ordered_json BuildJson(BuildId build) {
-  if (build == kUnknownBuild) return nullptr;
-  return BuildText(build);
+nlohmann::ordered_json BuildJson(runtime::BuildId build) {
+  if (build == runtime::kUnknownBuild) return nullptr;
+  return runtime::BuildText(build);
 }
 
 NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
   verb.add_option("--lcm-url", url_,
                   fmt::format("LCM network {} (default: $LCM_DEFAULT_URL, else {}, and the runs "
                               "announced there)",
-                              what, kLcmDefaultUrl));
+                              what, runtime::kLcmDefaultUrl));
 }
 
 std::string NetworkArguments::Url() const {
-  const std::string url = NetworkUrl(url_);
+  const std::string url = runtime::NetworkUrl(url_);
   const std::string said = fmt::format("{} {}", Follows() ? "LCM_DEFAULT_URL" : "--lcm-url", url);
   if (url.starts_with("memq:")) {
     throw InputError(
@@ -133,9 +133,9 @@ std::string NetworkArguments::Url() const {
                     "run a udpm:// URL",
                     said));
   }
-  if (!IsLcmUrl(url)) {
+  if (!runtime::IsLcmUrl(url)) {
     throw InputError(
-        fmt::format("error: {}: not an LCM network such as \"{}\"", said, kLcmDefaultUrl));
+        fmt::format("error: {}: not an LCM network such as \"{}\"", said, runtime::kLcmDefaultUrl));
   }
   return url;
 }
@@ -160,16 +160,16 @@ std::string Cell(std::string_view name, std::optional<double> value, std::string
 }
 
 /// A line of column names, then one line for each following car.
-std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
+std::string FollowersText(const std::vector<metrics::FollowerMeasures>& followers) {
   std::string text = fmt::format("  {:<10}", "follower");
-  VisitFollowerMeasures(FollowerMeasures(),
-                        [&text](std::string_view name, const auto&, std::string_view,
-                                std::string_view) { text += fmt::format("  {}", name); });
+  metrics::VisitFollowerMeasures(metrics::FollowerMeasures(),
+                                 [&text](std::string_view name, const auto&, std::string_view,
+                                         std::string_view) { text += fmt::format("  {}", name); });
   text += '\n';
   for (std::size_t i = 0; i < followers.size(); ++i) {
     text += fmt::format("  {:<10}", i + 1);
-    VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
-                                                std::string_view unit, std::string_view) {
+    metrics::VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
+                                                         std::string_view unit, std::string_view) {
       text += fmt::format("  {:>{}}", Cell(name, value, unit), name.size());
     });
     text += '\n';
@@ -179,36 +179,37 @@ std::string FollowersText(const std::vector<FollowerMeasures>& followers) {
 
 }  // namespace
 
-std::string MeasuresJson(const ExperimentResult& result) {
+std::string MeasuresJson(const runner::ExperimentResult& result) {
   nlohmann::ordered_json json;
-  VisitMeasures(result.measures, Into(json));
+  metrics::VisitMeasures(result.measures, Into(json));
   if (result.followers.size() > 1) {
-    for (const FollowerMeasures& follower : result.followers) {
-      VisitFollowerMeasures(follower, Into(json["followers"].emplace_back()));
+    for (const metrics::FollowerMeasures& follower : result.followers) {
+      metrics::VisitFollowerMeasures(follower, Into(json["followers"].emplace_back()));
     }
   }
   return json.dump();
 }
 
-std::string MeasuresText(const ExperimentResult& result) {
+std::string MeasuresText(const runner::ExperimentResult& result) {
   std::string text;
-  VisitMeasures(result.measures, [&text]<class V>(std::string_view name, const V& value,
-                                                  std::string_view unit, std::string_view) {
-    if constexpr (std::is_same_v<V, std::optional<double>>) {
-      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
-    } else {
-      text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
-    }
-  });
+  metrics::VisitMeasures(
+      result.measures, [&text]<class V>(std::string_view name, const V& value,
+                                        std::string_view unit, std::string_view) {
+        if constexpr (std::is_same_v<V, std::optional<double>>) {
+          text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
+        } else {
+          text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+        }
+      });
   return result.followers.size() > 1 ? text + FollowersText(result.followers) : text;
 }
 
-nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {
+nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures) {
   nlohmann::ordered_json json;
-  VisitFigures(figures, [&json](std::string_view name, const auto& value, std::string_view,
-                                std::string_view) { json[std::string(name)] = value; });
+  log::VisitFigures(figures, [&json](std::string_view name, const auto& value, std::string_view,
+                                     std::string_view) { json[std::string(name)] = value; });
   json["fallbacks"] = nlohmann::ordered_json::array();
-  for (const Fallback& fallback : figures.fallbacks) {
+  for (const runtime::Fallback& fallback : figures.fallbacks) {
     nlohmann::ordered_json entry{
         {"step", fallback.step}, {"role", fallback.role}, {"what", fallback.what}};
     entry["culprit"] = nullptr;
@@ -219,13 +220,13 @@ nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures) {
   return json;
 }
 
-std::string RealtimeText(const RealtimeFigures& figures) {
+std::string RealtimeText(const log::RealtimeFigures& figures) {
   std::string text;
-  VisitFigures(figures, [&text](std::string_view name, const auto& value, std::string_view unit,
-                                std::string_view) {
+  log::VisitFigures(figures, [&text](std::string_view name, const auto& value,
+                                     std::string_view unit, std::string_view) {
     text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
   });
-  for (const Fallback& fallback : figures.fallbacks) {
+  for (const runtime::Fallback& fallback : figures.fallbacks) {
     text += fmt::format("  {}\n", fallback.Text());
   }
   if (figures.fallbacks_left_out > 0) {
@@ -234,4 +235,4 @@ std::string RealtimeText(const RealtimeFigures& figures) {
   return text;
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -19,7 +19,7 @@
 #include "tools/runner/experiment.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 /// SCENARIO, --set and --seed.
 class ScenarioArguments {
@@ -36,7 +36,7 @@ class ScenarioArguments {
     std::vector<std::string> overrides = overrides_;
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
     Scenario scenario = LoadScenario(file_, overrides);
-    CheckPossible(scenario, file_);
+    runner::CheckPossible(scenario, file_);
     return scenario;
   }
   const std::filesystem::path& file() const { return file_; }
@@ -56,10 +56,10 @@ class ScenarioArguments {
 /// file unless `force` is true. Even with `force` it refuses a file that is no event log. It
 /// requires the folder as RequireFolderOf() does.
 /// @throws InputError
-LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
+log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
 /// "logs/STEM-1.lcm", or the first number that is free.
-LogOfRun FreshLog(const std::filesystem::path& scenario_file);
+log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each log. A log that cannot be read is named on stderr and left out; the
 /// work continues with the others. @return whether all logs could be read
@@ -80,7 +80,7 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
 /// The seeds of --seeds. A single number, which the user may have meant as a count, is explained on
 /// stderr.
 /// @throws InputError
-SeedRange ReadSeeds(const std::string& text);
+sweep::SeedRange ReadSeeds(const std::string& text);
 
 /// Prints --json output: a document and a newline on stdout. Names that are not UTF-8 contain
 /// U+FFFD, because JSON cannot carry them. Control characters for terminals are escaped.
@@ -96,7 +96,7 @@ void RefuseJsonBeside(const std::filesystem::path& document, std::string_view op
 void PrintBeside(const std::filesystem::path& document, std::string_view text);
 
 /// 16 hexadecimal digits, or null for an unknown build.
-nlohmann::ordered_json BuildJson(BuildId build);
+nlohmann::ordered_json BuildJson(runtime::BuildId build);
 
 /// --lcm-url of a verb that observes a network from outside.
 class NetworkArguments {
@@ -116,14 +116,14 @@ class NetworkArguments {
 
 /// {"name": value, ...} of a run's measures, as part of a larger JSON text. With more than one
 /// following car, "followers" is the list of their measures.
-std::string MeasuresJson(const ExperimentResult& result);
+std::string MeasuresJson(const runner::ExperimentResult& result);
 
 /// The measures of a run as lines "name  value unit". If there is more than one following car, a
 /// table of their measures follows.
-std::string MeasuresText(const ExperimentResult& result);
+std::string MeasuresText(const runner::ExperimentResult& result);
 
 /// The same for the figures of a run in real time, and its fallbacks.
-nlohmann::ordered_json RealtimeJson(const RealtimeFigures& figures);
-std::string RealtimeText(const RealtimeFigures& figures);
+nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);
+std::string RealtimeText(const log::RealtimeFigures& figures);
 
-}  // namespace fogline
+}  // namespace fogline::cli

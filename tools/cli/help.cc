@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::cli {
 namespace {
 
 constexpr std::size_t kOptionColumns = 34;  // width of the column with the names of options
@@ -57,4 +57,4 @@ std::string HelpText(const CLI::App& app, const CLI::App& of) {
   return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

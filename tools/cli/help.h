@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace fogline {
+namespace fogline::cli {
 
 /// Maximum length of a line of a help text.
 inline constexpr std::size_t kHelpColumns = 100;
@@ -36,4 +36,4 @@ void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
 /// The help of `app`, or of one of its verbs.
 std::string HelpText(const CLI::App& app, const CLI::App& of);
 
-}  // namespace fogline
+}  // namespace fogline::cli

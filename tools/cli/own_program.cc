@@ -14,7 +14,7 @@
 #include "common/process/console.h"
 #include "tools/processes/child.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 void AddOwnPrograms(CLI::App& app, Action&) {
   for (const OwnProgram& program : kOwnPrograms) {
@@ -30,7 +30,7 @@ void BecomeOwnProgram(int argc, char** argv) {
   if (std::ranges::none_of(kOwnPrograms, is_verb)) return;
   std::string name = "fogline-" + verb;
   std::string option = "--help";
-  const std::string program = ProgramBeside(name).string();
+  const std::string program = processes::ProgramBeside(name).string();
   argv[1] = name.data();
   if (help) argv[2] = option.data();
   execv(program.c_str(), argv + 1);
@@ -39,4 +39,4 @@ void BecomeOwnProgram(int argc, char** argv) {
   std::exit(kRunFailed);
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -4,9 +4,11 @@
 
 #include <array>
 
-#include "tools/cli/verbs.h"
+#include <CLI/CLI.hpp>
 
-namespace fogline {
+#include "tools/cli/action.h"
+
+namespace fogline::cli {
 
 struct OwnProgram {
   const char* verb;
@@ -25,4 +27,4 @@ void AddOwnPrograms(CLI::App& app, Action& action);
 /// ends the process with kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -7,13 +7,13 @@
 
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 /// The scenario of the paired run: lambda_A = 1 throughout, everything else the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
 /// SI in % of every run whose pair is among `runs`: a run of the same scenario and seed with policy
 /// none, where only the arbitrator differs. nullopt for the others.
-std::vector<std::optional<double>> SafetyImprovements(std::span<const LoggedRun> runs);
+std::vector<std::optional<double>> SafetyImprovements(std::span<const runner::LoggedRun> runs);
 
-}  // namespace fogline
+}  // namespace fogline::cli

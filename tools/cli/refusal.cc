@@ -9,7 +9,7 @@
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
 
-namespace fogline {
+namespace fogline::cli {
 namespace {
 
 std::vector<std::string> OptionsOf(const CLI::App& command) {
@@ -133,4 +133,4 @@ std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{}: error: {} (see {} --help)", name, what, name);
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

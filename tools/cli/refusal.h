@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace fogline {
+namespace fogline::cli {
 
 /// "fogline", or "fogline VERB" once the verb is known: the beginning of every message.
 std::string CommandName(const CLI::App& app);
@@ -19,4 +19,4 @@ std::string NoSuchVerb(const CLI::App& app, const std::string& word);
 /// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error);
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -7,23 +7,23 @@
 #include "tools/cli/arguments.h"
 #include "tools/report/measure_text.h"
 
-namespace fogline {
+namespace fogline::cli {
 namespace {
 
-nlohmann::ordered_json VerificationJson(const Verification& verification) {
+nlohmann::ordered_json VerificationJson(const replay::Verification& verification) {
   nlohmann::ordered_json json{{"same", nullptr},
                               {"roles", nlohmann::ordered_json::array()},
                               {"left_out", nlohmann::ordered_json::array()},
                               {"trouble", nullptr}};
   if (!verification.roles.empty()) json["same"] = verification.Holds();
   for (const Role role : verification.roles) json["roles"].push_back(NameOf(role));
-  for (const Verification::LeftOut& one : verification.left_out) {
+  for (const replay::Verification::LeftOut& one : verification.left_out) {
     json["left_out"].push_back({{"role", NameOf(one.role)}, {"why", one.why}});
   }
   if (verification.Holds()) return json;
   json["trouble"] = verification.Trouble();
   if (!verification.failure) return json;
-  const Difference& first = verification.failure->first;
+  const replay::Difference& first = verification.failure->first;
   json["first"] = {{"role", NameOf(verification.failure->role)},
                    {"step", first.step},
                    {"channel", first.channel},
@@ -34,11 +34,11 @@ nlohmann::ordered_json VerificationJson(const Verification& verification) {
 }
 
 /// The roles that were computed again, and those that were not.
-std::string VerificationText(const Verification& verification) {
+std::string VerificationText(const replay::Verification& verification) {
   std::string text;
   for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));
   text = fmt::format("verified:{}\n", text.empty() ? " nothing" : text);
-  for (const Verification::LeftOut& one : verification.left_out) {
+  for (const replay::Verification::LeftOut& one : verification.left_out) {
     text += fmt::format("not verified: {} ({})\n", NameOf(one.role), one.why);
   }
   return text;
@@ -46,9 +46,9 @@ std::string VerificationText(const Verification& verification) {
 
 /// Deviations of a run, and parts that were not checked; "" if there are none.
 std::string RemarksText(const RunOutcome& outcome) {
-  const ExperimentResult& result = outcome.result;
+  const runner::ExperimentResult& result = outcome.result;
   std::string text;
-  for (const OtherBuild& other : result.other_builds) {
+  for (const runtime::OtherBuild& other : result.other_builds) {
     text += fmt::format("another build: {}\n", other.Text());
   }
   if (result.verification) text += VerificationText(*result.verification);
@@ -61,7 +61,7 @@ std::string RemarksText(const RunOutcome& outcome) {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
-  const ExperimentResult& result = outcome.result;
+  const runner::ExperimentResult& result = outcome.result;
   nlohmann::ordered_json json;
   json["scenario"] = outcome.file.string();
   json["seed"] = result.seed;
@@ -75,28 +75,28 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
   json["log"] = nullptr;
   if (!result.log.empty()) json["log"] = result.log.string();
   json["repairs"] = result.repairs;
-  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
-    json["refused"][std::string(kRefusals[i].key)] = result.refused[i];
+  for (std::size_t i = 0; i < runtime::kRefusals.size(); ++i) {
+    json["refused"][std::string(runtime::kRefusals[i].key)] = result.refused[i];
   }
   json["failed_sends"] = nlohmann::ordered_json::array();
-  for (const SendTrouble& one : result.send_troubles) {
+  for (const runtime::SendTrouble& one : result.send_troubles) {
     json["failed_sends"].push_back(
         {{"role", one.role}, {"count", one.count}, {"error", one.error}});
   }
   json["strangers"] = nlohmann::ordered_json::array();
-  for (const ForeignPeer& stranger : result.foreign_peers) {
+  for (const runtime::ForeignPeer& stranger : result.foreign_peers) {
     json["strangers"].push_back({{"role", stranger.role},
                                  {"pid", stranger.pid},
                                  {"host", stranger.host},
                                  {"run_id", stranger.run_id}});
   }
   json["restarts"] = nlohmann::ordered_json::array();
-  for (const Restarts& role : result.restarts) {
+  for (const runner::Restarts& role : result.restarts) {
     json["restarts"].push_back({{"role", role.role}, {"count", role.count}, {"last", role.last}});
   }
   json["log_checked"] = result.checked;
   json["other_builds"] = nlohmann::ordered_json::array();
-  for (const OtherBuild& other : result.other_builds) {
+  for (const runtime::OtherBuild& other : result.other_builds) {
     json["other_builds"].push_back({{"role", NameOf(other.role)},
                                     {"pid", other.pid},
                                     {"host", other.host},
@@ -111,7 +111,7 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
 }
 
 std::string ToText(const RunOutcome& outcome) {
-  const ExperimentResult& result = outcome.result;
+  const runner::ExperimentResult& result = outcome.result;
   std::string text =
       fmt::format("{}: {}{} steps", PathText(outcome.file), result.steps,
                   result.steps < outcome.steps ? fmt::format(" of {}", outcome.steps) : "");
@@ -124,16 +124,16 @@ std::string ToText(const RunOutcome& outcome) {
   if (!collision.empty()) text += ": " + collision;
   text += '\n';
   std::string refused;
-  for (std::size_t i = 0; i < kRefusals.size(); ++i) {
+  for (std::size_t i = 0; i < runtime::kRefusals.size(); ++i) {
     if (result.refused[i] == 0) continue;
-    refused +=
-        fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i], kRefusals[i].what);
+    refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", result.refused[i],
+                           runtime::kRefusals[i].what);
   }
   if (!refused.empty()) text += fmt::format("refused messages: {}\n", refused);
   if (!result.send_troubles.empty()) {
     text += fmt::format("messages that could not be sent: {}\n", Text(result.send_troubles));
   }
-  for (const Restarts& role : result.restarts) {
+  for (const runner::Restarts& role : result.restarts) {
     text += fmt::format("{} was started again {}: {}\n", role.role,
                         role.count == 1 ? "once" : fmt::format("{} times", role.count), role.last);
   }
@@ -144,4 +144,4 @@ std::string ToText(const RunOutcome& outcome) {
   return text + MeasuresText(result);
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -10,12 +10,12 @@
 
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 struct RunOutcome {
   std::filesystem::path file;  // the file with the scenario
   std::int64_t steps = 0;      // of the scenario; a collision ends a run earlier
-  ExperimentResult result;
+  runner::ExperimentResult result;
   std::optional<std::int64_t> resumed;  // number of steps that the log already had
   bool computed = true;                 // whether this process computed the rest
 };
@@ -24,4 +24,4 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome);
 /// Several lines, the most important one first.
 std::string ToText(const RunOutcome& outcome);
 
-}  // namespace fogline
+}  // namespace fogline::cli

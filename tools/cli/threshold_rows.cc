@@ -4,14 +4,14 @@
 #include "common/process/progress.h"
 #include "tools/sweep/engine.h"
 
-namespace fogline {
+namespace fogline::cli {
 
-std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
-                                         std::span<const double> thresholds,
-                                         const SeedRange& seeds) {
+std::vector<sweep::ThresholdRow> RowsOnAllCores(const Scenario& scenario,
+                                                std::span<const double> thresholds,
+                                                const sweep::SeedRange& seeds) {
   Progress progress("seed", seeds.count());
-  std::vector<ThresholdRow> rows =
-      SweepThresholds(scenario, thresholds, seeds, AllCores(), [&](std::int64_t done) {
+  std::vector<sweep::ThresholdRow> rows = sweep::SweepThresholds(
+      scenario, thresholds, seeds, sweep::AllCores(), [&](std::int64_t done) {
         progress.Show(done);
         return !WasInterrupted();
       });
@@ -19,4 +19,4 @@ std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
   return rows;
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

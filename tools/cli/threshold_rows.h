@@ -6,12 +6,12 @@
 
 #include "tools/sweep/threshold_curve.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 /// SweepThresholds() on all cores with a progress bar. Call WatchInterrupts() before it.
 /// @throws Interrupted after Ctrl-C
-std::vector<ThresholdRow> RowsOnAllCores(const Scenario& scenario,
-                                         std::span<const double> thresholds,
-                                         const SeedRange& seeds);
+std::vector<sweep::ThresholdRow> RowsOnAllCores(const Scenario& scenario,
+                                                std::span<const double> thresholds,
+                                                const sweep::SeedRange& seeds);
 
-}  // namespace fogline
+}  // namespace fogline::cli

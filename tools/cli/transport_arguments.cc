@@ -10,7 +10,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/help.h"
 
-namespace fogline {
+namespace fogline::cli {
 namespace {
 
 std::vector<std::string> RoleNames() {
@@ -48,30 +48,30 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
       "Compute every role's steps again from the log and compare (default with --external, and "
       "for a run that goes on); roles of another build and runs in real time are left out");
   verb.add_flag("--no-verify", no_verify_, "Do not in any case")->excludes(verify);
-  AddTrafficOptions(verb, traffic_);
+  runtime::AddTrafficOptions(verb, traffic_);
 }
 
 std::string TransportArguments::Unsaid() const {
-  const auto url = UrlOfEnvironment();
+  const auto url = runtime::UrlOfEnvironment();
   const bool as_processes = transport_ != "direct" || !external_.empty();
   if (!url || !as_processes) return transport_;
-  if (!IsLcmUrl(*url)) {
+  if (!runtime::IsLcmUrl(*url)) {
     throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
-                                 *url, kLcmDefaultUrl));
+                                 *url, runtime::kLcmDefaultUrl));
   }
   return *url;
 }
 
-void TransportArguments::Apply(ExperimentOptions& options) const {
-  if (!url_.empty() && !IsLcmUrl(url_)) {
-    throw InputError(
-        fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_, kLcmDefaultUrl));
+void TransportArguments::Apply(runner::ExperimentOptions& options) const {
+  if (!url_.empty() && !runtime::IsLcmUrl(url_)) {
+    throw InputError(fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_,
+                                 runtime::kLcmDefaultUrl));
   }
   options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   // A wrong key is refused even for a run that has no messages to sign.
-  KeyOf(traffic_);
+  runtime::KeyOf(traffic_);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }
@@ -100,4 +100,4 @@ void TransportArguments::Apply(ExperimentOptions& options) const {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

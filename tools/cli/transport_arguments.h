@@ -8,7 +8,7 @@
 
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::cli {
 
 /// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
 class TransportArguments {
@@ -20,7 +20,7 @@ class TransportArguments {
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
   /// @throws InputError for a contradiction between them
-  void Apply(ExperimentOptions& options) const;
+  void Apply(runner::ExperimentOptions& options) const;
 
  private:
   /// The transport of a run without --transport and --lcm-url.
@@ -34,7 +34,7 @@ class TransportArguments {
   bool same_build_ = false;
   bool verify_ = false;
   bool no_verify_ = false;
-  TrafficOptions traffic_;
+  runtime::TrafficOptions traffic_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::cli

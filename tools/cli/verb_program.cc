@@ -19,7 +19,7 @@
 #include "tools/cli/help.h"
 #include "tools/cli/refusal.h"
 
-namespace fogline {
+namespace fogline::cli {
 namespace {
 
 /// Runs a verb and prints its error if there is one. @return its exit code
@@ -53,7 +53,7 @@ int Run(const CLI::App& app, const Action& action) {
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
   FailWritesBeyondTheSizeLimit();
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
-  app.set_version_flag("--version", VersionText());
+  app.set_version_flag("--version", runtime::VersionText());
   app.require_subcommand(0, 1);
   app.formatter(std::make_shared<HelpFormatter>());
   ShowExitCodes(app, {.check_failed = "a check failed", .interruptible = true});
@@ -109,4 +109,4 @@ int RunOneVerb(int argc, char** argv, AddVerb verb) {
   return Main(std::move(arguments), {verb});
 }
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -4,11 +4,13 @@
 
 #include <initializer_list>
 
-#include "tools/cli/verbs.h"
+#include <CLI/CLI.hpp>
 
-namespace fogline {
+#include "tools/cli/action.h"
 
-/// Adds a verb to the command line; see verbs.h.
+namespace fogline::cli {
+
+/// Adds a verb to the command line; see tools/fogline/verbs.h.
 using AddVerb = void (*)(CLI::App& app, Action& action);
 
 /// Reads the command line "fogline VERB ...", runs the verb, and prints its error if there is one.
@@ -18,4 +20,4 @@ int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs);
 /// The same for the program of a single verb: its command line has no VERB.
 int RunOneVerb(int argc, char** argv, AddVerb verb);
 
-}  // namespace fogline
+}  // namespace fogline::cli

@@ -47,26 +47,26 @@ int UrlOption(const std::string& url, const std::string& name, int otherwise) {
 }
 
 bool ExamineGroup(const std::string& url, const std::string& group, Findings& findings) {
-  if (IsMulticast(group)) return true;
+  if (runtime::IsMulticast(group)) return true;
   findings.push_back({"multicast_group", Level::kProblem,
                       fmt::format("{} is no multicast group (224.0.0.0 to 239.255.255.255)", group),
-                      InPlaceOfUnicast(url)});
+                      runtime::InPlaceOfUnicast(url)});
   return false;
 }
 
 std::string RouteRemedy() {
   return fmt::format(
       "as root: {} for this machine alone, or with the network's interface in place of lo",
-      kLoopbackRoute);
+      runtime::kLoopbackRoute);
 }
 
 /// Traffic that stays on this machine. @return whether it can be sent
 bool ExamineOwnMachine(const std::string& url, const std::string& group, Findings& findings) {
-  if (const std::string why = WhyNoMulticast(url); !why.empty()) {
+  if (const std::string why = runtime::WhyNoMulticast(url); !why.empty()) {
     findings.push_back({"multicast_route", Level::kProblem, why, "as root: ip link set lo up"});
     return false;
   }
-  const std::string error = RouteError(group);
+  const std::string error = runtime::RouteError(group);
   findings.push_back(
       error.empty()
           ? Finding{"multicast_route", Level::kOk,
@@ -81,13 +81,13 @@ bool ExamineOwnMachine(const std::string& url, const std::string& group, Finding
 }
 
 bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
-  const std::string error = RouteError(group);
+  const std::string error = runtime::RouteError(group);
   if (!error.empty()) {
     findings.push_back({"multicast_route", Level::kProblem,
                         fmt::format("no route to {}: {}", group, error), RouteRemedy()});
     return false;
   }
-  const std::string interface = RouteInterface(Content("/proc/net/route"), group);
+  const std::string interface = runtime::RouteInterface(Content("/proc/net/route"), group);
   const std::string through = interface.empty() ? "a route that is not in the main table"
                                                 : fmt::format("interface {}", interface);
   if (ttl > 0 && interface == "lo") {
@@ -107,9 +107,9 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
 
 /// Sends a message forth and back between two connections. @return the time that it took; zero if
 /// it was lost
-Duration RoundTrip(Bus& here, Bus& there, bool& back) {
+Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   constexpr Duration kLimit = milliseconds(300);
-  const std::vector<std::uint8_t> message(kHeaderEnd);
+  const std::vector<std::uint8_t> message(runtime::kHeaderEnd);
   const TimePoint began = Clock::now();
   back = false;
   here.Publish("FOGLINE_PING", message);
@@ -123,14 +123,15 @@ Duration RoundTrip(Bus& here, Bus& there, bool& back) {
 /// Sends a real LCM message on a port that no other process uses, along the route of this ttl.
 void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
   constexpr int kRounds = 50;
-  const MulticastAddress fresh = *ParseMulticastUrl(FreshMulticastUrl());
+  const runtime::MulticastAddress fresh = *runtime::ParseMulticastUrl(runtime::FreshMulticastUrl());
   const std::string url = fmt::format("udpm://{}:{}?ttl={}", group, fresh.port, ttl);
-  Bus here(url);
-  Bus there(url);
+  runtime::Bus here(url);
+  runtime::Bus there(url);
   bool back = false;
-  there.Subscribe("FOGLINE_PING",
-                  [&there](Arrival& arrival) { there.Publish("FOGLINE_PONG", arrival.bytes()); });
-  here.Subscribe("FOGLINE_PONG", [&back](Arrival&) { back = true; });
+  there.Subscribe("FOGLINE_PING", [&there](runtime::Arrival& arrival) {
+    there.Publish("FOGLINE_PONG", arrival.bytes());
+  });
+  here.Subscribe("FOGLINE_PONG", [&back](runtime::Arrival&) { back = true; });
   std::vector<double> times_us;
   for (int i = 0; i < kRounds; ++i) {
     const Duration time = RoundTrip(here, there, back);
@@ -189,7 +190,7 @@ std::string FilteredFirst() {
   std::array<char, 4> magic{};
   ssize_t received = 0;
   if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
-      AttachFilter(receiver, AnyChannelFilter())) {
+      runtime::AttachFilter(receiver, runtime::AnyChannelFilter())) {
     // It sends to itself; on one machine a datagram arrives at once.
     sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
     sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
@@ -219,7 +220,7 @@ void ExamineFilter(const std::string& url, Findings& findings) {
 
 void ExamineRelay(const std::string& url, Findings& findings) {
   try {
-    const tcpq::Client client(url);
+    const runtime::tcpq::Client client(url);
     findings.push_back(
         {"relay", Level::kOk, fmt::format("the relay {} answers", client.url()), ""});
   } catch (const InputError&) {
@@ -229,17 +230,18 @@ void ExamineRelay(const std::string& url, Findings& findings) {
   }
 }
 
-std::string DescribeRun(const RunView& run) {
+std::string DescribeRun(const watch::RunView& run) {
   std::string text = fmt::format("run {} at step {}", run.run_id, run.step);
-  for (const RoleView& role : run.roles) {
+  for (const watch::RoleView& role : run.roles) {
     text += fmt::format("{} {} {}@{}", &role == run.roles.data() ? ":" : ",",
                         Printable(role.status.role), role.status.pid, Printable(role.status.host));
   }
   return text;
 }
 
-void ReportAnnounced(const std::string& url, const BeaconListener& beacons, Findings& findings) {
-  for (const Announcement& run : beacons.Runs()) {
+void ReportAnnounced(const std::string& url, const runtime::BeaconListener& beacons,
+                     Findings& findings) {
+  for (const runtime::Announcement& run : beacons.Runs()) {
     findings.push_back({"announced_runs", Level::kOk, run.Text(), ""});
   }
   if (beacons.refused() > 0) {
@@ -256,7 +258,7 @@ void ReportAnnounced(const std::string& url, const BeaconListener& beacons, Find
 void ExamineNetwork(const std::string& url, Findings& findings) {
   constexpr int kReceiveBuffer = 2 << 20;  // the size that a Bus asks for
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
-  const auto group = GroupOf(url);
+  const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
     // mpudpm follows the route, whatever the ttl is.
@@ -272,24 +274,24 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
 void ExamineTraffic(const std::string& url, Findings& findings) {
   constexpr Duration kListen = milliseconds(1000);
   constexpr Duration kLookEvery = milliseconds(20);
-  Bus bus(url);
-  BeaconListener beacons(url);
+  runtime::Bus bus(url);
+  runtime::BeaconListener beacons(url);
   const TimePoint end = Clock::now() + kListen;
-  TrafficStatistics statistics(Clock::now());
-  bus.SubscribeAll([&statistics](std::string_view channel, Bytes bytes) {
-    if (!IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
+  watch::TrafficStatistics statistics(Clock::now());
+  bus.SubscribeAll([&statistics](std::string_view channel, runtime::Bytes bytes) {
+    if (!watch::IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
   });
   for (TimePoint now = Clock::now(); now < end; now = Clock::now()) {
     bus.Wait(std::min(end - now, kLookEvery));
     beacons.Look();
   }
   ReportAnnounced(url, beacons, findings);
-  const TrafficView view = statistics.Observe(Clock::now());
-  for (const RunView& run : view.runs) {
+  const watch::TrafficView view = statistics.Observe(Clock::now());
+  for (const watch::RunView& run : view.runs) {
     findings.push_back(
         {"other_runs", Level::kOk, fmt::format("on {}: {}", url, DescribeRun(run)), ""});
   }
-  for (const ChannelView& other : view.others) {
+  for (const watch::ChannelView& other : view.others) {
     findings.push_back({"other_runs", Level::kWarning,
                         fmt::format("on {}: {} messages of no run on channel {}", url,
                                     other.arrivals.messages, Printable(other.channel)),

@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 bool Executable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
 
 void ExamineJava(Findings& findings) {
-  const fs::path java = JavaProgram();
+  const fs::path java = spy::JavaProgram();
   if (java.empty()) {
     findings.push_back({"java", Level::kWarning, "there is no Java: no lcm-spy",
                         "apt-get install default-jre; `fogline top` needs none"});
     return;
   }
-  if (!OpensWindows(java)) {
+  if (!spy::OpensWindows(java)) {
     findings.push_back({"java", Level::kWarning,
                         fmt::format("{} cannot open windows: no lcm-spy", PathText(java)),
                         "apt-get install default-jre (headless is not enough)"});
@@ -42,14 +42,14 @@ void ExamineJava(Findings& findings) {
 void ExamineSpy(const fs::path& programs, Findings& findings) {
   for (const auto& [jar, package] :
        {std::pair{"lcm.jar", "liblcm-java"}, std::pair{"jchart2d.jar", "libjchart2d-java"}}) {
-    if (!InstalledJar(jar).empty()) continue;
+    if (!spy::InstalledJar(jar).empty()) continue;
     findings.push_back({"lcm_spy", Level::kWarning,
                         fmt::format("there is no /usr/share/java/{}: no lcm-spy", jar),
                         fmt::format("apt-get install {}", package)});
     return;
   }
   findings.push_back({"lcm_spy", Level::kOk, "the libraries of lcm-spy are there", ""});
-  if (const fs::path jar = TypesJar(programs); !jar.empty()) {
+  if (const fs::path jar = spy::TypesJar(programs); !jar.empty()) {
     findings.push_back({"lcm_spy_types", Level::kOk,
                         fmt::format("message types for lcm-spy: {}", PathText(jar)), ""});
     return;
@@ -63,14 +63,14 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
 std::map<Role, std::string> AskVersions(const fs::path& programs) {
   constexpr Duration kLimit = milliseconds(5000);
   std::map<Role, std::string> versions;
-  ProcessGroup group;
+  processes::ProcessGroup group;
   for (const RoleInfo& info : kRoles) {
     const fs::path program = programs / fmt::format("fogline-{}", info.name);
     if (Executable(program)) group.Start(info.role, program, {"--version"});
   }
   const TimePoint end = Clock::now() + kLimit;
   while (!group.empty() && Clock::now() < end) {
-    for (const ProcessGroup::Exit& exit : group.Collect()) {
+    for (const processes::ProcessGroup::Exit& exit : group.Collect()) {
       versions[exit.role] = exit.lines.empty() ? exit.how : exit.lines.front();
     }
     usleep(1000);
@@ -85,7 +85,7 @@ void ExamineTools(const fs::path& programs, Findings& findings) {
       {"lcm", Level::kOk,
        fmt::format("LCM {}.{}.{}", LCM_MAJOR_VERSION, LCM_MINOR_VERSION, LCM_MICRO_VERSION), ""});
   for (const char* program : {"lcm-logger", "lcm-logplayer"}) {
-    const fs::path file = InPath(program);
+    const fs::path file = spy::InPath(program);
     if (file.empty()) {
       findings.push_back({"lcm_tools", Level::kWarning, fmt::format("there is no {}", program),
                           "apt-get install liblcm-bin"});
@@ -99,7 +99,7 @@ void ExamineTools(const fs::path& programs, Findings& findings) {
 
 void ExaminePrograms(const fs::path& programs, Findings& findings) {
   const std::map<Role, std::string> versions = AskVersions(programs);
-  const std::string own = VersionText();
+  const std::string own = runtime::VersionText();
   bool good = true;
   for (const RoleInfo& info : kRoles) {
     const std::string program = (programs / fmt::format("fogline-{}", info.name)).string();

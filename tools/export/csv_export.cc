@@ -14,7 +14,7 @@
 #include "common/process/interrupt.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::exports {
 namespace {
 
 constexpr std::string_view kScenarioFile = "scenario.json";
@@ -113,4 +113,4 @@ void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   for (AtomicFile& file : files) file.Finish();
 }
 
-}  // namespace fogline
+}  // namespace fogline::exports

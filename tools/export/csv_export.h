@@ -7,7 +7,7 @@
 
 #include "tools/export/run_tables.h"
 
-namespace fogline {
+namespace fogline::exports {
 
 /// Files that WriteCsv() writes into a folder: CHANNEL.csv for each channel, and scenario.json.
 std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder);
@@ -25,4 +25,4 @@ bool IsCsvExport(const std::filesystem::path& file);
 /// Interrupted
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder);
 
-}  // namespace fogline
+}  // namespace fogline::exports

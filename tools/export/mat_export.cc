@@ -21,7 +21,7 @@
 #include "common/process/interrupt.h"
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::exports {
 namespace {
 
 // Beginning of a file of level 5. Readers evaluate only its first word. It has no time of day,
@@ -179,4 +179,4 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
   file.Finish();
 }
 
-}  // namespace fogline
+}  // namespace fogline::exports

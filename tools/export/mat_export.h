@@ -5,7 +5,7 @@
 
 #include "tools/export/run_tables.h"
 
-namespace fogline {
+namespace fogline::exports {
 
 /// Whether WriteMat() has written the file, judged by its beginning.
 bool IsMatExport(const std::filesystem::path& file);
@@ -20,4 +20,4 @@ bool IsMatExport(const std::filesystem::path& file);
 ///     std::runtime_error when the disk is full; Interrupted
 void WriteMat(const RunTables& tables, const std::filesystem::path& file);
 
-}  // namespace fogline
+}  // namespace fogline::exports

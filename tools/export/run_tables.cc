@@ -13,7 +13,7 @@
 #include "services/log/run_log.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::exports {
 namespace {
 
 /// Adds messages of type M to the table of their channel.
@@ -21,9 +21,9 @@ template <class M>
 class Tabulator {
  public:
   /// @throws InputError whose text lacks the log's name; the caller adds it
-  void Add(Bytes bytes) {
+  void Add(runtime::Bytes bytes) {
     if (bytes.empty()) return;  // a run in real time may lack a message
-    if (!Decode(bytes, message_)) {
+    if (!runtime::Decode(bytes, message_)) {
       throw InputError(
           fmt::format("message {} of {} does not decode: was it recorded with other "
                       "message types?",
@@ -78,10 +78,10 @@ struct TabulatorsOf<const std::tuple<Channel<M>...>> {
 
 RunTables ReadRunTables(const std::filesystem::path& log) {
   RunTables tables;
-  RunLogReader reader(log);
+  log::RunLogReader reader(log);
   typename TabulatorsOf<decltype(kGraph)>::Type tabulators;
   try {
-    while (const StepMessages* messages = reader.Next()) {
+    while (const log::StepMessages* messages = reader.Next()) {
       if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
       ForEachStepChannel([&]<class M>(std::size_t channel) {
         std::get<Tabulator<M>>(tabulators).Add((*messages)[channel]);
@@ -95,7 +95,7 @@ RunTables ReadRunTables(const std::filesystem::path& log) {
   ForEachStepChannel([&]<class M>(std::size_t) {
     tables.channels.push_back(std::move(std::get<Tabulator<M>>(tabulators).table()));
   });
-  const RunLog& run = reader.run();
+  const log::RunLog& run = reader.run();
   constexpr int kIndent = 2;
   tables.scenario =
       nlohmann::ordered_json::parse(run.scenario_text).dump(kIndent, ' ', /*ensure_ascii=*/true);
@@ -105,4 +105,4 @@ RunTables ReadRunTables(const std::filesystem::path& log) {
   return tables;
 }
 
-}  // namespace fogline
+}  // namespace fogline::exports

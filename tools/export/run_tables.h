@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace fogline {
+namespace fogline::exports {
 
 /// One field of a channel's messages.
 struct FieldTable {
@@ -44,4 +44,4 @@ struct RunTables {
 /// Interrupted
 RunTables ReadRunTables(const std::filesystem::path& log);
 
-}  // namespace fogline
+}  // namespace fogline::exports

@@ -12,7 +12,7 @@
 #include "scenario/io/loader.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline {
@@ -33,24 +33,24 @@ nlohmann::ordered_json ToJson(const Diagnostic& mistake) {
 }
 
 int CheckFiles(const CheckOptions& options) {
-  int code = kDone;
+  int code = cli::kDone;
   nlohmann::ordered_json mistakes = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     try {
       const Scenario scenario = LoadScenario(file, options.overrides);
-      CheckPossible(scenario, file);
+      runner::CheckPossible(scenario, file);
       if (options.print) {
         fmt::print("{}", PrintScenario(scenario));
       } else if (!options.json) {
         fmt::print("{}: ok\n", PathText(file));
       }
     } catch (const ScenarioError& error) {
-      code = kBadInput;
+      code = cli::kBadInput;
       for (const Diagnostic& mistake : error.mistakes()) mistakes.push_back(ToJson(mistake));
       if (!options.json) Complain(error.what());
     }
   }
-  if (options.json) PrintJson(mistakes);
+  if (options.json) cli::PrintJson(mistakes);
   return code;
 }
 
@@ -62,11 +62,11 @@ int Check(const CheckOptions& options) {
   }
   if (options.schema) {
     fmt::print("{}", ScenarioSchema());
-    return kDone;
+    return cli::kDone;
   }
   if (options.explain) {
     fmt::print("{}", ExplainField(*options.explain));
-    return kDone;
+    return cli::kDone;
   }
   if (options.files.empty()) throw InputError("error: FILE is missing");
   if (options.print && options.files.size() > 1) {
@@ -77,7 +77,7 @@ int Check(const CheckOptions& options) {
 
 }  // namespace
 
-void AddCheck(CLI::App& app, Action& action) {
+void AddCheck(CLI::App& app, cli::Action& action) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand("check", "Validate scenario files, and explain their fields");
   verb->add_option("FILE", options->files, "Scenario files");
@@ -89,7 +89,7 @@ void AddCheck(CLI::App& app, Action& action) {
   verb->add_option("--explain", options->explain, "Print a field's meaning, range, default")
       ->type_name("/POINTER");
   verb->add_flag("--json", options->json, "Print mistakes as a JSON list");
-  ShowExitCodes(*verb, {.done = "every file is good"});
+  cli::ShowExitCodes(*verb, {.done = "every file is good"});
   verb->footer(
       "Prints `FILE: ok` for a good file; otherwise every mistake as\n"
       "`FILE:LINE:COLUMN: error: /pointer: ...` on stderr.\n\n"

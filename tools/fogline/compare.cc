@@ -21,7 +21,7 @@
 #include "scenario/io/json.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -140,12 +140,12 @@ void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double en
 }
 
 /// @throws InputError if the file has another leader than the run
-void CheckLeader(const LoggedRun& run, const Recording& recording,
+void CheckLeader(const runner::LoggedRun& run, const Recording& recording,
                  const std::filesystem::path& file) {
   if (recording.leader_mps.empty()) return;
   const RecordedSection& leader = run.scenario.lead.recorded;
   CsvSeries recorded_mps(recording.times_s, recording.leader_mps);
-  for (const Sample& sample : run.result.samples) {
+  for (const metrics::Sample& sample : run.result.samples) {
     const double time_s = leader.start_s + sample.time_s;
     const double there_mps = recorded_mps.At(time_s);
     if (std::abs(there_mps - sample.preceding_speed_mps) <= kSameLeader_mps) continue;
@@ -194,13 +194,13 @@ struct Comparison {
 };
 
 /// @param out gets the values of each step as CSV; nullptr: no such output
-Comparison Compare(const LoggedRun& run, const Recording& recording, std::ostream* out) {
+Comparison Compare(const runner::LoggedRun& run, const Recording& recording, std::ostream* out) {
   const double start_s = run.scenario.lead.recorded.start_s;
   CsvSeries speed_mps(recording.times_s, recording.speeds_mps);
   CsvSeries gap_m(recording.times_s, recording.gaps_m);
   Comparison comparison;
   if (out != nullptr) *out << "time_s,speed_mps,recorded_speed_mps,gap_m,recorded_gap_m\n";
-  for (const Sample& sample : run.result.samples) {
+  for (const metrics::Sample& sample : run.result.samples) {
     const double recorded_mps = speed_mps.At(start_s + sample.time_s);
     const double recorded_m = gap_m.At(start_s + sample.time_s);
     comparison.speed_mps.Add(sample.host_speed_mps, recorded_mps);
@@ -244,8 +244,8 @@ nlohmann::ordered_json ToJson(const CompareArguments& arguments, const Compariso
 }
 
 int RunCompare(const CompareArguments& arguments) {
-  RefuseJsonBeside(arguments.out, "--out", arguments.json);
-  const LoggedRun run = ReadLoggedRun(arguments.log);
+  cli::RefuseJsonBeside(arguments.out, "--out", arguments.json);
+  const runner::LoggedRun run = runner::ReadLoggedRun(arguments.log);
   if (run.result.samples.empty()) Refuse(arguments.log, "no steps");
   if (run.scenario.lead.profile != LeadProfile::kRecorded) {
     Refuse(arguments.log, "/lead/profile: the leader of this run is not a recorded one");
@@ -272,16 +272,16 @@ int RunCompare(const CompareArguments& arguments) {
   }
   if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
   if (arguments.json) {
-    PrintJson(ToJson(arguments, comparison));
+    cli::PrintJson(ToJson(arguments, comparison));
   } else {
-    PrintBeside(arguments.out, ToText(arguments, comparison));
+    cli::PrintBeside(arguments.out, ToText(arguments, comparison));
   }
-  return run.complete ? kDone : kCheckFailed;
+  return run.complete ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddCompare(CLI::App& app, Action& action) {
+void AddCompare(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand(
       "compare", "Compare a run's host with a recorded car behind the same leader");
   const auto arguments = std::make_shared<CompareArguments>();
@@ -298,7 +298,7 @@ void AddCompare(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "Write both step by step into this CSV file");
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
+  cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
   verb->footer(
       "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
       "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"

@@ -9,7 +9,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/replay/difference.h"
 
 namespace fogline {
@@ -22,13 +22,13 @@ struct DiffArguments {
 };
 
 int RunDiff(const DiffArguments& arguments) {
-  RunLogReader reader_a(arguments.a);
-  RunLogReader reader_b(arguments.b);
-  std::optional<Difference> difference;
+  log::RunLogReader reader_a(arguments.a);
+  log::RunLogReader reader_b(arguments.b);
+  std::optional<replay::Difference> difference;
   std::int64_t step = 0;
   while (true) {
-    const StepMessages* a = reader_a.Next();
-    const StepMessages* b = reader_b.Next();
+    const log::StepMessages* a = reader_a.Next();
+    const log::StepMessages* b = reader_b.Next();
     if (a == nullptr && b == nullptr) break;
     if (a == nullptr || b == nullptr) {
       difference = {.step = step,
@@ -38,7 +38,7 @@ int RunDiff(const DiffArguments& arguments) {
                     .b = b == nullptr ? "none" : "there"};
       break;
     }
-    if ((difference = FirstDifference(step, *a, *b))) break;
+    if ((difference = replay::FirstDifference(step, *a, *b))) break;
     ++step;
   }
   if (arguments.json) {
@@ -52,7 +52,7 @@ int RunDiff(const DiffArguments& arguments) {
     } else {
       json["steps"] = step;
     }
-    PrintJson(json);
+    cli::PrintJson(json);
   } else if (difference) {
     fmt::print("step {}: {} {}: {} in {}, {} in {}\n", difference->step, difference->channel,
                difference->field, difference->a, PathText(arguments.a), difference->b,
@@ -60,26 +60,27 @@ int RunDiff(const DiffArguments& arguments) {
   } else {
     fmt::print("equal: {} steps\n", step);
   }
-  for (const RunLogReader* reader : {&reader_a, &reader_b}) {
+  for (const log::RunLogReader* reader : {&reader_a, &reader_b}) {
     if (!difference && !reader->run().note.empty()) {
       Complain(fmt::format("{}: {}", PathText(reader == &reader_a ? arguments.a : arguments.b),
                            reader->run().note));
     }
   }
   const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);
-  return difference || !complete ? kCheckFailed : kDone;
+  return difference || !complete ? cli::kCheckFailed : cli::kDone;
 }
 
 }  // namespace
 
-void AddDiff(CLI::App& app, Action& action) {
+void AddDiff(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("diff", "Name the first step and field in which two logs differ");
   const auto arguments = std::make_shared<DiffArguments>();
   verb->add_option("A", arguments->a, "Event log")->required();
   verb->add_option("B", arguments->b, "Event log")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.done = "equal runs", .check_failed = "they differ or are not complete"});
+  cli::ShowExitCodes(*verb,
+                     {.done = "equal runs", .check_failed = "they differ or are not complete"});
   verb->footer("Example:\n  fogline diff logs/paper-1.lcm logs/paper-2.lcm");
   verb->callback([&action, arguments] { action = [arguments] { return RunDiff(*arguments); }; });
 }

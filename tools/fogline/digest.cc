@@ -16,7 +16,7 @@
 #include "services/runtime/wire/message_signer.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -33,16 +33,16 @@ struct Signature {
 };
 
 /// @param key with which a log must be signed; nullptr: any key or none
-Signature SignatureOf(const RunLog& run, const SigningKey* key) {
-  const bool is_signed = run.seal && LooksSigned(run.seal->event);
+Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
+  const bool is_signed = run.seal && runtime::LooksSigned(run.seal->event);
   if (key == nullptr) return {is_signed ? "not checked" : "none", ""};
   if (!run.seal) return {"none", "not sealed, so nothing is signed"};
-  switch (VerifySeal(*run.seal, *key)) {
-    case SealSignature::kHolds:
+  switch (log::VerifySeal(*run.seal, *key)) {
+    case log::SealSignature::kHolds:
       return {"holds", ""};
-    case SealSignature::kNone:
+    case log::SealSignature::kNone:
       return {"none", "not signed"};
-    case SealSignature::kWrong:
+    case log::SealSignature::kWrong:
       break;
   }
   return {"wrong", "signed with another key, or altered since"};
@@ -50,16 +50,16 @@ Signature SignatureOf(const RunLog& run, const SigningKey* key) {
 
 /// {"world": "0123456789abcdef", ...}, with null for a role that has not reported its build. The
 /// result is null without a seal.
-nlohmann::ordered_json BuildsJson(const RunLog& run) {
+nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   if (!run.seal || !run.seal->whole) return nullptr;
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   const log_seal_t& says = run.seal->says;
   for (const RoleInfo& info : kRoles) {
     const auto place = std::ranges::find(says.role, info.name) - says.role.begin();
-    const BuildId build = place < std::ssize(says.build_id)
-                              ? says.build_id[static_cast<std::size_t>(place)]
-                              : kUnknownBuild;
-    json[std::string(info.name)] = BuildJson(build);
+    const runtime::BuildId build = place < std::ssize(says.build_id)
+                                       ? says.build_id[static_cast<std::size_t>(place)]
+                                       : runtime::kUnknownBuild;
+    json[std::string(info.name)] = cli::BuildJson(build);
   }
   return json;
 }
@@ -67,25 +67,25 @@ nlohmann::ordered_json BuildsJson(const RunLog& run) {
 /// What is known of the bytes of a log. Of a copy, which was played and recorded again, the seal
 /// holds for scenario and steps alone: its events have times of their own, and STATUS may have gone
 /// missing.
-std::string_view SealState(const RunLog& run) {
+std::string_view SealState(const log::RunLog& run) {
   if (!run.seal) return "none";
   if (run.altered) return "broken";
   return run.seal->copied ? "copy" : "holds";
 }
 
 /// In real time the results are in STATUS, which the seal of a copy does not cover.
-bool IsUnprovenCopy(const RunLog& run) { return run.realtime && SealState(run) == "copy"; }
+bool IsUnprovenCopy(const log::RunLog& run) { return run.realtime && SealState(run) == "copy"; }
 
 int RunDigest(const DigestArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool sound = true;
-  std::optional<SigningKey> key;
-  if (!arguments.key.empty()) key = SigningKey::Load(arguments.key);
-  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
-    RunLogReader reader(log, RunLogReader::Compared::kFile);
+  std::optional<runtime::SigningKey> key;
+  if (!arguments.key.empty()) key = runtime::SigningKey::Load(arguments.key);
+  const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
+    log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
     while (reader.Next() != nullptr) {
     }
-    const RunLog& run = reader.run();
+    const log::RunLog& run = reader.run();
     const Signature signature = SignatureOf(run, key ? &*key : nullptr);
     sound = sound && run.complete;
     if (key) sound = sound && signature.state == "holds" && !IsUnprovenCopy(run);
@@ -106,14 +106,14 @@ int RunDigest(const DigestArguments& arguments) {
                     {"builds", BuildsJson(run)}});
     if (!arguments.json) fmt::print("{}  {}\n", run.digest, PathText(log));
   });
-  if (arguments.json) PrintJson(rows);
-  if (!readable) return kBadInput;
-  return sound ? kDone : kCheckFailed;
+  if (arguments.json) cli::PrintJson(rows);
+  if (!readable) return cli::kBadInput;
+  return sound ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddDigest(CLI::App& app, Action& action) {
+void AddDigest(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("digest", "Print the digest of logs: equal digests, equal runs");
   const auto arguments = std::make_shared<DigestArguments>();
@@ -121,7 +121,7 @@ void AddDigest(CLI::App& app, Action& action) {
   verb->add_option("--key", arguments->key,
                    "Demand that each log was signed with the key in this file");
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.check_failed = "a log is not whole or not signed"});
+  cli::ShowExitCodes(*verb, {.check_failed = "a log is not whole or not signed"});
   verb->footer(
       "A run ends its log with a seal (channel FOGLINE_SEAL): its digest, a hash of the file, and\n"
       "the build of each role; with --key the run signs it. What was altered since then is named.\n"

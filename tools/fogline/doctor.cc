@@ -11,8 +11,8 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
 #include "tools/doctor/doctor_findings.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -32,11 +32,11 @@ Examples:
 struct DoctorArguments {
   explicit DoctorArguments(CLI::App& verb) : network(verb, "to examine") {
     verb.add_flag("--json", json, "Print the findings as JSON");
-    ShowExitCodes(verb, {.done = "no problem", .check_failed = "a problem"});
+    cli::ShowExitCodes(verb, {.done = "no problem", .check_failed = "a problem"});
     verb.footer(kExplanation);
   }
 
-  NetworkArguments network;
+  cli::NetworkArguments network;
   bool json = false;
 };
 
@@ -51,7 +51,7 @@ void Attempt(const char* check, doctor::Findings& findings, const std::function<
   }
 }
 
-doctor::Findings Examine(const std::string& url) {
+doctor::Findings runtime::Examine(const std::string& url) {
   const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   doctor::Findings findings;
   Attempt("network", findings, [&] { doctor::ExamineNetwork(url, findings); });
@@ -76,7 +76,7 @@ void PrintAsJson(const std::string& url, const doctor::Findings& findings) {
                                 {"what", finding.what},
                                 {"remedy", finding.remedy}});
   }
-  PrintJson(json);
+  cli::PrintJson(json);
 }
 
 void PrintAsText(const doctor::Findings& findings) {
@@ -89,16 +89,16 @@ void PrintAsText(const doctor::Findings& findings) {
 
 int Doctor(const DoctorArguments& arguments) {
   const std::string url = arguments.network.Url();
-  const doctor::Findings findings = Examine(url);
+  const doctor::Findings findings = runtime::Examine(url);
   arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(
       findings, [](const doctor::Finding& finding) { return finding.level == Level::kProblem; });
-  return problem ? kCheckFailed : kDone;
+  return problem ? cli::kCheckFailed : cli::kDone;
 }
 
 }  // namespace
 
-void AddDoctor(CLI::App& app, Action& action) {
+void AddDoctor(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("doctor", "Examine machine, network and types, and say what to do");
   const auto arguments = std::make_shared<DoctorArguments>(*verb);

@@ -14,7 +14,7 @@
 #include "services/log/run_log.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -25,20 +25,20 @@ struct EventsArguments {
 };
 
 struct RunEvents {
-  RunLog run;
-  TakeOverLog log;
+  log::RunLog run;
+  take_over::TakeOverLog log;
 };
 
 RunEvents ReadEvents(const std::filesystem::path& file) {
-  RunLogReader reader(file);
+  log::RunLogReader reader(file);
   RunEvents events;
   arbitration_t command{};
   driver_command_t driver{};
-  while (const StepMessages* messages = reader.Next()) {
-    const Bytes bytes = (*messages)[IndexOf<arbitration_t>()];
-    if (bytes.empty() || !Decode(bytes, command)) continue;
-    const Bytes offer = (*messages)[IndexOf<driver_command_t>()];
-    const bool offered = !offer.empty() && Decode(offer, driver);
+  while (const log::StepMessages* messages = reader.Next()) {
+    const runtime::Bytes bytes = (*messages)[IndexOf<arbitration_t>()];
+    if (bytes.empty() || !runtime::Decode(bytes, command)) continue;
+    const runtime::Bytes offer = (*messages)[IndexOf<driver_command_t>()];
+    const bool offered = !offer.empty() && runtime::Decode(offer, driver);
     events.log.Add(command, offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
   }
   events.run = reader.run();
@@ -47,7 +47,7 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
 
 // A time of a request, with its name.
 using RequestTime = std::pair<const char*, std::optional<std::int64_t>>;
-std::array<RequestTime, 7> TimesOf(const TakeOverRequest& request) {
+std::array<RequestTime, 7> TimesOf(const take_over::TakeOverRequest& request) {
   return {{{"requested", request.requested},
            {"escalated", request.escalated},
            {"acknowledged", request.acknowledged},
@@ -59,20 +59,20 @@ std::array<RequestTime, 7> TimesOf(const TakeOverRequest& request) {
 
 nlohmann::ordered_json EventsJson(const RunEvents& events) {
   auto rows = nlohmann::ordered_json::array();
-  for (const TakeOverEntry& entry : events.log.entries()) {
+  for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     rows.push_back({{"step", entry.step},
                     {"time_s", static_cast<double>(entry.utime) / 1e6},
                     {"event", entry.logged},
                     {"transfer", entry.transfer},
-                    {"from", NameOfMode(entry.from)},
-                    {"to", NameOfMode(entry.to)}});
+                    {"from", take_over::NameOfMode(entry.from)},
+                    {"to", take_over::NameOfMode(entry.to)}});
   }
   return rows;
 }
 
 nlohmann::ordered_json RequestsJson(const RunEvents& events) {
   auto rows = nlohmann::ordered_json::array();
-  for (const TakeOverRequest& request : events.log.requests()) {
+  for (const take_over::TakeOverRequest& request : events.log.requests()) {
     nlohmann::ordered_json row;
     for (const auto& [name, step] : TimesOf(request)) {
       const double time_s = static_cast<double>(step.value_or(0)) * events.run.scenario.step_s;
@@ -86,13 +86,15 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
 void PrintText(const std::filesystem::path& file, const RunEvents& events) {
   fmt::print("{}: {}, seed {}\n", PathText(file), EscapeControls(events.run.scenario.title),
              events.run.scenario.seed);
-  for (const TakeOverEntry& entry : events.log.entries()) {
+  for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     fmt::print("{:>8}{:>10.2f} s  {:<42}{}", entry.step, static_cast<double>(entry.utime) / 1e6,
-               entry.logged, NameOfMode(entry.from));
-    fmt::print("{}\n", entry.from == entry.to ? "" : fmt::format(" -> {}", NameOfMode(entry.to)));
+               entry.logged, take_over::NameOfMode(entry.from));
+    fmt::print("{}\n", entry.from == entry.to
+                           ? ""
+                           : fmt::format(" -> {}", take_over::NameOfMode(entry.to)));
   }
   int number = 0;
-  for (const TakeOverRequest& request : events.log.requests()) {
+  for (const take_over::TakeOverRequest& request : events.log.requests()) {
     fmt::print("  request {}:", ++number);
     for (const auto& [name, step] : TimesOf(request)) {
       if (!step) continue;
@@ -105,34 +107,36 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
 int RunEventsVerb(const EventsArguments& arguments) {
   auto rows = nlohmann::ordered_json::array();
   bool complete = true;
-  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& file) {
-    const RunEvents events = ReadEvents(file);
-    complete = complete && events.run.complete;
-    if (!events.run.note.empty()) Complain(fmt::format("{}: {}", PathText(file), events.run.note));
-    if (arguments.json) {
-      rows.push_back({{"log", file.string()},
-                      {"title", events.run.scenario.title},
-                      {"seed", events.run.scenario.seed},
-                      {"complete", events.run.complete},
-                      {"events", EventsJson(events)},
-                      {"requests", RequestsJson(events)}});
-    } else {
-      PrintText(file, events);
-    }
-  });
-  if (arguments.json) PrintJson(rows);
-  if (!readable) return kBadInput;
-  return complete ? kDone : kCheckFailed;
+  const bool readable =
+      cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& file) {
+        const RunEvents events = ReadEvents(file);
+        complete = complete && events.run.complete;
+        if (!events.run.note.empty())
+          Complain(fmt::format("{}: {}", PathText(file), events.run.note));
+        if (arguments.json) {
+          rows.push_back({{"log", file.string()},
+                          {"title", events.run.scenario.title},
+                          {"seed", events.run.scenario.seed},
+                          {"complete", events.run.complete},
+                          {"events", EventsJson(events)},
+                          {"requests", RequestsJson(events)}});
+        } else {
+          PrintText(file, events);
+        }
+      });
+  if (arguments.json) cli::PrintJson(rows);
+  if (!readable) return cli::kBadInput;
+  return complete ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddEvents(CLI::App& app, Action& action) {
+void AddEvents(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("events", "List who drove when, and every request to do so");
   const auto arguments = std::make_shared<EventsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
+  cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "What a data recorder would keep: changes of state, requests to take over and their\n"
       "escalation, acknowledgements, transfers, first effective inputs, manoeuvres. Then the "

@@ -12,9 +12,9 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -33,9 +33,10 @@ bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat";
 std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =
-      is_mat ? std::vector{arguments.out} : CsvFiles(arguments.out);
+      is_mat ? std::vector{arguments.out} : exports::CsvFiles(arguments.out);
   for (const std::filesystem::path& file : files) {
-    RefuseToReplace(file, "--out", arguments.force, "export", is_mat ? IsMatExport : IsCsvExport);
+    RefuseToReplace(file, "--out", arguments.force, "export",
+                    is_mat ? IsMatExport : exports::IsCsvExport);
   }
   return files;
 }
@@ -44,27 +45,27 @@ int RunExport(const ExportArguments& arguments) {
   const std::vector<std::filesystem::path> files = FilesOf(arguments);
   WatchInterrupts();
   // Read the log first: if it is no log, no folder is made.
-  const RunTables tables = ReadRunTables(arguments.log);
+  const exports::RunTables tables = exports::ReadRunTables(arguments.log);
   const bool is_mat = IsMat(arguments.out);
   is_mat ? RequireWritable(arguments.out, "--out") : RequireWritableFolder(arguments.out, "--out");
-  is_mat ? WriteMat(tables, arguments.out) : WriteCsv(tables, arguments.out);
+  is_mat ? exports::WriteMat(tables, arguments.out) : exports::WriteCsv(tables, arguments.out);
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
                                 {"steps", tables.steps},
                                 {"complete", tables.complete},
                                 {"files", nlohmann::ordered_json::array()}};
     for (const std::filesystem::path& file : files) json["files"].push_back(file.string());
-    PrintJson(json);
+    cli::PrintJson(json);
   } else {
     for (const std::filesystem::path& file : files) fmt::print("{}\n", PathText(file));
   }
   if (!tables.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), tables.note));
-  return tables.complete ? kDone : kCheckFailed;
+  return tables.complete ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddExport(CLI::App& app, Action& action) {
+void AddExport(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("export", "Write a log as CSV files or as a MAT-file");
   const auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("LOG", arguments->log, "Event log")->required();
@@ -75,7 +76,7 @@ void AddExport(CLI::App& app, Action& action) {
       ->required();
   verb->add_flag("--force", arguments->force, "Replace files of an export that exist");
   verb->add_flag("--json", arguments->json, "Print the names of the files as JSON");
-  ShowExitCodes(*verb, {.check_failed = "the log is not complete", .interruptible = true});
+  cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete", .interruptible = true});
   verb->footer(
       "Everything that the log has, to the last bit, in the units of the messages (lcmtypes); the\n"
       "columns of a list are state.0, state.1 and so on, a matrix row by row. Time is "

@@ -7,7 +7,7 @@
 #include "services/graph.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -68,21 +68,21 @@ void PrintAsJson() {
                                 {"logged", info.Logged()},
                                 {"what", info.what}});
   });
-  PrintJson(json);
+  cli::PrintJson(json);
 }
 
 }  // namespace
 
-void AddGraph(CLI::App& app, Action& action) {
+void AddGraph(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("graph", "Print the roles and channels");
   const auto json = std::make_shared<bool>(false);
   verb->add_flag("--json", *json, "Print as JSON instead of Markdown tables");
-  ShowExitCodes(*verb);
+  cli::ShowExitCodes(*verb);
   verb->footer("Example:\n  fogline graph");
   verb->callback([&action, json] {
     action = [json] {
       *json ? PrintAsJson() : PrintMarkdown();
-      return kDone;
+      return cli::kDone;
     };
   });
 }

@@ -7,7 +7,7 @@
 #include "common/errors.h"
 #include "tools/cli/help.h"
 #include "tools/cli/refusal.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -17,21 +17,21 @@ const CLI::App& FindVerb(const CLI::App& app, const std::string& name) {
   for (const CLI::App* verb : app.get_subcommands({})) {
     if (verb->get_name() == name) return *verb;
   }
-  throw InputError(fmt::format("error: {} (see fogline --help)", NoSuchVerb(app, name)));
+  throw InputError(fmt::format("error: {} (see fogline --help)", cli::NoSuchVerb(app, name)));
 }
 
 }  // namespace
 
-void AddHelp(CLI::App& app, Action& action) {
+void AddHelp(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("help", "Show this text, or the help of a verb");
   const auto name = std::make_shared<std::string>();
   verb->add_option("VERB", *name, "Verb to explain (default: the list of all)");
-  ShowExitCodes(*verb);
+  cli::ShowExitCodes(*verb);
   verb->footer("Examples:\n  fogline help\n  fogline help table");
   verb->callback([&app, &action, name] {
     action = [&app, name] {
-      fmt::print("{}", HelpText(app, name->empty() ? app : FindVerb(app, *name)));
-      return kDone;
+      fmt::print("{}", cli::HelpText(app, name->empty() ? app : FindVerb(app, *name)));
+      return cli::kDone;
     };
   });
 }

@@ -7,7 +7,7 @@
 #include "services/runtime/wire/message_signer.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -18,20 +18,20 @@ struct KeygenArguments {
 };
 
 int Keygen(const KeygenArguments& arguments) {
-  SigningKey::Create(arguments.file);
-  if (arguments.json) PrintJson(nlohmann::ordered_json{{"file", arguments.file}});
-  return kDone;
+  runtime::SigningKey::Create(arguments.file);
+  if (arguments.json) cli::PrintJson(nlohmann::ordered_json{{"file", arguments.file}});
+  return cli::kDone;
 }
 
 }  // namespace
 
-void AddKeygen(CLI::App& app, Action& action) {
+void AddKeygen(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("keygen", "Make a key for signed traffic (run --key)");
   const auto arguments = std::make_shared<KeygenArguments>();
   verb->add_option("FILE", arguments->file, "Where to write it; an existing file is refused")
       ->required();
   verb->add_flag("--json", arguments->json, "Print the name of the file as JSON");
-  ShowExitCodes(*verb);
+  cli::ShowExitCodes(*verb);
   verb->footer(
       "The file has mode 0600; one that others can read or change is refused. Every process\n"
       "of a run needs the same key, on every machine.\n\n"

@@ -1,13 +1,13 @@
 // fogline: the main program for users. Every verb is in a file of its own.
 #include "tools/cli/own_program.h"
 #include "tools/cli/verb_program.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 int main(int argc, char** argv) {
   using namespace fogline;
-  BecomeOwnProgram(argc, argv);
-  return RunVerbs(argc, argv,
-                  {AddRun, AddTable, AddSweep, AddOwnPrograms, AddMetrics, AddCompare, AddReport,
-                   AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph, AddCheck, AddTop,
-                   AddSpy, AddDoctor, AddKeygen, AddHelp});
+  cli::BecomeOwnProgram(argc, argv);
+  return cli::RunVerbs(argc, argv,
+                       {AddRun, AddTable, AddSweep, cli::AddOwnPrograms, AddMetrics, AddCompare,
+                        AddReport, AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph,
+                        AddCheck, AddTop, AddSpy, AddDoctor, AddKeygen, AddHelp});
 }

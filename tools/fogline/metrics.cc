@@ -10,7 +10,7 @@
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/pairing.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/report/measure_text.h"
 
 namespace fogline {
@@ -22,22 +22,22 @@ struct MetricsArguments {
 };
 
 int RunMetrics(const MetricsArguments& arguments) {
-  std::vector<LoggedRun> runs;
-  const bool readable = ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
-    runs.push_back(ReadLoggedRun(log));
+  std::vector<runner::LoggedRun> runs;
+  const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
+    runs.push_back(runner::ReadLoggedRun(log));
   });
-  const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
+  const std::vector<std::optional<double>> improvements = cli::SafetyImprovements(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const LoggedRun& run = runs[i];
+    const runner::LoggedRun& run = runs[i];
     if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(run.result.log), run.note));
     if (arguments.json) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
       row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
-      if (run.result.realtime) row["realtime"] = RealtimeJson(*run.result.realtime);
-      row["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(run.result));
+      if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
+      row["metrics"] = nlohmann::ordered_json::parse(cli::MeasuresJson(run.result));
       rows.push_back(std::move(row));
       continue;
     }
@@ -45,26 +45,26 @@ int RunMetrics(const MetricsArguments& arguments) {
     fmt::print("{}: {}, seed {}{}{}\n", PathText(run.result.log),
                EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
                collision);
-    if (run.result.realtime) fmt::print("{}", RealtimeText(*run.result.realtime));
+    if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
     if (improvements[i]) {
       fmt::print("  {:<32}{:>12} %\n", "si_pct",
                  report::MeasureText("si_pct", *improvements[i], "%"));
     }
-    fmt::print("{}", MeasuresText(run.result));
+    fmt::print("{}", cli::MeasuresText(run.result));
   }
-  if (arguments.json) PrintJson(rows);
-  if (!readable) return kBadInput;
-  return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
+  if (arguments.json) cli::PrintJson(rows);
+  if (!readable) return cli::kBadInput;
+  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddMetrics(CLI::App& app, Action& action) {
+void AddMetrics(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("metrics", "Measure runs from their logs alone");
   const auto arguments = std::make_shared<MetricsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
+  cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "The safety improvement SI appears for runs whose pair without traded control (policy\n"
       "none) is among the logs.\n\nExamples:\n  fogline metrics logs/paper-1.lcm\n"

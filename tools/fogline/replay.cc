@@ -12,7 +12,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/replay/role_check.h"
 
 namespace fogline {
@@ -30,11 +30,11 @@ struct ReplayArguments {
 }
 
 /// The run of a log, without its steps. @throws InputError for a run in real time
-RunLog ReadRun(const std::filesystem::path& log) {
-  RunLogReader reader(log);
+log::RunLog ReadRun(const std::filesystem::path& log) {
+  log::RunLogReader reader(log);
   while (reader.Next() != nullptr) {
   }
-  const RunLog& run = reader.run();
+  const log::RunLog& run = reader.run();
   if (run.realtime) {
     Refuse(log,
            "a run in real time: a role uses what has come by its deadline, which no log tells; "
@@ -44,18 +44,20 @@ RunLog ReadRun(const std::filesystem::path& log) {
 }
 
 /// @throws InputError for a name that is no role, or a role that computes nothing
-std::vector<RoleCheck> ChosenRoles(const ReplayArguments& arguments, const RunLog& run) {
-  std::vector<RoleCheck> roles = MakeRoleChecks(run);
+std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
+                                           const log::RunLog& run) {
+  std::vector<replay::RoleCheck> roles = replay::MakeRoleChecks(run);
   std::vector<std::string_view> names;
-  for (const RoleCheck& one : roles) names.push_back(NameOf(one.role));
+  for (const replay::RoleCheck& one : roles) names.push_back(NameOf(one.role));
   if (arguments.all) return roles;
-  std::erase_if(roles, [&](const RoleCheck& one) { return NameOf(one.role) != arguments.role; });
+  std::erase_if(roles,
+                [&](const replay::RoleCheck& one) { return NameOf(one.role) != arguments.role; });
   if (!roles.empty()) return roles;
   throw InputError(fmt::format("error: --role {}: not one of {}{}", Shown(arguments.role),
                                Shown(Names(names)), DidYouMean(Nearest(arguments.role, names))));
 }
 
-nlohmann::ordered_json ToJson(const RoleCheck& one) {
+nlohmann::ordered_json ToJson(const replay::RoleCheck& one) {
   nlohmann::ordered_json json{{"role", NameOf(one.role)},
                               {"same", !one.first},
                               {"steps_that_differ", one.steps_that_differ}};
@@ -68,7 +70,7 @@ nlohmann::ordered_json ToJson(const RoleCheck& one) {
   return json;
 }
 
-void PrintText(const RoleCheck& one, std::int64_t steps) {
+void PrintText(const replay::RoleCheck& one, std::int64_t steps) {
   if (!one.first) {
     fmt::print("{:<11} same: {} steps\n", NameOf(one.role), steps);
     return;
@@ -82,34 +84,34 @@ int RunReplay(const ReplayArguments& arguments) {
   if (arguments.all == !arguments.role.empty()) {
     throw InputError("error: give one of --role and --all");
   }
-  const RunLog run = ReadRun(arguments.log);
-  std::vector<RoleCheck> roles = ChosenRoles(arguments, run);
-  RunLogReader reader(arguments.log);
+  const log::RunLog run = ReadRun(arguments.log);
+  std::vector<replay::RoleCheck> roles = ChosenRoles(arguments, run);
+  log::RunLogReader reader(arguments.log);
   try {
-    CheckRoles(reader, roles);
+    replay::CheckRoles(reader, roles);
   } catch (const InputError& error) {
     Refuse(arguments.log, error.what());
   }
-  const bool same =
-      std::ranges::all_of(roles, [](const RoleCheck& one) { return !one.first.has_value(); });
+  const bool same = std::ranges::all_of(
+      roles, [](const replay::RoleCheck& one) { return !one.first.has_value(); });
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
                                 {"steps", run.steps},
                                 {"complete", run.complete},
                                 {"same", same},
                                 {"roles", nlohmann::ordered_json::array()}};
-    for (const RoleCheck& one : roles) json["roles"].push_back(ToJson(one));
-    PrintJson(json);
+    for (const replay::RoleCheck& one : roles) json["roles"].push_back(ToJson(one));
+    cli::PrintJson(json);
   } else {
-    for (const RoleCheck& one : roles) PrintText(one, run.steps);
+    for (const replay::RoleCheck& one : roles) PrintText(one, run.steps);
   }
   if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
-  return same && run.complete ? kDone : kCheckFailed;
+  return same && run.complete ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddReplay(CLI::App& app, Action& action) {
+void AddReplay(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("replay", "Compute a log's steps again, role by role, and compare");
   const auto arguments = std::make_shared<ReplayArguments>();
@@ -118,7 +120,7 @@ void AddReplay(CLI::App& app, Action& action) {
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  ShowExitCodes(*verb, {.check_failed = "outputs differ or the log is incomplete"});
+  cli::ShowExitCodes(*verb, {.check_failed = "outputs differ or the log is incomplete"});
   verb->footer(
       "Each step's inputs are the log's, so what one role computes otherwise does not carry over\n"
       "to another. Scenario and seed are the log's, too. Outputs are compared bit by bit: a log "

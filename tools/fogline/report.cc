@@ -27,7 +27,7 @@
 #include "tools/cli/help.h"
 #include "tools/cli/pairing.h"
 #include "tools/cli/threshold_rows.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 
 namespace fogline {
 namespace {
@@ -81,12 +81,13 @@ void RefuseToReplaceOther(const std::filesystem::path& output) {
   }
 }
 
-bool HaveOneSeed(std::span<const LoggedRun> runs) {
-  return std::ranges::all_of(
-      runs, [&](const LoggedRun& run) { return run.result.seed == runs.front().result.seed; });
+bool HaveOneSeed(std::span<const runner::LoggedRun> runs) {
+  return std::ranges::all_of(runs, [&](const runner::LoggedRun& run) {
+    return run.result.seed == runs.front().result.seed;
+  });
 }
 
-std::string LogNameOf(const LoggedRun& run) { return run.result.log.filename().string(); }
+std::string LogNameOf(const runner::LoggedRun& run) { return run.result.log.filename().string(); }
 
 std::string NameOf(const ArbitratorSection& arbitrator) {
   if (arbitrator.policy == Policy::kNone) return "without traded control";
@@ -99,10 +100,10 @@ std::string NameOf(const ArbitratorSection& arbitrator) {
 }
 
 /// Names that tell the runs apart: by the drivers, then by the seed, then by the log.
-std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
+std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
-  for (const LoggedRun& run : runs) {
+  for (const runner::LoggedRun& run : runs) {
     const ArbitratorSection& arbitrator = run.scenario.arbitrator;
     std::string name = NameOf(arbitrator);
     if (with_seed) name += fmt::format(", seed {}", run.result.seed);
@@ -117,23 +118,24 @@ std::vector<std::string> NamesOf(std::span<const LoggedRun> runs) {
   return names;
 }
 
-std::vector<report::ReportMeasure> MeasuresOf(const RunMeasures& measures) {
+std::vector<report::ReportMeasure> MeasuresOf(const metrics::RunMeasures& measures) {
   std::vector<report::ReportMeasure> out;
-  VisitMeasures(measures, [&out]<class V>(std::string_view name, const V& value,
-                                          std::string_view unit, std::string_view description) {
-    double number = std::numeric_limits<double>::quiet_NaN();
-    if constexpr (std::is_same_v<V, std::optional<double>>) {
-      number = value.value_or(number);
-    } else {
-      number = static_cast<double>(value);
-    }
-    out.push_back({std::string(name), number, std::string(unit), std::string(description)});
-  });
+  metrics::VisitMeasures(
+      measures, [&out]<class V>(std::string_view name, const V& value, std::string_view unit,
+                                std::string_view description) {
+        double number = std::numeric_limits<double>::quiet_NaN();
+        if constexpr (std::is_same_v<V, std::optional<double>>) {
+          number = value.value_or(number);
+        } else {
+          number = static_cast<double>(value);
+        }
+        out.push_back({std::string(name), number, std::string(unit), std::string(description)});
+      });
   return out;
 }
 
 /// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
-std::optional<report::ReportTable> TableOf(std::span<const LoggedRun> runs,
+std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
                                            std::span<const std::optional<double>> improvements) {
   const bool one_seed = HaveOneSeed(runs);
   report::ReportTable table;
@@ -159,22 +161,22 @@ std::optional<report::ReportTable> TableOf(std::span<const LoggedRun> runs,
 
 /// The runs of the logs. Those without traded control come first, because the others are compared
 /// with them.
-std::vector<LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
-  std::vector<LoggedRun> runs;
+std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
+  std::vector<runner::LoggedRun> runs;
   for (const std::filesystem::path& log : logs) {
-    runs.push_back(ReadLoggedRun(log));
+    runs.push_back(runner::ReadLoggedRun(log));
     if (!runs.back().note.empty()) {
       Complain(fmt::format("{}: {}", PathText(log), runs.back().note));
     }
   }
-  std::stable_partition(runs.begin(), runs.end(), [](const LoggedRun& run) {
+  std::stable_partition(runs.begin(), runs.end(), [](const runner::LoggedRun& run) {
     return run.scenario.arbitrator.policy == Policy::kNone;
   });
   return runs;
 }
 
 /// Moves the samples out of `run`.
-report::ReportRun PageOf(LoggedRun& run, const std::string& name,
+report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const std::optional<double>& si_pct) {
   return {.name = name,
           .log = LogNameOf(run),
@@ -191,24 +193,25 @@ report::ReportRun PageOf(LoggedRun& run, const std::string& name,
 
 report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
-  RequireThreshold(scenario, arguments.curves);
-  CheckPossible(scenario, arguments.curves);
-  std::vector<double> thresholds = ParseThresholds(arguments.thresholds);
+  sweep::RequireThreshold(scenario, arguments.curves);
+  runner::CheckPossible(scenario, arguments.curves);
+  std::vector<double> thresholds = sweep::ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
-  const SeedRange seeds = ReadSeeds(arguments.seeds);
+  const sweep::SeedRange seeds = cli::ReadSeeds(arguments.seeds);
   report::ReportCurves curves{.scenario_title = scenario.title,
                               .first_seed = seeds.first,
                               .last_seed = seeds.last,
                               .points = {},
                               .published = scenario.published};
-  for (const ThresholdRow& row : RowsOnAllCores(scenario, thresholds, seeds)) {
+  for (const sweep::ThresholdRow& row : cli::RowsOnAllCores(scenario, thresholds, seeds)) {
     curves.points.push_back({row.threshold, row.si_pct.Result(), row.rhe_pct.Result()});
   }
   return curves;
 }
 
-nlohmann::ordered_json ToJson(const ReportArguments& arguments, std::span<const LoggedRun> runs) {
+nlohmann::ordered_json ToJson(const ReportArguments& arguments,
+                              std::span<const runner::LoggedRun> runs) {
   nlohmann::ordered_json json{{"report", arguments.output.string()},
                               {"runs", nlohmann::ordered_json::array()}};
   for (const FigureOption& option : kFigureOptions) {
@@ -217,7 +220,7 @@ nlohmann::ordered_json ToJson(const ReportArguments& arguments, std::span<const 
     json[key] = nullptr;
     if (!folder.empty()) json[key] = folder.string();
   }
-  for (const LoggedRun& run : runs) {
+  for (const runner::LoggedRun& run : runs) {
     json["runs"].push_back(
         {{"log", run.result.log.string()}, {"seed", run.result.seed}, {"complete", run.complete}});
   }
@@ -228,7 +231,7 @@ int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
   }
-  RefuseJsonBeside(arguments.output, "--output", arguments.json);
+  cli::RefuseJsonBeside(arguments.output, "--output", arguments.json);
   RefuseToReplaceOther(arguments.output);
   RequireWritable(arguments.output, "--output");
   for (const FigureOption& option : kFigureOptions) {
@@ -236,8 +239,8 @@ int RunReport(const ReportArguments& arguments) {
     if (!folder.empty()) RequireWritableFolder(folder, option.name);
   }
   if (!arguments.curves.empty()) WatchInterrupts();
-  std::vector<LoggedRun> runs = ReadRuns(arguments.logs);
-  const std::vector<std::optional<double>> improvements = SafetyImprovements(runs);
+  std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs);
+  const std::vector<std::optional<double>> improvements = cli::SafetyImprovements(runs);
   const std::optional<report::ReportTable> table = TableOf(runs, improvements);
   std::vector<report::ReportRun> pages;
   const std::vector<std::string> names = NamesOf(runs);
@@ -257,16 +260,16 @@ int RunReport(const ReportArguments& arguments) {
     if (curves) report::WriteCurveFigures(folder, option.format, *curves);
   }
   if (arguments.json) {
-    PrintJson(ToJson(arguments, runs));
+    cli::PrintJson(ToJson(arguments, runs));
   } else if (!IsStdout(arguments.output)) {
     fmt::print("{}\n", PathText(arguments.output));
   }
-  return std::ranges::all_of(runs, &LoggedRun::complete) ? kDone : kCheckFailed;
+  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? cli::kDone : cli::kCheckFailed;
 }
 
 }  // namespace
 
-void AddReport(CLI::App& app, Action& action) {
+void AddReport(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("report", "Figures and measures of logs as one HTML file");
   const auto arguments = std::make_shared<ReportArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs");
@@ -291,7 +294,7 @@ void AddReport(CLI::App& app, Action& action) {
     verb->add_option(option.name, *arguments.*option.folder, option.help);
   }
   verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
-  ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
+  cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
       "Prints the name of the page, which needs no network. A log that is not complete is shown\n"
       "as far as it goes, marked, and makes the exit code 1. The table appears for runs whose "

@@ -15,7 +15,7 @@
 #include "tools/cli/help.h"
 #include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/runner/experiment.h"
 #include "tools/runner/kept_log.h"
 #include "tools/runner/log_keeper.h"
@@ -58,19 +58,19 @@ struct RunArguments {
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
                     "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
-        ->check(NumberIn(0, kMaxSpeed))
+        ->check(cli::NumberIn(0, runtime::kMaxSpeed))
         ->capture_default_str();
     CLI::Option* realtime = verb.add_flag(
         "--realtime", options.realtime,
         "Tick on the wall clock and wait for no process: inputs that fail are noticed by their "
         "age, and another driver takes over or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
-        ->check(NumberIn(kMinSpeed, kMaxSpeed))
+        ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed))
         ->needs(realtime)
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
                     "End the run when no step completes for so long, in s")
-        ->check(NumberIn(1, 1e6))
+        ->check(cli::NumberIn(1, 1e6))
         ->capture_default_str();
     verb.add_option(
             "--restarts", options.restarts,
@@ -81,13 +81,13 @@ struct RunArguments {
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
-    ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
+    cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(kExamples);
   }
 
-  ScenarioArguments scenario;
-  TransportArguments transport;
-  ExperimentOptions options;
+  cli::ScenarioArguments scenario;
+  cli::TransportArguments transport;
+  runner::ExperimentOptions options;
   std::filesystem::path resume;
   double speed = 1.0;
   double stall_s = 4.0;
@@ -98,7 +98,7 @@ struct RunArguments {
 
 /// @throws InputError if real time cannot go together with the other options
 void ApplyRealtime(RunArguments& arguments) {
-  ExperimentOptions& options = arguments.options;
+  runner::ExperimentOptions& options = arguments.options;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(fmt::format(
         "error: --realtime: --transport {} is one process; real time needs one for each role",
@@ -110,23 +110,23 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
-/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
+/// The exit code of an ended run. If it is not cli::kDone, the reason is printed on stderr.
 /// @throws std::runtime_error if the log of a run in real time lacks published messages
-int Ended(const ExperimentResult& result) {
+int Ended(const runner::ExperimentResult& result) {
   if (result.realtime && result.realtime->unlogged_messages > 0) {
     throw std::runtime_error(fmt::format(
         "the log is not complete: at least {} messages that were published are not in it: the "
         "recorder can have the last {} steps again, and did not hear for longer",
-        result.realtime->unlogged_messages, kMaxAhead));
+        result.realtime->unlogged_messages, runtime::kMaxAhead));
   }
-  if (!result.verification || result.verification->Holds()) return kDone;
+  if (!result.verification || result.verification->Holds()) return cli::kDone;
   Complain("fogline run: error: " + result.verification->Trouble());
-  return kCheckFailed;
+  return cli::kCheckFailed;
 }
 
-int Print(const RunArguments& arguments, const RunOutcome& outcome) {
+int Print(const RunArguments& arguments, const cli::RunOutcome& outcome) {
   if (arguments.json) {
-    PrintJson(ToJson(outcome));
+    cli::PrintJson(ToJson(outcome));
   } else {
     fmt::print("{}", ToText(outcome));
   }
@@ -135,12 +135,12 @@ int Print(const RunArguments& arguments, const RunOutcome& outcome) {
 
 /// Applies the options that a new run and a resumed run share. @throws InputError
 void ApplyOptions(RunArguments& arguments) {
-  ExperimentOptions& options = arguments.options;
+  runner::ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
-  if (!(options.pace == 0 || IsSpeed(options.pace))) {
+  if (!(options.pace == 0 || runtime::IsSpeed(options.pace))) {
     throw InputError(fmt::format("error: --pace {}: neither 0 nor from {} to {}", options.pace,
-                                 kMinSpeed, kMaxSpeed));
+                                 runtime::kMinSpeed, runtime::kMaxSpeed));
   }
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
@@ -151,7 +151,7 @@ void ApplyOptions(RunArguments& arguments) {
 }
 
 int RunAnew(RunArguments& arguments) {
-  ExperimentOptions& options = arguments.options;
+  runner::ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
@@ -160,39 +160,39 @@ int RunAnew(RunArguments& arguments) {
         arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
   }
   const bool has_log = !options.log.empty() || options.transport != "direct";
-  const LogOfRun log = !has_log              ? LogOfRun()
-                       : options.log.empty() ? FreshLog(arguments.scenario.file())
-                                             : PrepareLog(options.log, arguments.force);
+  const log::LogOfRun log = !has_log              ? log::LogOfRun()
+                            : options.log.empty() ? cli::FreshLog(arguments.scenario.file())
+                                                  : cli::PrepareLog(options.log, arguments.force);
   options.log = log.path();
-  options.command_to_go_on = CommandToGoOn(options);
+  options.command_to_go_on = runner::CommandToGoOn(options);
   WatchInterrupts();
   return Print(arguments, {.file = arguments.scenario.file(),
                            .steps = scenario.steps,
-                           .result = RunExperiment(scenario, options),
+                           .result = runner::RunExperiment(scenario, options),
                            .resumed = std::nullopt});
 }
 
 /// Continues the run of a log to its end. If the log has the whole run, no step is added; the log
 /// is verified and sealed if it has no seal.
 int Resume(RunArguments& arguments) {
-  ExperimentOptions& options = arguments.options;
-  const auto key = KeyOf(options.traffic);
-  const ResumedLog log(arguments.resume, key ? &*key : nullptr);
+  runner::ExperimentOptions& options = arguments.options;
+  const auto key = runtime::KeyOf(options.traffic);
+  const runner::ResumedLog log(arguments.resume, key ? &*key : nullptr);
   options.log = arguments.resume;
   options.resume = log.resumption();
-  options.command_to_go_on = CommandToGoOn(options);
+  options.command_to_go_on = runner::CommandToGoOn(options);
   WatchInterrupts();
-  RunOutcome outcome{.file = arguments.resume,
-                     .steps = log.scenario().steps,
-                     .result = {},
-                     .resumed = log.resumption().remains.steps,
-                     .computed = !log.complete()};
+  cli::RunOutcome outcome{.file = arguments.resume,
+                          .steps = log.scenario().steps,
+                          .result = {},
+                          .resumed = log.resumption().remains.steps,
+                          .computed = !log.complete()};
   if (outcome.computed) {
-    outcome.result = RunExperiment(log.scenario(), options);
+    outcome.result = runner::RunExperiment(log.scenario(), options);
     return Print(arguments, outcome);
   }
   if (options.announce) Notice(PathText(options.log) + ": the run is complete");
-  LoggedRun run = MeasureLoggedRun(options.log, log.scenario());
+  runner::LoggedRun run = runner::MeasureLoggedRun(options.log, log.scenario());
   if (!run.complete) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
@@ -201,10 +201,10 @@ int Resume(RunArguments& arguments) {
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {
-    verification = VerifyRun(options.log, run, OtherBuildsIn(run));
+    verification = replay::VerifyRun(options.log, run, replay::OtherBuildsIn(run));
   }
   if (to_seal && (!verification || verification->Holds())) {
-    LogKeeper(options.log).Seal(run, {}, {}, key ? &*key : nullptr);
+    runner::LogKeeper(options.log).Seal(run, {}, {}, key ? &*key : nullptr);
   }
   return Print(arguments, outcome);
 }
@@ -228,7 +228,7 @@ void CheckResume(const CLI::App& verb) {
 
 }  // namespace
 
-void AddRun(CLI::App& app, Action& action) {
+void AddRun(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("run", "Run a scenario, one process for each role");
   const auto arguments = std::make_shared<RunArguments>(*verb);
   verb->callback([&action, arguments, verb] {

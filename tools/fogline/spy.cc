@@ -20,7 +20,7 @@
 #include "services/runtime/discovery/beacon.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/spy/spy_parts.h"
 #include "tools/watch/traffic_statistics.h"
 
@@ -42,17 +42,17 @@ Examples:
 struct SpyArguments {
   explicit SpyArguments(CLI::App& verb) : network(verb, "to look at") {
     verb.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
-        ->check(NumberIn(0, 1e6))
+        ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--types", types, "Message types (default: those of this build)");
     verb.add_option("--jars", jars,
                     "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
                     "/usr/local/share/java)");
-    ShowExitCodes(verb, {.done = "window closed", .interruptible = true});
+    cli::ShowExitCodes(verb, {.done = "window closed", .interruptible = true});
     verb.footer(kSpyExplanation);
   }
 
-  NetworkArguments network;
+  cli::NetworkArguments network;
   double wait_s = 60;
   fs::path types;
   fs::path jars;
@@ -60,7 +60,7 @@ struct SpyArguments {
 
 /// @throws std::runtime_error that names the missing package
 fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
-  const fs::path jar = arguments.jars.empty() ? InstalledJar(name) : arguments.jars / name;
+  const fs::path jar = arguments.jars.empty() ? spy::InstalledJar(name) : arguments.jars / name;
   if (access(jar.c_str(), R_OK) == 0) return jar;
   const fs::path folder = arguments.jars.empty() ? "/usr/share/java" : arguments.jars;
   throw std::runtime_error(
@@ -70,7 +70,7 @@ fs::path JarOf(const SpyArguments& arguments, const std::string& name, const cha
 /// @throws std::runtime_error that says how to build the types
 fs::path TypesOf(const SpyArguments& arguments) {
   const auto programs = fs::read_symlink("/proc/self/exe").parent_path();
-  const fs::path types = arguments.types.empty() ? TypesJar(programs) : arguments.types;
+  const fs::path types = arguments.types.empty() ? spy::TypesJar(programs) : arguments.types;
   if (access(types.c_str(), R_OK) == 0) return types;
   if (!arguments.types.empty()) {
     throw std::runtime_error(fmt::format("there are no message types at {}", PathText(types)));
@@ -83,9 +83,9 @@ fs::path TypesOf(const SpyArguments& arguments) {
 
 /// The command line of lcm-spy without its network. @throws std::runtime_error if it cannot run
 std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
-  const fs::path java = JavaProgram();
+  const fs::path java = spy::JavaProgram();
   if (java.empty()) throw std::runtime_error("there is no java: apt-get install default-jre");
-  if (!OpensWindows(java)) {
+  if (!spy::OpensWindows(java)) {
     throw std::runtime_error(
         fmt::format("{} cannot open windows (default-jre-headless?): apt-get install default-jre",
                     PathText(java)));
@@ -104,13 +104,14 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
   // An announced run is found within this time, and takes precedence over other traffic.
-  constexpr Duration kDiscovery = 2 * kBeaconEvery;
+  constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
   constexpr Duration kLookEvery = milliseconds(50);
-  Bus bus(arguments.network.Url());
+  runtime::Bus bus(arguments.network.Url());
   bool traffic = false;
-  bus.SubscribeAll(
-      [&traffic](std::string_view channel, Bytes) { traffic |= !IsHousekeeping(channel); });
-  BeaconListener beacons(bus.url());
+  bus.SubscribeAll([&traffic](std::string_view channel, runtime::Bytes) {
+    traffic |= !watch::IsHousekeeping(channel);
+  });
+  runtime::BeaconListener beacons(bus.url());
   const TimePoint began = Clock::now();
   bool said = false;
   while (!WasInterrupted()) {
@@ -140,7 +141,7 @@ std::string FindNetwork(const SpyArguments& arguments) {
 
 /// Lets lcm-spy hear traffic that stays on this machine.
 void PreloadHearLoopback() {
-  const fs::path library = HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
+  const fs::path library = spy::HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
   if (library.empty()) return;  // lcm-spy still hears traffic over other interfaces
   std::string preload = library.string();
   if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
@@ -166,7 +167,7 @@ int Spy(const SpyArguments& arguments) {
 
 }  // namespace
 
-void AddSpy(CLI::App& app, Action& action) {
+void AddSpy(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("spy", "Start LCM's lcm-spy with our message types");
   const auto arguments = std::make_shared<SpyArguments>(*verb);
   verb->callback([&action, arguments] { action = [arguments] { return Spy(*arguments); }; });

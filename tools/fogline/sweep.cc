@@ -12,7 +12,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/merge.h"
 #include "tools/sweep/sweep_csv.h"
@@ -42,7 +42,7 @@ struct SweepArguments {
     }
     verb.add_flag("--force", force, "Replace the file even if it is of another sweep");
     verb.add_flag("--json", json, "Print runs, time and rate as JSON");
-    ShowExitCodes(verb, {.interruptible = true});
+    cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
         "Rows stand in a defined order whatever --jobs is. A sweep that was stopped or killed "
         "goes\n"
@@ -62,7 +62,7 @@ struct SweepArguments {
   std::vector<std::string> overrides;
   std::vector<std::string> grid;
   std::string seeds;
-  int jobs = AllCores();
+  int jobs = sweep::AllCores();
   std::filesystem::path out;
   std::string shard = "1/1";
   std::vector<std::filesystem::path> merge;
@@ -70,14 +70,16 @@ struct SweepArguments {
   bool json = false;
 };
 
-SweepPlan MakePlan(const SweepArguments& arguments) {
+sweep::SweepPlan MakePlan(const SweepArguments& arguments) {
   if (arguments.scenario.empty()) throw InputError("error: SCENARIO is required");
   Scenario scenario = LoadScenario(arguments.scenario, arguments.overrides);
-  std::vector<Axis> axes;
-  for (const std::string& axis : arguments.grid) axes.push_back(ParseAxis(axis));
-  const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
-                                                  : ReadSeeds(arguments.seeds);
-  return SweepPlan(std::move(scenario), std::move(axes), seeds, PathText(arguments.scenario));
+  std::vector<sweep::Axis> axes;
+  for (const std::string& axis : arguments.grid) axes.push_back(sweep::ParseAxis(axis));
+  const sweep::SeedRange seeds = arguments.seeds.empty()
+                                     ? sweep::SeedRange{scenario.seed, scenario.seed}
+                                     : cli::ReadSeeds(arguments.seeds);
+  return sweep::SweepPlan(std::move(scenario), std::move(axes), seeds,
+                          PathText(arguments.scenario));
 }
 
 /// Prints a summary on stdout, or on stderr if the rows go to stdout.
@@ -88,43 +90,43 @@ void PrintSummary(const std::filesystem::path& out, const std::string& text) {
 
 /// The default file for the rows. A repeated sweep finds its own file again, and the file of
 /// another sweep stays.
-std::filesystem::path DefaultOut(const SweepArguments& arguments, const SweepPlan& plan,
-                                 const Shard& shard) {
+std::filesystem::path DefaultOut(const SweepArguments& arguments, const sweep::SweepPlan& plan,
+                                 const sweep::Shard& shard) {
   const std::string stem = arguments.scenario.stem().native() + "-sweep";
-  const Description description = Describe(plan, shard);
+  const sweep::Description description = Describe(plan, shard);
   std::error_code missing;
   for (int number = 1;; ++number) {
     const std::filesystem::path out =
         number == 1 ? stem + ".csv" : fmt::format("{}-{}.csv", stem, number);
     if (arguments.force || std::filesystem::file_size(out, missing) == 0 || missing) return out;
-    if (IsSweep(out) && ReadDescription(out) == description) return out;
+    if (sweep::IsSweep(out) && sweep::ReadDescription(out) == description) return out;
   }
 }
 
 int Merge(const SweepArguments& arguments) {
   if (arguments.out.empty()) throw InputError("error: --merge needs --out");
   WatchInterrupts();
-  const std::int64_t rows = MergeShards(arguments.merge, arguments.out, arguments.force);
+  const std::int64_t rows = sweep::MergeShards(arguments.merge, arguments.out, arguments.force);
   if (arguments.json) {
     const nlohmann::ordered_json json{{"rows", rows}, {"out", arguments.out.string()}};
-    PrintJson(json);
+    cli::PrintJson(json);
   } else {
     PrintSummary(arguments.out, fmt::format("{} rows", rows));
   }
-  return kDone;
+  return cli::kDone;
 }
 
 int RunSweepVerb(const SweepArguments& arguments) {
-  RefuseJsonBeside(arguments.out, "--out", arguments.json);
+  cli::RefuseJsonBeside(arguments.out, "--out", arguments.json);
   if (!arguments.merge.empty()) return Merge(arguments);
-  const SweepPlan plan = MakePlan(arguments);
-  const Shard shard = ParseShard(arguments.shard);
+  const sweep::SweepPlan plan = MakePlan(arguments);
+  const sweep::Shard shard = sweep::ParseShard(arguments.shard);
   Scenario first = plan.base();  // refuses an impossible scenario before a file is made
   plan.Configure(plan.ShardBegin(shard), 0, first);
-  CheckPossible(first, arguments.scenario);
+  runner::CheckPossible(first, arguments.scenario);
   const std::filesystem::path out =
       arguments.out.empty() ? DefaultOut(arguments, plan, shard) : arguments.out;
-  SweepFile file(out, plan, shard, arguments.force);
+  sweep::SweepFile file(out, plan, shard, arguments.force);
   const std::int64_t begin = file.next_unit();
   const std::int64_t end = plan.ShardEnd(shard);
   if (begin > plan.ShardBegin(shard) && !arguments.json) {
@@ -135,33 +137,34 @@ int RunSweepVerb(const SweepArguments& arguments) {
   WatchInterrupts();
   Progress progress("row", (end - begin) * plan.rows_per_unit());
   const TimePoint began = Clock::now();
-  RunSweep(plan, begin, end, arguments.jobs, [&](std::int64_t, const std::vector<SweepRow>& rows) {
-    file.Append(rows);
-    progress.Show((file.next_unit() - begin) * plan.rows_per_unit());
-    return !WasInterrupted();
-  });
+  sweep::RunSweep(plan, begin, end, arguments.jobs,
+                  [&](std::int64_t, const std::vector<sweep::SweepRow>& rows) {
+                    file.Append(rows);
+                    progress.Show((file.next_unit() - begin) * plan.rows_per_unit());
+                    return !WasInterrupted();
+                  });
   const std::int64_t rows = (file.next_unit() - begin) * plan.rows_per_unit();
   if (file.next_unit() != end) {
     throw Interrupted(fmt::format("interrupted after {} rows; call it again to go on", rows));
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   // Each unit computes the paired run without traded control besides its rows.
-  const int cores = std::min(arguments.jobs, AllCores());
+  const int cores = std::min(arguments.jobs, sweep::AllCores());
   const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / cores : 0;
   if (arguments.json) {
     const nlohmann::ordered_json json{
         {"runs", rows}, {"wall_s", wall_s}, {"runs_per_s_per_core", rate}, {"out", out.string()}};
-    PrintJson(json);
+    cli::PrintJson(json);
   } else {
     PrintSummary(out, fmt::format("{} rows in {:.2f} s, {:.0f} rows per second and core", rows,
                                   wall_s, rate));
   }
-  return kDone;
+  return cli::kDone;
 }
 
 }  // namespace
 
-void AddSweep(CLI::App& app, Action& action) {
+void AddSweep(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("sweep", "Run a grid of fields and seeds on all cores");
   const auto arguments = std::make_shared<SweepArguments>(*verb);
   verb->callback(

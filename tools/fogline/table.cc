@@ -19,7 +19,7 @@
 #include "tools/cli/pairing.h"
 #include "tools/cli/threshold_rows.h"
 #include "tools/cli/transport_arguments.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/processes/external_roles.h"
 
 namespace fogline {
@@ -34,7 +34,7 @@ struct TableArguments {
         ->excludes("--seed");
     verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
     verb.add_flag("--json", json, "Print as JSON");
-    ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
+    cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(
         "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
         "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
@@ -47,8 +47,8 @@ struct TableArguments {
         "`fogline report --curves` draws them.");
   }
 
-  ScenarioArguments scenario;
-  TransportArguments transport;
+  cli::ScenarioArguments scenario;
+  cli::TransportArguments transport;
   std::string thresholds;
   std::string seeds;
   std::filesystem::path logs;
@@ -56,8 +56,8 @@ struct TableArguments {
 };
 
 /// @throws InputError
-ExperimentOptions OptionsOf(const TableArguments& arguments) {
-  ExperimentOptions options;
+runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
+  runner::ExperimentOptions options;
   options.samples = true;
   arguments.transport.Apply(options);
   const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
@@ -69,46 +69,47 @@ ExperimentOptions OptionsOf(const TableArguments& arguments) {
   return options;
 }
 
-ExperimentResult RunOne(const TableArguments& arguments, ExperimentOptions options,
-                        const Scenario& scenario, const std::string& name) {
+runner::ExperimentResult RunOne(const TableArguments& arguments, runner::ExperimentOptions options,
+                                const Scenario& scenario, const std::string& name) {
   if (!arguments.logs.empty()) {
     options.log = arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
                                                arguments.scenario.file().stem().string(),
                                                scenario.seed, name);
   }
-  const LogOfRun log = options.log.empty() ? LogOfRun() : LogOfRun(options.log);
-  ExperimentResult result = RunExperiment(scenario, options);
+  const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
+  runner::ExperimentResult result = runner::RunExperiment(scenario, options);
   if (result.verification && !result.verification->Holds()) {
-    throw CheckFailed(
+    throw cli::CheckFailed(
         fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
   }
   return result;
 }
 
 /// Runs every pair on a transport, with logs if requested.
-std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
-                                     const ExperimentOptions& options, Scenario scenario,
-                                     std::span<const double> thresholds, const SeedRange& seeds) {
-  const ExternalRoles external(options.transport, options.traffic, options.wait);
+std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
+                                            const runner::ExperimentOptions& options,
+                                            Scenario scenario, std::span<const double> thresholds,
+                                            const sweep::SeedRange& seeds) {
+  const processes::ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
     Notice(fmt::format("each of {} runs waits for the {} ({}): start it for each with: {}",
                        seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
                        external.Command(role)));
   }
-  std::vector<ThresholdRow> rows;
+  std::vector<sweep::ThresholdRow> rows;
   for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
-    const ExperimentResult baseline =
-        RunOne(arguments, options, WithoutTradedControl(scenario), "none");
-    for (ThresholdRow& row : rows) {
+    const runner::ExperimentResult baseline =
+        RunOne(arguments, options, cli::WithoutTradedControl(scenario), "none");
+    for (sweep::ThresholdRow& row : rows) {
       scenario.arbitrator.threshold = row.threshold;
-      const ExperimentResult result =
+      const runner::ExperimentResult result =
           RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
-      row.Add(
-          SafetyImprovementPct(baseline.samples, result.samples, scenario.measures.safety_floor_m),
-          result.measures);
+      row.Add(metrics::SafetyImprovementPct(baseline.samples, result.samples,
+                                            scenario.measures.safety_floor_m),
+              result.measures);
     }
     progress.Show(seed - seeds.first + 1);
   }
@@ -116,7 +117,7 @@ std::vector<ThresholdRow> RowsByRuns(const TableArguments& arguments,
 }
 
 std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario& scenario) {
-  if (!arguments.thresholds.empty()) return ParseThresholds(arguments.thresholds);
+  if (!arguments.thresholds.empty()) return sweep::ParseThresholds(arguments.thresholds);
   std::vector<double> thresholds;
   for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
   if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
@@ -135,15 +136,15 @@ const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {
 }
 
 nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::string& transport,
-                              const Scenario& scenario, const SeedRange& seeds,
-                              const std::vector<ThresholdRow>& rows) {
+                              const Scenario& scenario, const sweep::SeedRange& seeds,
+                              const std::vector<sweep::ThresholdRow>& rows) {
   nlohmann::ordered_json json{
       {"scenario", file.string()}, {"transport", transport},
       {"seeds", seeds.count()},    {"first_seed", seeds.first},
       {"last_seed", seeds.last},   {"rows", nlohmann::ordered_json::array()}};
-  for (const ThresholdRow& row : rows) {
-    const Summary si = row.si_pct.Result();
-    const Summary rhe = row.rhe_pct.Result();
+  for (const sweep::ThresholdRow& row : rows) {
+    const stats::Summary si = row.si_pct.Result();
+    const stats::Summary rhe = row.rhe_pct.Result();
     nlohmann::ordered_json out{
         {"threshold", row.threshold},           {"si_pct", OrNull(si.mean)},
         {"rhe_pct", OrNull(rhe.mean)},          {"si_std_pct", OrNull(si.deviation)},
@@ -160,12 +161,12 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::stri
   return json;
 }
 
-void PrintText(const Scenario& scenario, const SeedRange& seeds,
-               const std::vector<ThresholdRow>& rows) {
+void PrintText(const Scenario& scenario, const sweep::SeedRange& seeds,
+               const std::vector<sweep::ThresholdRow>& rows) {
   const auto cell = [](std::optional<double> value) {
     return value ? fmt::format("{:.2f}", *value) : std::string("-");
   };
-  const auto spread = [&](const Summary& of) {
+  const auto spread = [&](const stats::Summary& of) {
     return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
                         : cell(of.mean);
   };
@@ -177,8 +178,8 @@ void PrintText(const Scenario& scenario, const SeedRange& seeds,
   }
   fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", "DoC_th", "SI (%)", "RHE (%)",
              "published SI", "published RHE", "collisions");
-  for (const ThresholdRow& row : rows) {
-    const Summary si = row.si_pct.Result();
+  for (const sweep::ThresholdRow& row : rows) {
+    const stats::Summary si = row.si_pct.Result();
     const PublishedRow* published = PublishedOf(scenario, row.threshold);
     fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
                spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
@@ -188,7 +189,7 @@ void PrintText(const Scenario& scenario, const SeedRange& seeds,
                  si.count);
     }
   }
-  const auto has_si = [](const ThresholdRow& row) { return row.si_pct.Result().count > 0; };
+  const auto has_si = [](const sweep::ThresholdRow& row) { return row.si_pct.Result().count > 0; };
   if (std::ranges::none_of(rows, has_si)) {
     fmt::print(
         "\nno SI: without traded control the following car never comes too close (no fog?)\n");
@@ -202,15 +203,16 @@ Scenario ScenarioOf(const TableArguments& arguments) {
     arguments.scenario.RefuseOverrideOf("/seed", "the seeds are those of --seeds");
   }
   Scenario scenario = arguments.scenario.Load();
-  RequireThreshold(scenario, arguments.scenario.file());
+  sweep::RequireThreshold(scenario, arguments.scenario.file());
   return scenario;
 }
 
 int RunTable(const TableArguments& arguments) {
   const Scenario scenario = ScenarioOf(arguments);
-  const ExperimentOptions options = OptionsOf(arguments);
-  const SeedRange seeds = arguments.seeds.empty() ? SeedRange{scenario.seed, scenario.seed}
-                                                  : ReadSeeds(arguments.seeds);
+  const runner::ExperimentOptions options = OptionsOf(arguments);
+  const sweep::SeedRange seeds = arguments.seeds.empty()
+                                     ? sweep::SeedRange{scenario.seed, scenario.seed}
+                                     : cli::ReadSeeds(arguments.seeds);
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
   std::optional<FileLock> folder;
   if (!arguments.logs.empty()) {
@@ -218,21 +220,21 @@ int RunTable(const TableArguments& arguments) {
     folder.emplace(arguments.logs, FileLock::Kind::kOwn, "--logs", "table");
   }
   WatchInterrupts();
-  const std::vector<ThresholdRow> rows =
+  const std::vector<sweep::ThresholdRow> rows =
       options.transport == "direct" && arguments.logs.empty()
-          ? RowsOnAllCores(scenario, thresholds, seeds)
+          ? cli::RowsOnAllCores(scenario, thresholds, seeds)
           : RowsByRuns(arguments, options, scenario, thresholds, seeds);
   if (arguments.json) {
-    PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
+    cli::PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
   } else {
     PrintText(scenario, seeds, rows);
   }
-  return kDone;
+  return cli::kDone;
 }
 
 }  // namespace
 
-void AddTable(CLI::App& app, Action& action) {
+void AddTable(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("table", "Safety improvement and redundant engagement by threshold");
   const auto arguments = std::make_shared<TableArguments>(*verb);

@@ -18,7 +18,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/cli/verbs.h"
+#include "tools/fogline/verbs.h"
 #include "tools/watch/announced.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"
@@ -47,18 +47,18 @@ Examples:
 struct TopArguments {
   explicit TopArguments(CLI::App& verb) : network(verb, "to look at") {
     verb.add_option("--interval", interval_s, "Length of an observation, in s")
-        ->check(NumberIn(0.1, 3600))
+        ->check(cli::NumberIn(0.1, 3600))
         ->capture_default_str();
     verb.add_option("--for", limit_s, "Quit after so long, in s (0: do not)")
-        ->check(NumberIn(0, 1e7))
+        ->check(cli::NumberIn(0, 1e7))
         ->capture_default_str();
     verb.add_flag("--once", once, "Print what was seen in one interval, and quit");
     verb.add_flag("--json", json, "Print a JSON document for every interval instead of a table");
-    ShowExitCodes(verb, {.interruptible = true});
+    cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(kTopExplanation);
   }
 
-  NetworkArguments network;
+  cli::NetworkArguments network;
   double interval_s = 1;
   double limit_s = 0;
   bool once = false;
@@ -71,7 +71,7 @@ constexpr Duration kLookEvery = milliseconds(50);
 // time.
 constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine announces itself within this time.
-constexpr Duration kDiscovery = 2 * kBeaconEvery;
+constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
 // LCM keeps every channel name that it has heard while it is open, at about 300 bytes each. After
 // this many unknown names it is closed and opened again.
 constexpr std::int64_t kMostNames = 10'000;
@@ -100,14 +100,14 @@ class Top {
     if (terminal_) Show();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && terminal_) return kDone;
+      if (!whole && terminal_) return cli::kDone;
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
-      if (!whole) return kInterrupted;
+      if (!whole) return cli::kInterrupted;
       Show();
       if (terminal_ && terminal_->gone()) throw std::runtime_error("the terminal is gone");
-      if (arguments_.once) return kDone;
+      if (arguments_.once) return cli::kDone;
     }
-    return kDone;
+    return cli::kDone;
   }
 
  private:
@@ -126,9 +126,9 @@ class Top {
     Open();
   }
 
-  void Watch(Bus& bus) {
-    bus.SubscribeAll([this](std::string_view channel, Bytes bytes) {
-      if (!IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
+  void Watch(runtime::Bus& bus) {
+    bus.SubscribeAll([this](std::string_view channel, runtime::Bytes bytes) {
+      if (!watch::IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
     });
   }
 
@@ -146,15 +146,15 @@ class Top {
     follow_at_ = now + kFollowEvery;
     listener_->Look();
     runs_ = listener_->Runs();
-    const auto newest = std::ranges::find_if(runs_, [this](const Announcement& run) {
+    const auto newest = std::ranges::find_if(runs_, [this](const runtime::Announcement& run) {
       return std::ranges::find(unreachable_, run.run_id) == unreachable_.end();
     });
     if (newest == runs_.end()) return followed_.reset();
     std::rotate(runs_.begin(), newest, newest + 1);
-    const Announcement& run = runs_.front();
-    if (followed_ && SameNetwork(followed_->url(), run.url)) return;
+    const runtime::Announcement& run = runs_.front();
+    if (followed_ && runtime::SameNetwork(followed_->url(), run.url)) return;
     followed_.reset();
-    if (SameNetwork(bus_->url(), run.url)) return;
+    if (runtime::SameNetwork(bus_->url(), run.url)) return;
     try {
       followed_.emplace(run.url);
       Watch(*followed_);
@@ -201,12 +201,12 @@ class Top {
   }
 
   void Show() {
-    const TrafficView view = statistics_.Observe(Clock::now());
+    const watch::TrafficView view = statistics_.Observe(Clock::now());
     if (terminal_) return terminal_->Draw(Lines(view));
     if (arguments_.json) {
-      PrintJson(Json(view), arguments_.once ? 2 : -1);
+      cli::PrintJson(Json(view), arguments_.once ? 2 : -1);
     } else {
-      for (const Line& line : Lines(view)) fmt::print("{}\n", line.text);
+      for (const watch::Line& line : Lines(view)) fmt::print("{}\n", line.text);
       if (!arguments_.once) fmt::print("\n");
     }
     std::fflush(stdout);
@@ -215,35 +215,35 @@ class Top {
   /// The network of the followed run, or else the given network.
   const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
 
-  std::vector<Line> Lines(const TrafficView& view) const {
-    std::vector<Line> lines = TrafficLines(view, url());
-    const std::vector<Line> announced = AnnouncedLines(runs_, followed_.has_value());
+  std::vector<watch::Line> Lines(const watch::TrafficView& view) const {
+    std::vector<watch::Line> lines = watch::TrafficLines(view, url());
+    const std::vector<watch::Line> announced = watch::AnnouncedLines(runs_, followed_.has_value());
     lines.insert(lines.begin() + 1, announced.begin(), announced.end());
     return lines;
   }
 
-  nlohmann::ordered_json Json(const TrafficView& view) const {
-    nlohmann::ordered_json json = TrafficJson(view, url());
-    if (listener_) json["announced"] = AnnouncedJson(runs_, followed_.has_value());
+  nlohmann::ordered_json Json(const watch::TrafficView& view) const {
+    nlohmann::ordered_json json = watch::TrafficJson(view, url());
+    if (listener_) json["announced"] = watch::AnnouncedJson(runs_, followed_.has_value());
     return json;
   }
 
   const TopArguments& arguments_;
   std::string url_;
-  std::optional<Bus> bus_;
-  TrafficStatistics statistics_;
-  std::int64_t names_ = 0;                  // unknown names when bus_ was opened
-  std::optional<BeaconListener> listener_;  // set if announced runs are to be followed
-  std::vector<Announcement> runs_;          // announced runs, the followed one first
-  std::optional<Bus> followed_;             // the network of the followed run
-  std::vector<std::int64_t> unreachable_;   // ids of runs
+  std::optional<runtime::Bus> bus_;
+  watch::TrafficStatistics statistics_;
+  std::int64_t names_ = 0;                           // unknown names when bus_ was opened
+  std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
+  std::vector<runtime::Announcement> runs_;          // announced runs, the followed one first
+  std::optional<runtime::Bus> followed_;             // the network of the followed run
+  std::vector<std::int64_t> unreachable_;            // ids of runs
   TimePoint follow_at_{};
   std::optional<Terminal> terminal_;
 };
 
 }  // namespace
 
-void AddTop(CLI::App& app, Action& action) {
+void AddTop(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("top", "Show live traffic: channels and roles, run by run");
   const auto arguments = std::make_shared<TopArguments>(*verb);
   verb->callback([&action, arguments] {

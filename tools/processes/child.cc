@@ -17,7 +17,7 @@
 
 #include "common/file.h"
 
-namespace fogline {
+namespace fogline::processes {
 namespace {
 
 /// Runs in the child between fork and exec, so it makes only async-signal-safe calls. If the
@@ -109,4 +109,4 @@ std::filesystem::path ProgramOf(Role role) {
   return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
 }
 
-}  // namespace fogline
+}  // namespace fogline::processes

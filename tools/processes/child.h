@@ -10,7 +10,7 @@
 
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::processes {
 
 /// Starts a program of Fogline. The kernel kills it when the runner dies. The terminal's Ctrl-C
 /// does not reach it; the runner turns Ctrl-C into an orderly end. Its stdin is /dev/null, its
@@ -40,4 +40,4 @@ std::filesystem::path ProgramBeside(std::string_view name);
 /// The program of a role in that folder.
 std::filesystem::path ProgramOf(Role role);
 
-}  // namespace fogline
+}  // namespace fogline::processes

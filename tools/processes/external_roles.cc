@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::processes {
 
 std::string ExternalRoles::Limit() const {
   if (limit_ == Duration::zero()) return "for ever";
@@ -25,8 +25,9 @@ std::string ExternalRoles::Text(const std::vector<Role>& roles) const {
   return text;
 }
 
-void ExternalRoles::Check(RunCoordinator& coordinator, TimePoint now) const {
-  if (limit_ == Duration::zero() || coordinator.phase() != RunCoordinator::Phase::kJoining) return;
+void ExternalRoles::Check(runtime::RunCoordinator& coordinator, TimePoint now) const {
+  if (limit_ == Duration::zero() || coordinator.phase() != runtime::RunCoordinator::Phase::kJoining)
+    return;
   if (coordinator.HeldAgainst(began_, now) <= limit_) return;
   std::string names;
   std::string commands;
@@ -39,4 +40,4 @@ void ExternalRoles::Check(RunCoordinator& coordinator, TimePoint now) const {
                                Limit(), names, commands));
 }
 
-}  // namespace fogline
+}  // namespace fogline::processes

@@ -8,13 +8,13 @@
 #include "services/runtime/coordination/run_coordinator.h"
 #include "services/runtime/transport/traffic_options.h"
 
-namespace fogline {
+namespace fogline::processes {
 
 class ExternalRoles {
  public:
   /// @param url network of the run
   /// @param limit time in which all of them must be ready; 0: no limit
-  ExternalRoles(std::string url, const TrafficOptions& traffic, Duration limit)
+  ExternalRoles(std::string url, const runtime::TrafficOptions& traffic, Duration limit)
       : url_(std::move(url)), key_file_(traffic.key_file), limit_(limit), began_(Clock::now()) {}
 
   /// "60 s", or "for ever".
@@ -27,7 +27,7 @@ class ExternalRoles {
   std::string Text(const std::vector<Role>& roles) const;
 
   /// Ends the run after the time limit, with the names of the missing roles.
-  void Check(RunCoordinator& coordinator, TimePoint now) const;
+  void Check(runtime::RunCoordinator& coordinator, TimePoint now) const;
 
  private:
   std::string url_;
@@ -36,4 +36,4 @@ class ExternalRoles {
   TimePoint began_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::processes

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace fogline {
+namespace fogline::processes {
 
 class LastLines {
  public:
@@ -45,4 +45,4 @@ class LastLines {
   std::string begun_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::processes

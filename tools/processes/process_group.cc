@@ -12,7 +12,7 @@
 
 #include "tools/processes/child.h"
 
-namespace fogline {
+namespace fogline::processes {
 
 ProcessGroup::~ProcessGroup() {
   Signal(SIGKILL);
@@ -77,4 +77,4 @@ void ProcessGroup::ReadOutput(Process& process) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::processes

@@ -12,7 +12,7 @@
 #include "services/graph.h"
 #include "tools/processes/last_lines.h"
 
-namespace fogline {
+namespace fogline::processes {
 
 class ProcessGroup {
  public:
@@ -55,4 +55,4 @@ class ProcessGroup {
   std::vector<Process> processes_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::processes

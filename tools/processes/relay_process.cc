@@ -15,7 +15,7 @@
 #include "common/clock.h"
 #include "tools/processes/child.h"
 
-namespace fogline {
+namespace fogline::processes {
 namespace {
 
 constexpr Duration kListenLimit = milliseconds(5000);
@@ -65,7 +65,7 @@ void RelayProcess::End() {
   pid_ = -1;
 }
 
-std::string RelayProcess::Look(const RunCoordinator& run, TimePoint now) {
+std::string RelayProcess::Look(const runtime::RunCoordinator& run, TimePoint now) {
   int status = 0;
   if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
     dead_ = std::exchange(pid_, -1);
@@ -89,4 +89,4 @@ std::string RelayProcess::Look(const RunCoordinator& run, TimePoint now) {
                      policy_.restarts(), policy_.limit());
 }
 
-}  // namespace fogline
+}  // namespace fogline::processes

@@ -10,7 +10,7 @@
 #include "services/runtime/coordination/restart_policy.h"
 #include "services/runtime/coordination/run_coordinator.h"
 
-namespace fogline {
+namespace fogline::processes {
 
 class RelayProcess {
  public:
@@ -27,7 +27,7 @@ class RelayProcess {
   /// milliseconds.
   /// @return a message for the user, "" if there is none
   /// @throws std::runtime_error if the restarts are used up
-  std::string Look(const RunCoordinator& run, TimePoint now);
+  std::string Look(const runtime::RunCoordinator& run, TimePoint now);
 
   /// Number of restarts, and how the last dead process ended.
   int restarts() const { return policy_.restarts(); }
@@ -38,7 +38,7 @@ class RelayProcess {
   std::string Start(const std::string& place);
   void End();
 
-  RestartPolicy policy_;
+  runtime::RestartPolicy policy_;
   pid_t pid_ = -1;
   pid_t dead_ = -1;  // process id of the last dead relay
   std::string url_;
@@ -46,4 +46,4 @@ class RelayProcess {
   std::optional<TimePoint> start_at_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::processes

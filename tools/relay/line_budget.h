@@ -10,7 +10,7 @@
 #include "common/clock.h"
 #include "common/process/console.h"
 
-namespace fogline {
+namespace fogline::relay {
 
 class LineBudget {
  public:
@@ -38,4 +38,4 @@ class LineBudget {
   std::int64_t unsaid_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::relay

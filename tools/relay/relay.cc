@@ -6,7 +6,7 @@
 
 #include "tools/relay/relay_client.h"
 
-namespace fogline {
+namespace fogline::relay {
 namespace {
 
 namespace asio = boost::asio;
@@ -46,7 +46,7 @@ void Relay::Accept() {
   });
 }
 
-void Relay::Forward(const tcpq::Frame& message) {
+void Relay::Forward(const runtime::tcpq::Frame& message) {
   ++messages_in_;
   bytes_in_ += message.payload.size();
   for (const auto& [id, client] : clients_) client->Offer(message);
@@ -82,4 +82,4 @@ std::string Relay::Summary() const {
       std::chrono::duration<double>(Clock::now() - began_).count());
 }
 
-}  // namespace fogline
+}  // namespace fogline::relay

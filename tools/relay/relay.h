@@ -19,10 +19,10 @@
 #include "services/runtime/wire/tcpq_frame.h"
 #include "tools/relay/line_budget.h"
 
-namespace fogline {
+namespace fogline::relay {
 
 struct RelayOptions {
-  tcpq::Limits limits;
+  runtime::tcpq::Limits limits;
   std::size_t queue_bytes = 16 << 20;  // of each client; an empty queue takes any message
   std::size_t clients = 128;
   std::size_t subscriptions = 1000;  // of each client
@@ -52,7 +52,7 @@ class Relay {
   friend class RelayClient;
 
   void Accept();
-  void Forward(const tcpq::Frame& message);
+  void Forward(const runtime::tcpq::Frame& message);
   void Greeted() { ++served_; }
   void Sent(std::size_t bytes);
   /// Removes a client. `why` is empty if the client left by itself.
@@ -75,4 +75,4 @@ class Relay {
   std::uint64_t bytes_out_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::relay

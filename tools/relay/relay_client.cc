@@ -12,7 +12,7 @@
 
 #include "tools/relay/relay.h"
 
-namespace fogline {
+namespace fogline::relay {
 namespace {
 
 namespace asio = boost::asio;
@@ -45,7 +45,7 @@ RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
       socket_(std::move(socket)),
       address_(AddressOf(socket_)),
       greeting_(socket_.get_executor()),
-      parser_(tcpq::kClientMagic, relay.options_.limits),
+      parser_(runtime::tcpq::kClientMagic, relay.options_.limits),
       subscriptions_(relay.options_.subscriptions),
       read_(kReadBytes) {}
 
@@ -59,12 +59,12 @@ void RelayClient::Start() {
       self->Drop(fmt::format("has not said in {} s that it is a client", kGreetingLimit.count()));
     }
   });
-  tcpq::AppendHello(tcpq::kRelayMagic, waiting_);
+  runtime::tcpq::AppendHello(runtime::tcpq::kRelayMagic, waiting_);
   Write();
   Read();
 }
 
-void RelayClient::Offer(const tcpq::Frame& message) {
+void RelayClient::Offer(const runtime::tcpq::Frame& message) {
   if (gone_ || deaf_ || !Wants(message.name)) return;
   const std::size_t queued = sending_.size() + waiting_.size();
   if (queued > 0 && queued + message.wire.size() > relay_.options_.queue_bytes) {
@@ -97,14 +97,14 @@ void RelayClient::Read() {
                           [self = shared_from_this()](error_code error, std::size_t size) {
                             if (self->gone_) return;
                             if (error) return self->Drop("");
-                            self->Take(Bytes(self->read_).first(size));
+                            self->Take(runtime::Bytes(self->read_).first(size));
                             if (self->gone_) return;
                             AcknowledgeAtOnce(self->socket_);
                             self->Read();
                           });
 }
 
-void RelayClient::Take(Bytes bytes) {
+void RelayClient::Take(runtime::Bytes bytes) {
   parser_.Append(bytes);
   while (!gone_) {
     const auto frame = parser_.Next();
@@ -119,14 +119,14 @@ void RelayClient::Take(Bytes bytes) {
   }
 }
 
-void RelayClient::Handle(const tcpq::Frame& frame) {
+void RelayClient::Handle(const runtime::tcpq::Frame& frame) {
   switch (frame.type) {
-    case tcpq::FrameType::kPublish:
+    case runtime::tcpq::FrameType::kPublish:
       return relay_.Forward(frame);
-    case tcpq::FrameType::kSubscribe:
+    case runtime::tcpq::FrameType::kSubscribe:
       if (const std::string wrong = subscriptions_.Add(frame.name); !wrong.empty()) Drop(wrong);
       return;
-    case tcpq::FrameType::kUnsubscribe:
+    case runtime::tcpq::FrameType::kUnsubscribe:
       return subscriptions_.Remove(frame.name);
   }
 }
@@ -147,4 +147,4 @@ void RelayClient::Write() {
                     });
 }
 
-}  // namespace fogline
+}  // namespace fogline::relay

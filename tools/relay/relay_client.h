@@ -15,7 +15,7 @@
 #include "services/runtime/wire/tcpq_frame.h"
 #include "tools/relay/subscriptions.h"
 
-namespace fogline {
+namespace fogline::relay {
 
 class Relay;
 
@@ -29,15 +29,15 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   void Start();
 
   /// Sends a message if the client wants it; disconnects the client if its queue is full.
-  void Offer(const tcpq::Frame& message);
+  void Offer(const runtime::tcpq::Frame& message);
 
   /// Ends the connection and tells the relay. @param why "" if there is no error to report
   void Drop(const std::string& why);
 
  private:
   void Read();
-  void Take(Bytes bytes);
-  void Handle(const tcpq::Frame& frame);
+  void Take(runtime::Bytes bytes);
+  void Handle(const runtime::tcpq::Frame& frame);
   void Write();
   bool Wants(std::string_view channel);
 
@@ -46,7 +46,7 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   tcp::socket socket_;
   const std::string address_;
   boost::asio::steady_timer greeting_;  // runs until the client has sent its magic
-  tcpq::FrameParser parser_;
+  runtime::tcpq::FrameParser parser_;
   Subscriptions subscriptions_;
   std::vector<std::uint8_t> read_;
   std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
@@ -56,4 +56,4 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   bool gone_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::relay

@@ -12,7 +12,7 @@
 #include "services/runtime/transport/tcpq_url.h"
 #include "tools/relay/relay.h"
 
-namespace fogline {
+namespace fogline::relay {
 namespace {
 
 namespace asio = boost::asio;
@@ -68,7 +68,7 @@ int RunRelay(const Arguments& arguments) {
   RelayOptions options = arguments.relay;
   options.limits.payload = arguments.message_mib * kMebibyte;
   options.queue_bytes = arguments.queue_mib * kMebibyte;
-  const tcpq::Endpoint listen = tcpq::Resolve(arguments.listen, "--listen");
+  const runtime::tcpq::Endpoint listen = runtime::tcpq::Resolve(arguments.listen, "--listen");
   asio::io_context context(1);
   std::unique_ptr<Relay> relay;
   try {
@@ -82,7 +82,7 @@ int RunRelay(const Arguments& arguments) {
   asio::signal_set signals(context);
   for (const int signal : EndingSignals()) signals.add(signal);
   signals.async_wait([&relay](boost::system::error_code, int) { relay->Stop(); });
-  const tcpq::Endpoint here{listen.address, relay->endpoint().port()};
+  const runtime::tcpq::Endpoint here{listen.address, relay->endpoint().port()};
   fmt::print("{}\n", here.Url());
   std::fflush(stdout);
   context.run();
@@ -117,6 +117,6 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::relay
 
-int main(int argc, char** argv) { return fogline::Main(argc, argv); }
+int main(int argc, char** argv) { return fogline::relay::Main(argc, argv); }

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::relay {
 namespace {
 
 // Matching results that are kept for each client. A testbed has tens of channels. Names that change
@@ -92,4 +92,4 @@ bool Subscriptions::Search(std::string_view channel) {
   return match;
 }
 
-}  // namespace fogline
+}  // namespace fogline::relay

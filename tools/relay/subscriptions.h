@@ -12,7 +12,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::relay {
 
 /// Expressions in Perl's syntax (as in LCM). Each must match a whole channel name.
 class Subscriptions {
@@ -48,4 +48,4 @@ class Subscriptions {
   TimePoint filled_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::relay

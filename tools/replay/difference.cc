@@ -9,7 +9,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::replay {
 namespace {
 
 /// A field of a message as "name[index]" and its value in the shortest exact form.
@@ -44,14 +44,14 @@ std::vector<Field> FieldsOf(const M& message) {
 
 /// Whether two messages are equal except for the run id, as in the digest. In real time a message
 /// may be missing.
-bool SameRunAside(Bytes a, Bytes b) {
+bool SameRunAside(runtime::Bytes a, runtime::Bytes b) {
   if (a.empty() || b.empty()) return a.empty() == b.empty();
-  return std::ranges::equal(a.first(kRunIdOffset), b.first(kRunIdOffset)) &&
-         std::ranges::equal(a.subspan(kStepOffset), b.subspan(kStepOffset));
+  return std::ranges::equal(a.first(runtime::kRunIdOffset), b.first(runtime::kRunIdOffset)) &&
+         std::ranges::equal(a.subspan(runtime::kStepOffset), b.subspan(runtime::kStepOffset));
 }
 
 template <class M>
-Difference FirstField(std::int64_t step, Bytes a, Bytes b) {
+Difference FirstField(std::int64_t step, runtime::Bytes a, runtime::Bytes b) {
   Difference difference{.step = step, .channel = std::string(ChannelOf<M>().name)};
   if (a.empty() || b.empty()) {
     difference.field = "(message)";
@@ -61,7 +61,7 @@ Difference FirstField(std::int64_t step, Bytes a, Bytes b) {
   }
   M message_a{};
   M message_b{};
-  if (!Decode(a, message_a) || !Decode(b, message_b)) {
+  if (!runtime::Decode(a, message_a) || !runtime::Decode(b, message_b)) {
     return difference.field = "(does not decode)", difference;
   }
   const std::vector<Field> fields_a = FieldsOf(message_a);
@@ -78,8 +78,8 @@ Difference FirstField(std::int64_t step, Bytes a, Bytes b) {
 
 }  // namespace
 
-std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, Bytes a,
-                                          Bytes b) {
+std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, runtime::Bytes a,
+                                          runtime::Bytes b) {
   std::optional<Difference> first;
   ForEachStepChannel([&]<class M>(std::size_t i) {
     if (i == channel && !SameRunAside(a, b)) first = FirstField<M>(step, a, b);
@@ -87,12 +87,12 @@ std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step
   return first;
 }
 
-std::optional<Difference> FirstDifference(std::int64_t step, const StepMessages& a,
-                                          const StepMessages& b) {
+std::optional<Difference> FirstDifference(std::int64_t step, const log::StepMessages& a,
+                                          const log::StepMessages& b) {
   for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
     if (auto first = FirstDifference(channel, step, a[channel], b[channel])) return first;
   }
   return std::nullopt;
 }
 
-}  // namespace fogline
+}  // namespace fogline::replay

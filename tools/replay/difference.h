@@ -7,7 +7,7 @@
 
 #include "services/log/run_log.h"
 
-namespace fogline {
+namespace fogline::replay {
 
 /// A difference, with its values in the shortest form that distinguishes any two values.
 struct Difference {
@@ -20,10 +20,11 @@ struct Difference {
 
 /// The first difference between two messages of a channel (an index in kChannels). It ignores the
 /// run ids, as the digest does. Empty bytes stand for a missing message, which occurs in real time.
-std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, Bytes a, Bytes b);
+std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, runtime::Bytes a,
+                                          runtime::Bytes b);
 
 /// The same for all channels of a step, in the order of the graph table.
-std::optional<Difference> FirstDifference(std::int64_t step, const StepMessages& a,
-                                          const StepMessages& b);
+std::optional<Difference> FirstDifference(std::int64_t step, const log::StepMessages& a,
+                                          const log::StepMessages& b);
 
-}  // namespace fogline
+}  // namespace fogline::replay

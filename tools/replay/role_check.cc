@@ -9,9 +9,9 @@
 #include "common/errors.h"
 #include "tools/processes/child.h"
 
-namespace fogline {
+namespace fogline::replay {
 
-std::vector<RoleCheck> MakeRoleChecks(const RunLog& run) {
+std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run) {
   std::vector<RoleCheck> roles;
   for (const RoleInfo& info : kRoles) {
     auto replay = MakeRoleReplay(info.role, run);
@@ -20,10 +20,10 @@ std::vector<RoleCheck> MakeRoleChecks(const RunLog& run) {
   return roles;
 }
 
-void CheckRoles(RunLogReader& reader, std::vector<RoleCheck>& roles) {
-  StepMessages before{};  // its bytes live as long as the reader
+void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles) {
+  log::StepMessages before{};  // its bytes live as long as the reader
   std::int64_t step = 0;
-  for (; const StepMessages* messages = reader.Next(); ++step) {
+  for (; const log::StepMessages* messages = reader.Next(); ++step) {
     for (RoleCheck& one : roles) {
       std::optional<Difference> difference = one.replay->Step(step, *messages, before);
       if (!difference) continue;
@@ -43,39 +43,40 @@ std::string Verification::Trouble() const {
       first.step, first.channel, NameOf(failure->role), first.field, first.a, first.b);
 }
 
-std::vector<OtherBuild> OtherBuildsIn(const RunLog& run) {
-  std::vector<OtherBuild> others;
+std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run) {
+  std::vector<runtime::OtherBuild> others;
   if (!run.seal || !run.seal->whole) return others;
   const log_seal_t& says = run.seal->says;
   for (const RoleInfo& info : kRoles) {
     const auto place = std::ranges::find(says.role, info.name) - says.role.begin();
     if (place >= std::ssize(says.build_id)) continue;
-    const BuildId build = says.build_id[static_cast<std::size_t>(place)];
-    const BuildId ours = BuildIdOf(ProgramOf(info.role));
+    const runtime::BuildId build = says.build_id[static_cast<std::size_t>(place)];
+    const runtime::BuildId ours = runtime::BuildIdOf(processes::ProgramOf(info.role));
     // In a run in one process each role is of the build of that process.
-    if (build != kUnknownBuild && (build == ours || build == OwnBuildId())) continue;
+    if (build != runtime::kUnknownBuild && (build == ours || build == runtime::OwnBuildId()))
+      continue;
     others.push_back({.role = info.role, .pid = 0, .host = "", .build = build, .ours = ours});
   }
   return others;
 }
 
-Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
-                       const std::vector<OtherBuild>& others) {
+Verification VerifyRun(const std::filesystem::path& log, const log::RunLog& run,
+                       const std::vector<runtime::OtherBuild>& others) {
   Verification verification;
   std::vector<RoleCheck> roles = MakeRoleChecks(run);
   std::erase_if(roles, [&](const RoleCheck& one) {
     std::string why;
     if (run.realtime) why = "a run in real time";
-    const auto other = std::ranges::find(others, one.role, &OtherBuild::role);
+    const auto other = std::ranges::find(others, one.role, &runtime::OtherBuild::role);
     if (other != others.end()) {
-      why = other->build == kUnknownBuild ? "of an unknown build" : "of another build";
+      why = other->build == runtime::kUnknownBuild ? "of an unknown build" : "of another build";
     }
     if (!why.empty()) verification.left_out.push_back({.role = one.role, .why = why});
     return !why.empty();
   });
   for (const RoleCheck& one : roles) verification.roles.push_back(one.role);
   try {
-    RunLogReader reader(log);
+    log::RunLogReader reader(log);
     CheckRoles(reader, roles);
   } catch (const InputError& error) {
     verification.broken = error.what();
@@ -89,4 +90,4 @@ Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
   return verification;
 }
 
-}  // namespace fogline
+}  // namespace fogline::replay

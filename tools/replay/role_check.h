@@ -12,7 +12,7 @@
 #include "services/runtime/wire/other_build.h"
 #include "tools/replay/role_replay.h"
 
-namespace fogline {
+namespace fogline::replay {
 
 /// A role, and the result of computing its steps again.
 struct RoleCheck {
@@ -23,10 +23,10 @@ struct RoleCheck {
 };
 
 /// The roles of a run in lockstep that compute messages, in their initial state.
-std::vector<RoleCheck> MakeRoleChecks(const RunLog& run);
+std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run);
 /// Computes every step of a log again.
 /// @throws InputError for a step that cannot be computed; the text lacks the log's name
-void CheckRoles(RunLogReader& reader, std::vector<RoleCheck>& roles);
+void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles);
 
 /// Result of the check of a run's own log.
 struct Verification {
@@ -50,10 +50,10 @@ struct Verification {
 
 /// The roles of which the seal of a log says that they were of another build than the programs
 /// here, or does not say of which; none for a log without a seal.
-std::vector<OtherBuild> OtherBuildsIn(const RunLog& run);
+std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
 /// @param others roles of another build; their algorithms are not in this program
-Verification VerifyRun(const std::filesystem::path& log, const RunLog& run,
-                       const std::vector<OtherBuild>& others);
+Verification VerifyRun(const std::filesystem::path& log, const log::RunLog& run,
+                       const std::vector<runtime::OtherBuild>& others);
 
-}  // namespace fogline
+}  // namespace fogline::replay

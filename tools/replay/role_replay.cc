@@ -21,22 +21,23 @@
 #include "services/runtime/wire/refusals.h"
 #include "services/world/world.h"
 
-namespace fogline {
+namespace fogline::replay {
 namespace {
 
 /// The algorithms of all roles that compute messages.
-using Algorithms = std::tuple<World, Radar, Lidar, Fusion, Acc, Driver, Arbitrator, Follower>;
+using Algorithms = std::tuple<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
+                              driver::Driver, arbitrator::Arbitrator, follower::Follower>;
 
 template <class Algorithm>
 class ReplayOf final : public RoleReplay {
  public:
-  explicit ReplayOf(const RunLog& run)
+  explicit ReplayOf(const log::RunLog& run)
       : algorithm_(run.scenario),
         run_id_(run.run_id),
         hears_(Traits::UsesOptionalInput(run.scenario)) {}
 
-  std::optional<Difference> Step(std::int64_t step, const StepMessages& messages,
-                                 const StepMessages& before) override {
+  std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
+                                 const log::StepMessages& before) override {
     if constexpr (Traits::kStarts) {
       if (step == 0) return Compare(step, algorithm_.Start(run_id_), messages);
     }
@@ -67,17 +68,17 @@ class ReplayOf final : public RoleReplay {
 
   /// Reads input I of a step, as the role's process does.
   template <std::size_t I>
-  void Read(std::int64_t step, const StepMessages& messages, const StepMessages& before) {
+  void Read(std::int64_t step, const log::StepMessages& messages, const log::StepMessages& before) {
     using M = std::tuple_element_t<I, AllInputs>;
     constexpr std::int64_t kLag = LagOf(ChannelOf<M>().from, Traits::kRole);
-    const Bytes bytes = (kLag == 0 ? messages : before)[IndexOf<M>()];
-    if (Examine(bytes, std::get<I>(inputs_)) == nullptr) return;
+    const runtime::Bytes bytes = (kLag == 0 ? messages : before)[IndexOf<M>()];
+    if (runtime::Examine(bytes, std::get<I>(inputs_)) == nullptr) return;
     throw InputError(fmt::format("step {}: {} is no such message with finite values", step - kLag,
                                  ChannelOf<M>().name));
   }
 
-  void SetOptionalInput(std::int64_t step, const StepMessages& messages,
-                        const StepMessages& before) {
+  void SetOptionalInput(std::int64_t step, const log::StepMessages& messages,
+                        const log::StepMessages& before) {
     using M = std::tuple_element_t<kInputs, AllInputs>;
     // Before the run the message is all zero (services/algorithm.h).
     if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
@@ -90,11 +91,11 @@ class ReplayOf final : public RoleReplay {
   }
 
   std::optional<Difference> Compare(std::int64_t step, const typename Traits::Output& output,
-                                    const StepMessages& messages) {
+                                    const log::StepMessages& messages) {
     std::optional<Difference> first;
     const auto compare = [&]<class M>(const M& message) {
       if (first) return;
-      Encode(message, encoded_);
+      runtime::Encode(message, encoded_);
       first = FirstDifference(IndexOf<M>(), step, messages[IndexOf<M>()], encoded_);
     };
     if constexpr (std::is_same_v<std::tuple<typename Traits::Output>, typename Traits::Outputs>) {
@@ -114,7 +115,7 @@ class ReplayOf final : public RoleReplay {
 
 }  // namespace
 
-std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const RunLog& run) {
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run) {
   std::unique_ptr<RoleReplay> replay;
   [&]<class... A>(std::type_identity<std::tuple<A...>>) {
     (
@@ -126,4 +127,4 @@ std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const RunLog& run) {
   return replay;
 }
 
-}  // namespace fogline
+}  // namespace fogline::replay

@@ -12,7 +12,7 @@
 #include "services/log/run_log.h"
 #include "tools/replay/difference.h"
 
-namespace fogline {
+namespace fogline::replay {
 
 class RoleReplay {
  public:
@@ -23,12 +23,12 @@ class RoleReplay {
   /// @param before messages of the step before; step 0 does not use them
   /// @return the first difference, `a` in the log and `b` computed here
   /// @throws InputError for an invalid message, or one that the role refuses
-  virtual std::optional<Difference> Step(std::int64_t step, const StepMessages& messages,
-                                         const StepMessages& before) = 0;
+  virtual std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
+                                         const log::StepMessages& before) = 0;
 };
 
 /// A role of a run in its initial state; nullptr for the recorder and the runner, which compute
 /// nothing. @throws InputError for an impossible scenario
-std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const RunLog& run);
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run);
 
-}  // namespace fogline
+}  // namespace fogline::replay

@@ -72,8 +72,8 @@ std::string MissingText(const ReportCurves& curves) {
       seeds - least->si_pct.count, seeds);
 }
 
-json Column(const ReportCurves& curves, Summary ReportCurves::Point::*measure,
-            std::optional<double> Summary::*value) {
+json Column(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure,
+            std::optional<double> stats::Summary::*value) {
   json column = json::array();
   for (const ReportCurves::Point& point : curves.points) {
     const std::optional<double>& number = point.*measure.*value;
@@ -82,12 +82,12 @@ json Column(const ReportCurves& curves, Summary ReportCurves::Point::*measure,
   return column;
 }
 
-json Columns(const ReportCurves& curves, Summary ReportCurves::Point::*measure) {
-  return {{"mean", Column(curves, measure, &Summary::mean)},
-          {"deviation", Column(curves, measure, &Summary::deviation)},
-          {"ci95", Column(curves, measure, &Summary::ci95)},
-          {"p5", Column(curves, measure, &Summary::p5)},
-          {"p95", Column(curves, measure, &Summary::p95)}};
+json Columns(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure) {
+  return {{"mean", Column(curves, measure, &stats::Summary::mean)},
+          {"deviation", Column(curves, measure, &stats::Summary::deviation)},
+          {"ci95", Column(curves, measure, &stats::Summary::ci95)},
+          {"p5", Column(curves, measure, &stats::Summary::p5)},
+          {"p95", Column(curves, measure, &stats::Summary::p95)}};
 }
 
 }  // namespace
@@ -110,13 +110,13 @@ std::vector<FrontPoint> FrontPoints(const ReportCurves& curves) {
   std::sort(points.begin(), points.end(), [](const FrontPoint& a, const FrontPoint& b) {
     return std::pair(a.rhe_pct, a.si_pct) < std::pair(b.rhe_pct, b.si_pct);
   });
-  std::vector<TradeOff> trade_offs;
+  std::vector<stats::TradeOff> trade_offs;
   for (FrontPoint& point : points) {
     point.thresholds = ThresholdsText(curves, point.rows);
     trade_offs.push_back({.rhe_pct = point.rhe_pct, .si_pct = point.si_pct});
   }
   FrontPoint* before = nullptr;
-  for (const std::size_t i : ParetoFront(trade_offs)) {
+  for (const std::size_t i : stats::ParetoFront(trade_offs)) {
     points[i].on_front = true;
     if (before != nullptr) {
       before->beside = points[i].si_pct - before->si_pct > points[i].rhe_pct - before->rhe_pct;

@@ -76,10 +76,10 @@ constexpr std::array kFigures{
 };
 
 template <class Predicate>
-std::vector<Window> WindowsWhere(std::span<const Sample> samples, Predicate holds) {
+std::vector<Window> WindowsWhere(std::span<const metrics::Sample> samples, Predicate holds) {
   std::vector<Window> windows;
   bool open = false;
-  for (const Sample& sample : samples) {
+  for (const metrics::Sample& sample : samples) {
     if (open) windows.back().end_s = sample.time_s;
     if (holds(sample) && !open) windows.push_back({sample.time_s, sample.time_s});
     open = holds(sample);
@@ -94,10 +94,10 @@ std::string RunStyle(std::size_t index) {
   return fmt::format("c{} r{}", index % kPaletteSize, index / kPaletteSize % kCores);
 }
 
-double HostJerk(std::span<const Sample> samples, std::size_t index) {
+double HostJerk(std::span<const metrics::Sample> samples, std::size_t index) {
   if (index == 0) return std::numeric_limits<double>::quiet_NaN();
-  const Sample& now = samples[index];
-  const Sample& before = samples[index - 1];
+  const metrics::Sample& now = samples[index];
+  const metrics::Sample& before = samples[index - 1];
   return (now.host_acceleration_mps2 - before.host_acceleration_mps2) /
          (now.time_s - before.time_s);
 }
@@ -111,19 +111,20 @@ const Column& ColumnNamed(std::string_view name) {
   throw std::out_of_range("no column " + std::string(name));
 }
 
-std::vector<double> Values(const Column& column, std::span<const Sample> samples) {
+std::vector<double> Values(const Column& column, std::span<const metrics::Sample> samples) {
   std::vector<double> values;
   values.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) values.push_back(column.value(samples, i));
   return values;
 }
 
-std::vector<Window> FogWindows(std::span<const Sample> samples) {
-  return WindowsWhere(samples, [](const Sample& sample) { return sample.fog_present; });
+std::vector<Window> FogWindows(std::span<const metrics::Sample> samples) {
+  return WindowsWhere(samples, [](const metrics::Sample& sample) { return sample.fog_present; });
 }
 
-std::vector<Window> HumanWindows(std::span<const Sample> samples) {
-  return WindowsWhere(samples, [](const Sample& sample) { return sample.lambda_human > 0; });
+std::vector<Window> HumanWindows(std::span<const metrics::Sample> samples) {
+  return WindowsWhere(samples,
+                      [](const metrics::Sample& sample) { return sample.lambda_human > 0; });
 }
 
 }  // namespace fogline::report

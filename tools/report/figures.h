@@ -15,7 +15,7 @@ namespace fogline::report {
 /// One quantity over time, taken from the samples of a run; NaN where there is no value.
 struct Column {
   std::string_view name;
-  double (*value)(std::span<const Sample> samples, std::size_t index);
+  double (*value)(std::span<const metrics::Sample> samples, std::size_t index);
 };
 
 /// Colours on paper, as in page.css. RunStyle() distinguishes runs beyond the last colour. Under
@@ -74,36 +74,40 @@ struct Figure {
 };
 
 /// The change of the host's acceleration since the sample before, per second.
-double HostJerk(std::span<const Sample> samples, std::size_t index);
+double HostJerk(std::span<const metrics::Sample> samples, std::size_t index);
 
 namespace report_internal {
 
-template <double Sample::*kMember>
-double Get(std::span<const Sample> samples, std::size_t index) {
+template <double metrics::Sample::*kMember>
+double Get(std::span<const metrics::Sample> samples, std::size_t index) {
   return samples[index].*kMember;
 }
 
 }  // namespace report_internal
 
 inline constexpr std::array kColumns{
-    Column{"time_s", report_internal::Get<&Sample::time_s>},
-    Column{"preceding_speed_mps", report_internal::Get<&Sample::preceding_speed_mps>},
-    Column{"host_speed_mps", report_internal::Get<&Sample::host_speed_mps>},
-    Column{"follower_speed_mps", report_internal::Get<&Sample::follower_speed_mps>},
-    Column{"host_gap_m", report_internal::Get<&Sample::host_gap_m>},
-    Column{"radar_range_m", report_internal::Get<&Sample::radar_range_m>},
-    Column{"lidar_range_m", report_internal::Get<&Sample::lidar_range_m>},
-    Column{"fused_distance_m", report_internal::Get<&Sample::fused_distance_m>},
-    Column{"host_safe_distance_m", report_internal::Get<&Sample::host_safe_distance_m>},
-    Column{"doc", report_internal::Get<&Sample::doc>},
-    Column{"threshold", report_internal::Get<&Sample::threshold>},
-    Column{"lambda_human", report_internal::Get<&Sample::lambda_human>},
-    Column{"follower_gap_m", report_internal::Get<&Sample::follower_gap_m>},
-    Column{"follower_safe_distance_m", report_internal::Get<&Sample::follower_safe_distance_m>},
-    Column{"host_acceleration_mps2", report_internal::Get<&Sample::host_acceleration_mps2>},
-    Column{"follower_acceleration_mps2", report_internal::Get<&Sample::follower_acceleration_mps2>},
-    Column{"acc_acceleration_mps2", report_internal::Get<&Sample::acc_acceleration_mps2>},
-    Column{"driver_acceleration_mps2", report_internal::Get<&Sample::driver_acceleration_mps2>},
+    Column{"time_s", report_internal::Get<&metrics::Sample::time_s>},
+    Column{"preceding_speed_mps", report_internal::Get<&metrics::Sample::preceding_speed_mps>},
+    Column{"host_speed_mps", report_internal::Get<&metrics::Sample::host_speed_mps>},
+    Column{"follower_speed_mps", report_internal::Get<&metrics::Sample::follower_speed_mps>},
+    Column{"host_gap_m", report_internal::Get<&metrics::Sample::host_gap_m>},
+    Column{"radar_range_m", report_internal::Get<&metrics::Sample::radar_range_m>},
+    Column{"lidar_range_m", report_internal::Get<&metrics::Sample::lidar_range_m>},
+    Column{"fused_distance_m", report_internal::Get<&metrics::Sample::fused_distance_m>},
+    Column{"host_safe_distance_m", report_internal::Get<&metrics::Sample::host_safe_distance_m>},
+    Column{"doc", report_internal::Get<&metrics::Sample::doc>},
+    Column{"threshold", report_internal::Get<&metrics::Sample::threshold>},
+    Column{"lambda_human", report_internal::Get<&metrics::Sample::lambda_human>},
+    Column{"follower_gap_m", report_internal::Get<&metrics::Sample::follower_gap_m>},
+    Column{"follower_safe_distance_m",
+           report_internal::Get<&metrics::Sample::follower_safe_distance_m>},
+    Column{"host_acceleration_mps2",
+           report_internal::Get<&metrics::Sample::host_acceleration_mps2>},
+    Column{"follower_acceleration_mps2",
+           report_internal::Get<&metrics::Sample::follower_acceleration_mps2>},
+    Column{"acc_acceleration_mps2", report_internal::Get<&metrics::Sample::acc_acceleration_mps2>},
+    Column{"driver_acceleration_mps2",
+           report_internal::Get<&metrics::Sample::driver_acceleration_mps2>},
     Column{"host_jerk_mps3", HostJerk},
 };
 
@@ -115,7 +119,7 @@ std::span<const Figure> Figures();
 const Column& ColumnNamed(std::string_view name);
 
 /// All values of a column.
-std::vector<double> Values(const Column& column, std::span<const Sample> samples);
+std::vector<double> Values(const Column& column, std::span<const metrics::Sample> samples);
 
 /// A time span from begin_s up to, but not including, end_s.
 struct Window {
@@ -124,9 +128,9 @@ struct Window {
 };
 
 /// Time spans with fog. A step lasts until the next sample.
-std::vector<Window> FogWindows(std::span<const Sample> samples);
+std::vector<Window> FogWindows(std::span<const metrics::Sample> samples);
 
 /// Time spans in which the human drives, that is, has any authority, as in run_metrics.h.
-std::vector<Window> HumanWindows(std::span<const Sample> samples);
+std::vector<Window> HumanWindows(std::span<const metrics::Sample> samples);
 
 }  // namespace fogline::report

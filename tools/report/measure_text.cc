@@ -46,7 +46,7 @@ std::string MeasureText(std::string_view name, double value, std::string_view un
   return fmt::format("{:.{}f}", value, decimals);
 }
 
-std::string CollisionText(const RunMeasures& measures) {
+std::string CollisionText(const metrics::RunMeasures& measures) {
   if (!measures.collision_time_s) return "";
   return fmt::format("{} at {} s",
                      measures.collision == truth_t::COLLISION_HOST

@@ -26,6 +26,6 @@ bool IsTimeToCollision(std::string_view name);
 std::string MeasureText(std::string_view name, double value, std::string_view unit);
 
 /// "the host hit the preceding car at 12.3 s"; "" without a collision.
-std::string CollisionText(const RunMeasures& measures);
+std::string CollisionText(const metrics::RunMeasures& measures);
 
 }  // namespace fogline::report

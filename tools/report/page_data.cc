@@ -128,7 +128,7 @@ std::string PageData(std::span<const ReportRun> runs, const std::optional<Report
   ColumnPool pool;
   json run_list = json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::vector<Sample>& samples = runs[i].samples;
+    const std::vector<metrics::Sample>& samples = runs[i].samples;
     json columns = json::object();
     for (const Column& column : kColumns) {
       columns[std::string(column.name)] = pool.Place(Values(column, samples));

@@ -36,7 +36,7 @@ std::string MeasureFact(std::string_view what, std::string_view name, double val
   return Fact(what, fmt::format("{} {}", MeasureElement(name, value, unit), unit));
 }
 
-std::string CollisionFact(const RunMeasures& measures) {
+std::string CollisionFact(const metrics::RunMeasures& measures) {
   if (!measures.collision_time_s) return "";
   const bool host = measures.collision == truth_t::COLLISION_HOST;
   return Fact("Collision",
@@ -71,7 +71,7 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
   if (run.si_pct) facts += MeasureFact("Safety improvement", "si_pct", *run.si_pct, "%");
-  const RunMeasures measures = Measure(run.samples, run.scenario);
+  const metrics::RunMeasures measures = metrics::Measure(run.samples, run.scenario);
   facts += MeasureFact("Human drives", "human_time_s", measures.human_time_s, "s");
   if (measures.max_compromised_safety_m) {
     facts += MeasureFact("Worst compromised safety", "max_compromised_safety_m",

@@ -34,7 +34,7 @@ struct ReportRun {
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;
   std::string digest;
-  std::vector<Sample> samples;  // in order of time
+  std::vector<metrics::Sample> samples;  // in order of time
   std::vector<ReportMeasure> measures;
   std::optional<double> si_pct =
       {};  // safety improvement over the paired run without traded control
@@ -60,8 +60,8 @@ struct ReportTable {
 struct ReportCurves {
   struct Point {
     double threshold = 0;
-    Summary si_pct;  // over the seeds that have SI
-    Summary rhe_pct;
+    stats::Summary si_pct;  // over the seeds that have SI
+    stats::Summary rhe_pct;
   };
   std::string scenario_title;
   std::int64_t first_seed = 1;

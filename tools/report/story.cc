@@ -27,7 +27,7 @@ constexpr std::size_t kMostRuns = 3;        // with traded control that a senten
 struct Told {
   const ReportRun* run;
   std::string name;
-  RunMeasures measures;
+  metrics::RunMeasures measures;
 
   bool IsTraded() const { return run->scenario.arbitrator.policy != Policy::kNone; }
 };
@@ -49,7 +49,7 @@ std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
       found = situations.end() - 1;
     }
     found->second.push_back(
-        {&runs[i], RunName(runs, i), Measure(runs[i].samples, runs[i].scenario)});
+        {&runs[i], RunName(runs, i), metrics::Measure(runs[i].samples, runs[i].scenario)});
   }
   std::vector<Group> parts;
   for (auto& [key, group] : situations) parts.push_back(std::move(group));
@@ -84,7 +84,7 @@ std::string Listed(const std::vector<std::string>& parts, std::string_view comma
 }
 
 /// "In fog from 19 s to 30 s"; "" without fog.
-std::string FogText(std::span<const Sample> samples) {
+std::string FogText(std::span<const metrics::Sample> samples) {
   constexpr std::size_t kMostNamed = 3;
   const std::vector<Window> windows = FogWindows(samples);
   if (windows.empty()) return "";
@@ -111,10 +111,10 @@ Deception DeceptionOf(const Group& group) {
   Deception worst;
   for (const Told& told : group) {
     double lost_s = 0;
-    const std::span<const Sample> samples = told.run->samples;
+    const std::span<const metrics::Sample> samples = told.run->samples;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (!samples[i].fog_present) continue;
-      const double error_m = LidarError(samples[i], told.run->scenario.lidar);
+      const double error_m = metrics::LidarError(samples[i], told.run->scenario.lidar);
       if (std::isnan(error_m) && i + 1 < samples.size()) {
         lost_s += samples[i + 1].time_s - samples[i].time_s;
       }
@@ -150,7 +150,7 @@ std::string FogSentence(const Group& group) {
 }
 
 /// Safety of a run by itself.
-std::string SafetyText(const RunMeasures& measures) {
+std::string SafetyText(const metrics::RunMeasures& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
   if (!measures.max_compromised_safety_m) return "no car collided";
   if (*measures.max_compromised_safety_m == 0) return "the following car never came too close";
@@ -181,7 +181,7 @@ std::string OutcomeText(const Told& told, const Told* baseline) {
 
 /// "the human drove for 9.4 s".
 std::string DrivingText(const Told& told) {
-  const RunMeasures& measures = told.measures;
+  const metrics::RunMeasures& measures = told.measures;
   if (measures.human_time_s == 0) return "the human never drove";
   if (measures.human_time_s >= measures.duration_s) return "the human drove all the time";
   return fmt::format("the human drove for {} s", TimeText(measures.human_time_s));

@@ -64,7 +64,7 @@ std::string RowOf(const ReportTable::Row& row, bool with_seed) {
 }
 
 /// Mean, standard deviation, half of the confidence interval, and percentiles.
-std::string SummaryCells(const Summary& summary) {
+std::string SummaryCells(const stats::Summary& summary) {
   std::string cells;
   for (const std::optional<double>& value :
        {summary.mean, summary.deviation, summary.ci95, summary.p5, summary.p95}) {

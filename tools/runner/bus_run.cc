@@ -41,7 +41,7 @@
 #include "tools/runner/kept_log.h"
 #include "tools/runner/supervisor.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 // Time in which a role has to be ready.
@@ -57,11 +57,11 @@ constexpr Duration kHangLimit = milliseconds(2000);
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
 /// The builds of the runner's own programs; a role that is started elsewhere may have another one.
-RoleBuilds OwnBuilds(bool in_memory) {
-  RoleBuilds builds{};
+runtime::RoleBuilds OwnBuilds(bool in_memory) {
+  runtime::RoleBuilds builds{};
   for (const RoleInfo& info : kRoles) {
     builds[static_cast<std::size_t>(info.role)] =
-        in_memory ? OwnBuildId() : BuildIdOf(ProgramOf(info.role));
+        in_memory ? runtime::OwnBuildId() : runtime::BuildIdOf(processes::ProgramOf(info.role));
   }
   return builds;
 }
@@ -75,8 +75,9 @@ std::int64_t NewerThanEveryRunner() {
   return std::chrono::duration_cast<microseconds>(now).count();
 }
 
-RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
-                                             const ExperimentOptions& options, bool in_memory) {
+runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
+                                                      const ExperimentOptions& options,
+                                                      bool in_memory) {
   // A slow pace is no stall: a step may take this time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
@@ -99,23 +100,23 @@ RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
 // ---- memq --------------------------------------------------------------------------------------
 
 template <class Algorithm>
-std::unique_ptr<Node> MakeNode(Bus& bus, std::int64_t run_id) {
-  return std::make_unique<StepNode<Algorithm>>(bus, run_id);
+std::unique_ptr<runtime::Node> MakeNode(runtime::Bus& bus, std::int64_t run_id) {
+  return std::make_unique<runtime::StepNode<Algorithm>>(bus, run_id);
 }
 
-void RunInMemory(Bus& bus, RunCoordinator& coordinator, std::int64_t run_id,
+void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::int64_t run_id,
                  const Scenario& scenario, const std::filesystem::path& log,
-                 Recorder::Existing existing) {
-  std::vector<std::unique_ptr<Node>> nodes;
-  for (const auto make :
-       {MakeNode<World>, MakeNode<Radar>, MakeNode<Lidar>, MakeNode<Fusion>, MakeNode<Acc>,
-        MakeNode<Driver>, MakeNode<Arbitrator>, MakeNode<Follower>}) {
+                 recorder::Recorder::Existing existing) {
+  std::vector<std::unique_ptr<runtime::Node>> nodes;
+  for (const auto make : {MakeNode<world::World>, MakeNode<radar::Radar>, MakeNode<lidar::Lidar>,
+                          MakeNode<fusion::Fusion>, MakeNode<acc::Acc>, MakeNode<driver::Driver>,
+                          MakeNode<arbitrator::Arbitrator>, MakeNode<follower::Follower>}) {
     nodes.push_back(make(bus, run_id));
   }
-  nodes.push_back(std::make_unique<Recorder>(bus, run_id, log, existing));
+  nodes.push_back(std::make_unique<recorder::Recorder>(bus, run_id, log, existing));
   Progress progress("step", scenario.steps);
-  while (coordinator.phase() == RunCoordinator::Phase::kJoining ||
-         coordinator.phase() == RunCoordinator::Phase::kRunning) {
+  while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
+         coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
     for (const auto& node : nodes) next = std::min(next, node->Poll(now));
@@ -129,19 +130,19 @@ void RunInMemory(Bus& bus, RunCoordinator& coordinator, std::int64_t run_id,
 }
 
 /// The last STATUS of each process of a role.
-std::vector<status_t> LastWords(const RunCoordinator& coordinator, Role role) {
-  const RunCoordinator::Member& member = coordinator.member(role);
+std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role role) {
+  const runtime::RunCoordinator::Member& member = coordinator.member(role);
   std::vector<status_t> words = member.dead;
   if (member.status) words.push_back(*member.status);
   return words;
 }
 
 /// The processes, dead ones included, whose build differs from the runner's.
-std::vector<OtherBuild> OtherBuilds(const RunCoordinator& coordinator) {
-  std::vector<OtherBuild> others;
+std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator) {
+  std::vector<runtime::OtherBuild> others;
   for (const RoleInfo& info : kRoles) {
     for (const status_t& status : LastWords(coordinator, info.role)) {
-      auto other = OtherBuildOf(info.role, status, coordinator.builds());
+      auto other = runtime::OtherBuildOf(info.role, status, coordinator.builds());
       if (other) others.push_back(std::move(*other));
     }
   }
@@ -150,8 +151,8 @@ std::vector<OtherBuild> OtherBuilds(const RunCoordinator& coordinator) {
 
 // ---- processes ---------------------------------------------------------------------------------
 
-void AnnounceProcesses(const Bus& bus, std::int64_t run_id, const ProcessGroup& group,
-                       const std::string& external) {
+void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id,
+                       const processes::ProcessGroup& group, const std::string& external) {
   Notice(fmt::format("run {} on {}", run_id, bus.url()));
   if (!group.empty()) Notice(fmt::format("processes: {}", group.Describe()));
   if (!external.empty()) Notice(external);
@@ -162,12 +163,12 @@ class BusyElsewhere {
  public:
   explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
 
-  void Look(const RunCoordinator& coordinator, TimePoint now) {
+  void Look(const runtime::RunCoordinator& coordinator, TimePoint now) {
     if (now < look_at_) return;
     look_at_ = now + kLookForExternal;
     const std::vector<Role> awaited = coordinator.Awaited(now);
     if (awaited.empty()) return;
-    for (const ForeignPeer& stranger : coordinator.foreign_peers().known()) {
+    for (const runtime::ForeignPeer& stranger : coordinator.foreign_peers().known()) {
       const std::string who = Describe(stranger);
       const bool is_awaited = std::ranges::any_of(
           awaited, [&stranger](Role role) { return NameOf(role) == stranger.role; });
@@ -175,7 +176,7 @@ class BusyElsewhere {
       say_(
           fmt::format("{} is not free: it comes when that run is over, or when its runner has "
                       "been silent for {:g} s",
-                      who, Seconds(RunnerWatch::kSilent)));
+                      who, Seconds(runtime::RunnerWatch::kSilent)));
     }
   }
 
@@ -188,7 +189,7 @@ class BusyElsewhere {
 /// What a person is warned of while a run goes on, each thing once.
 class Warnings {
  public:
-  Warnings(RunCoordinator& coordinator, Progress& progress)
+  Warnings(runtime::RunCoordinator& coordinator, Progress& progress)
       : coordinator_(coordinator), progress_(progress) {}
 
   void LookAtTheClock() {
@@ -199,9 +200,9 @@ class Warnings {
   }
 
   void LookAtTheRoles() {
-    if (!compared_ && coordinator_.phase() == RunCoordinator::Phase::kRunning) {
+    if (!compared_ && coordinator_.phase() == runtime::RunCoordinator::Phase::kRunning) {
       compared_ = true;
-      for (const OtherBuild& other : OtherBuilds(coordinator_)) Say(other.Text());
+      for (const runtime::OtherBuild& other : OtherBuilds(coordinator_)) Say(other.Text());
     }
     if (key_trouble_.empty()) {
       key_trouble_ = coordinator_.KeyTrouble();
@@ -212,19 +213,19 @@ class Warnings {
  private:
   void Say(const std::string& what) { progress_.Say("warning: " + what); }
 
-  RunCoordinator& coordinator_;
+  runtime::RunCoordinator& coordinator_;
   Progress& progress_;
   bool compared_ = false;  // the builds
   std::string key_trouble_;
 };
 
-std::vector<Restarts> RunAsProcesses(Bus& bus, RunCoordinator& coordinator, RelayProcess* relay,
-                                     std::int64_t run_id, const Scenario& scenario,
-                                     const ExperimentOptions& options,
+std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
+                                     processes::RelayProcess* relay, std::int64_t run_id,
+                                     const Scenario& scenario, const ExperimentOptions& options,
                                      const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
-  Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
-  const ExternalRoles external(bus.url(), options.traffic, options.wait);
+  runtime::Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
+  const processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
   const auto say = [&](const std::string& line) {
     if (options.announce) progress.Say(line);
   };
@@ -234,7 +235,7 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, RunCoordinator& coordinator, Rela
                          .run_id = run_id,
                          .log = log,
                          .resume = options.resume.has_value(),
-                         .arguments = ToArguments(options.traffic),
+                         .arguments = runtime::ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,
                          // A hanging process is found before the run counts as stalled.
@@ -245,15 +246,15 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, RunCoordinator& coordinator, Rela
     AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
   }
   Warnings warnings(coordinator, progress);
-  FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
+  runtime::FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
   if (options.realtime && options.announce) {
     coordinator.OnEveryStatus([&](const status_t& status) {
-      if (const Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());
+      if (const runtime::Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());
     });
   }
   try {
-    while (coordinator.phase() == RunCoordinator::Phase::kJoining ||
-           coordinator.phase() == RunCoordinator::Phase::kRunning) {
+    while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
+           coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
       const TimePoint now = Clock::now();
       const TimePoint next = std::min(coordinator.Poll(now), now + kLookEvery);
       if (options.announce) warnings.LookAtTheClock();
@@ -278,8 +279,8 @@ std::vector<Restarts> RunAsProcesses(Bus& bus, RunCoordinator& coordinator, Rela
 
 /// What the recorders of a run have reported about the log. All but the last recorder are dead. In
 /// real time a recorder drops the part that its predecessor wrote, so only the last report counts.
-std::vector<WrittenLog> WrittenBy(const RunCoordinator& coordinator, bool realtime) {
-  std::vector<WrittenLog> written;
+std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
+  std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
     if (realtime) written.clear();
     written.push_back({.begin = status.log_begin,
@@ -291,8 +292,8 @@ std::vector<WrittenLog> WrittenBy(const RunCoordinator& coordinator, bool realti
 
 std::string UrlOf(const std::string& transport) {
   if (transport == "memq") return "memq://";
-  if (transport == "udpm") return FreshMulticastUrl();
-  if (IsLcmUrl(transport)) return transport;
+  if (transport == "udpm") return runtime::FreshMulticastUrl();
+  if (runtime::IsLcmUrl(transport)) return transport;
   throw InputError(
       fmt::format("error: --transport {}: neither direct, memq, udpm, tcpq nor an LCM URL such as "
                   "\"udpm://239.255.76.67:7667?ttl=0\"",
@@ -309,18 +310,20 @@ std::int64_t DrawRunId() {
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper) {
-  std::optional<RelayProcess> relay;
+  std::optional<processes::RelayProcess> relay;
   if (options.transport == "tcpq") relay.emplace(options.restarts);
-  Bus bus(relay ? relay->url() : UrlOf(options.transport));
+  runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const bool in_memory = bus.url().starts_with("memq");
-  Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
-  const RunCoordinatorOptions conducting = MakeCoordinatorOptions(scenario, options, in_memory);
-  RunCoordinator coordinator(bus, conducting);
+  runtime::Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
+  const runtime::RunCoordinatorOptions conducting =
+      MakeCoordinatorOptions(scenario, options, in_memory);
+  runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
   if (in_memory) {
     RunInMemory(bus, coordinator, conducting.run_id, scenario, log,
-                options.resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
+                options.resume ? recorder::Recorder::Existing::kResume
+                               : recorder::Recorder::Existing::kReplace);
   } else {
     restarts = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id,
                               scenario, options, log);
@@ -341,19 +344,19 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   run.other_builds = OtherBuilds(coordinator);
   run.written = WrittenBy(coordinator, options.realtime);
-  if (coordinator.phase() != RunCoordinator::Phase::kDone && !options.log.empty()) {
-    const auto key = KeyOf(options.traffic);
+  if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone && !options.log.empty()) {
+    const auto key = runtime::KeyOf(options.traffic);
     keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
   // Printed for every outcome: a missing role may be bound to another run.
   const std::string foreign_peers = coordinator.foreign_peers().Text();
   if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
-  if (coordinator.phase() == RunCoordinator::Phase::kFailed) {
+  if (coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) {
     throw std::runtime_error(coordinator.error() + (kept.empty() ? "" : "\n  " + kept));
   }
-  if (coordinator.phase() != RunCoordinator::Phase::kDone) {
-    const std::string where = coordinator.phase() == RunCoordinator::Phase::kJoining
+  if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone) {
+    const std::string where = coordinator.phase() == runtime::RunCoordinator::Phase::kJoining
                                   ? fmt::format("while waiting for {}", coordinator.NotReady())
                                   : coordinator.Where();
     throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
@@ -361,4 +364,4 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   return run;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

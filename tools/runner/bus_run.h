@@ -10,19 +10,19 @@
 #include "tools/runner/experiment.h"
 #include "tools/runner/log_keeper.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 struct BusRun {
   std::int64_t run_id = 0;
   double wall_s = 0;
   std::int64_t repairs = 0;
-  Refusals refused{};
-  std::vector<SendTrouble> send_troubles;
-  std::vector<ForeignPeer> foreign_peers;
+  runtime::Refusals refused{};
+  std::vector<runtime::SendTrouble> send_troubles;
+  std::vector<runtime::ForeignPeer> foreign_peers;
   std::vector<Restarts> restarts;
-  RoleBuilds builds{};                   // as each role has reported its own
-  std::vector<OtherBuild> other_builds;  // the builds that differ from the runner's
-  std::vector<WrittenLog> written;       // the last report of each recorder about the log
+  runtime::RoleBuilds builds{};                   // as each role has reported its own
+  std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's
+  std::vector<log::WrittenLog> written;           // the last report of each recorder about the log
 };
 
 /// A run id that no other run has.
@@ -34,4 +34,4 @@ std::int64_t DrawRunId();
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper);
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -10,14 +10,14 @@
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/scenario_parts.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 DirectLog::DirectLog(const ExperimentOptions& options, std::int64_t run_id,
                      const Scenario& scenario)
-    : file_(options.log), key_(KeyOf(options.traffic)) {
+    : file_(options.log), key_(runtime::KeyOf(options.traffic)) {
   run_.run_id = run_id;
   run_.scenario = scenario;
-  builds_.fill(OwnBuildId());
+  builds_.fill(runtime::OwnBuildId());
   if (options.resume) {
     run_.scenario_hash = options.resume->front.parts.hash();
     remains_ = options.resume->remains;
@@ -31,17 +31,18 @@ DirectLog::DirectLog(const ExperimentOptions& options, std::int64_t run_id,
 }
 
 void DirectLog::WriteScenario(const std::string& text) {
-  run_.scenario_hash = HashOf(text);
-  const std::vector<std::string> parts = SplitScenario(text);
+  run_.scenario_hash = runtime::HashOf(text);
+  const std::vector<std::string> parts = runtime::SplitScenario(text);
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    Encode(MakeRunPart(run_.run_id, run_t::PREPARE, 0, run_.scenario_hash, parts, i), buffer);
+    runtime::Encode(
+        runtime::MakeRunPart(run_.run_id, run_t::PREPARE, 0, run_.scenario_hash, parts, i), buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
 }
 
 void DirectLog::Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime,
-                    Bytes message) {
+                    runtime::Bytes message) {
   if (step < remains_.steps) return Compare(step, channel, message);
   if (!log_) {
     old_.reset();
@@ -50,7 +51,7 @@ void DirectLog::Add(std::int64_t step, const ChannelInfo& channel, std::int64_t 
   log_->Write(channel.name, utime, message);
 }
 
-void DirectLog::Compare(std::int64_t step, const ChannelInfo& channel, Bytes message) {
+void DirectLog::Compare(std::int64_t step, const ChannelInfo& channel, runtime::Bytes message) {
   const auto event = old_->Next();
   if (event && event->channel == channel.name && std::ranges::equal(event->data, message)) return;
   throw InputError(
@@ -78,4 +79,4 @@ void DirectLog::CutOff() {
   keeper_->SealCutOff({log_->written()}, builds_, key());
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

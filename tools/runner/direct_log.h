@@ -14,7 +14,7 @@
 #include "tools/runner/experiment.h"
 #include "tools/runner/log_keeper.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 /// Writes the messages of a run into a log, and seals it. For a resumed run it compares the
 /// messages with those that the log already has: they must be the same.
@@ -25,7 +25,8 @@ class DirectLog {
 
   /// Adds the next message, in the order of the log.
   /// @throws InputError if the log has a different message; std::runtime_error if the disk is full
-  void Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime, Bytes message);
+  void Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime,
+           runtime::Bytes message);
   /// Hands all data to the operating system. @throws std::runtime_error
   void Flush();
   /// Seals the log of a complete run. @throws std::runtime_error
@@ -34,19 +35,19 @@ class DirectLog {
   void CutOff();
 
  private:
-  const SigningKey* key() const { return key_ ? &*key_ : nullptr; }
+  const runtime::SigningKey* key() const { return key_ ? &*key_ : nullptr; }
   void WriteScenario(const std::string& text);
   /// Compares a message with the next one of the log.
-  void Compare(std::int64_t step, const ChannelInfo& channel, Bytes message);
+  void Compare(std::int64_t step, const ChannelInfo& channel, runtime::Bytes message);
 
   const std::filesystem::path file_;
-  std::optional<EventLogReader> old_;  // as long as it has steps to compare
-  Remains remains_;
-  std::optional<EventLogWriter> log_;
+  std::optional<log::EventLogReader> old_;  // as long as it has steps to compare
+  log::Remains remains_;
+  std::optional<log::EventLogWriter> log_;
   std::optional<LogKeeper> keeper_;
-  std::optional<SigningKey> key_;
-  RoleBuilds builds_{};
-  RunLog run_;
+  std::optional<runtime::SigningKey> key_;
+  runtime::RoleBuilds builds_{};
+  log::RunLog run_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -20,7 +20,7 @@
 #include "tools/runner/kept_log.h"
 #include "tools/runner/log_keeper.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 /// A temporary directory; the destructor removes it.
@@ -48,22 +48,22 @@ class TemporaryDirectory {
 /// Adds the messages of a step to a digest and a log, in the order of the graph table.
 class StepWriter {
  public:
-  StepWriter(Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
+  StepWriter(runtime::Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
 
-  void Add(const StepView& step) {
+  void Add(const metrics::StepView& step) {
     step.ForEachMessage([this](const auto& message) { AddOne(message); });
   }
 
  private:
   template <class M>
   void AddOne(const M& message) {
-    Encode(message, buffer_);
+    runtime::Encode(message, buffer_);
     digest_.Add(buffer_);
     if (log_ == nullptr) return;
     log_->Add(message.header.step, ChannelOf<M>(), message.header.utime, buffer_);
   }
 
-  Digest& digest_;
+  runtime::Digest& digest_;
   DirectLog* log_;
   std::vector<std::uint8_t> buffer_;
 };
@@ -73,15 +73,15 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   std::optional<DirectLog> log;
   if (!options.log.empty()) log.emplace(options, run_id, scenario);
   ExperimentResult result;
-  Digest digest;
+  runtime::Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
-  MeasureAccumulator measures(scenario);
-  FollowerAccumulator followers;
+  metrics::MeasureAccumulator measures(scenario);
+  metrics::FollowerAccumulator followers;
   const TimePoint began = Clock::now();
-  ClosedLoop loop(scenario);
-  loop.Run(run_id, [&](const StepView& step) {
+  metrics::ClosedLoop loop(scenario);
+  loop.Run(run_id, [&](const metrics::StepView& step) {
     writer.Add(step);
-    const Sample sample = step.ToSample();
+    const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
     if (options.samples) result.samples.push_back(sample);
@@ -125,16 +125,17 @@ std::size_t PlaceOf(const ChannelInfo& channel) {
 template <class Use>
 LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
   LoggedRun logged;
-  FollowerAccumulator followers;
-  SampleDecoder decoder;
-  RunLogReader reader(log);
-  while (const StepMessages* messages = reader.Next()) {
+  metrics::FollowerAccumulator followers;
+  metrics::SampleDecoder decoder;
+  log::RunLogReader reader(log);
+  while (const log::StepMessages* messages = reader.Next()) {
     const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
       return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
     });
     // Only a run in real time has holes. Without TRUTH the state of the step is unknown.
     if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
-    const Sample* sample = holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
+    const metrics::Sample* sample =
+        holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
     if (sample == nullptr) {
       throw InputError(
           fmt::format("{}: error: step {} does not decode: was it recorded with other "
@@ -144,7 +145,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
     use(*sample);
     followers.Add(decoder.truth(), decoder.follower());
   }
-  static_cast<RunLog&>(logged) = reader.run();
+  static_cast<log::RunLog&>(logged) = reader.run();
   logged.result.seed = logged.scenario.seed;
   logged.result.steps = logged.steps;
   logged.result.digest = logged.digest;
@@ -183,7 +184,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   const LogKeeper keeper(log);
   BusRun run = RunOnBus(scenario, options, log, keeper);
   LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
-  const auto key = KeyOf(options.traffic);
+  const auto key = runtime::KeyOf(options.traffic);
   const bool checked = keeper.HasAllTold(run.written);
   if (!checked && !options.realtime) {
     throw std::runtime_error(fmt::format(
@@ -195,7 +196,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   }
   ExperimentResult result = std::move(logged.result);
   if (options.verify.value_or(options.resume || !options.external.empty())) {
-    result.verification = VerifyRun(log, logged, run.other_builds);
+    result.verification = replay::VerifyRun(log, logged, run.other_builds);
   }
   if (checked && !options.log.empty()) {
     keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
@@ -216,7 +217,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
-    const ClosedLoop parts(scenario);
+    const metrics::ClosedLoop parts(scenario);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.
     const std::string what = error.what();
@@ -238,18 +239,19 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 }
 
 LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
-  std::vector<Sample> samples;
-  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { samples.push_back(sample); });
-  logged.result.measures = Measure(samples, logged.scenario);
+  std::vector<metrics::Sample> samples;
+  LoggedRun logged =
+      ReadSteps(log, [&](const metrics::Sample& sample) { samples.push_back(sample); });
+  logged.result.measures = metrics::Measure(samples, logged.scenario);
   logged.result.samples = std::move(samples);
   return logged;
 }
 
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
-  MeasureAccumulator measures(scenario);
-  LoggedRun logged = ReadSteps(log, [&](const Sample& sample) { measures.Add(sample); });
+  metrics::MeasureAccumulator measures(scenario);
+  LoggedRun logged = ReadSteps(log, [&](const metrics::Sample& sample) { measures.Add(sample); });
   logged.result.measures = measures.Result();
   return logged;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -22,12 +22,12 @@
 #include "services/runtime/wire/refusals.h"
 #include "tools/replay/role_check.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 /// The run of a log that is to be resumed.
 struct Resumption {
-  LogFront front;
-  Remains remains;
+  log::LogFront front;
+  log::Remains remains;
 };
 
 struct ExperimentOptions {
@@ -50,7 +50,7 @@ struct ExperimentOptions {
   /// are started elsewhere, and for a run that goes on.
   std::optional<bool> verify;
   bool same_build = false;  // end the run if a role is of another build than the runner's
-  TrafficOptions traffic;
+  runtime::TrafficOptions traffic;
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // that resumes the run, for the user if the run ends early
@@ -70,18 +70,18 @@ struct ExperimentResult {
   std::string digest;
   double wall_s = 0;
   std::int64_t repairs = 0;  // requests to publish a message again
-  Refusals refused{};
-  std::vector<SendTrouble> send_troubles;
-  std::vector<ForeignPeer> foreign_peers;  // of other runs, on the same network
+  runtime::Refusals refused{};
+  std::vector<runtime::SendTrouble> send_troubles;
+  std::vector<runtime::ForeignPeer> foreign_peers;  // of other runs, on the same network
   std::vector<Restarts> restarts;
-  std::vector<OtherBuild> other_builds;  // roles whose build differs from the runner's
-  std::optional<Verification> verification;
+  std::vector<runtime::OtherBuild> other_builds;  // roles whose build differs from the runner's
+  std::optional<replay::Verification> verification;
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is none
-  RunMeasures measures;
-  std::vector<FollowerMeasures> followers;  // nearest to the host first
-  std::vector<Sample> samples;              // if requested
-  std::optional<RealtimeFigures> realtime;  // only for a run in real time
+  metrics::RunMeasures measures;
+  std::vector<metrics::FollowerMeasures> followers;  // nearest to the host first
+  std::vector<metrics::Sample> samples;              // if requested
+  std::optional<log::RealtimeFigures> realtime;      // only for a run in real time
 };
 
 /// Constructs every part of a run once, without running it. Fields whose values are valid one by
@@ -96,7 +96,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
 
 /// A run as read from its log.
-struct LoggedRun : RunLog {
+struct LoggedRun : log::RunLog {
   ExperimentResult result;
 };
 /// With the samples of all its steps. @throws InputError
@@ -106,4 +106,4 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log);
 /// @throws InputError
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -11,14 +11,14 @@
 #include "services/log/remains.h"
 #include "services/runtime/transport/lcm_url.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 /// Whether the log has steps of this run. A run that ends before its first step leaves an older log
 /// unchanged.
 bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
   try {
-    return ReadFront(log).run_id == run_id && HasSteps(log);
+    return log::ReadFront(log).run_id == run_id && log::HasSteps(log);
   } catch (const InputError&) {
     return false;
   }
@@ -54,9 +54,9 @@ std::string CommandToGoOn(const ExperimentOptions& options) {
   if (options.log.empty() || options.realtime) return "";
   const ExperimentOptions unsaid;
   std::string command = "fogline run --resume " + Word(options.log.string());
-  if (IsLcmUrl(options.transport)) {
+  if (runtime::IsLcmUrl(options.transport)) {
     command += " --lcm-url " + Word(options.transport);
-  } else if (options.transport != unsaid.transport || UrlOfEnvironment()) {
+  } else if (options.transport != unsaid.transport || runtime::UrlOfEnvironment()) {
     command += " --transport " + options.transport;
   }
   for (const Role role : options.external) command += fmt::format(" --external {}", NameOf(role));
@@ -70,8 +70,8 @@ std::string CommandToGoOn(const ExperimentOptions& options) {
   if (options.wait != unsaid.wait) command += " --wait " + InSeconds(options.wait);
   if (options.same_build) command += " --same-build";
   if (options.verify) command += *options.verify ? " --verify" : " --no-verify";
-  for (const std::string& word : ToArguments(options.traffic)) command += " " + Word(word);
+  for (const std::string& word : runtime::ToArguments(options.traffic)) command += " " + Word(word);
   return command;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

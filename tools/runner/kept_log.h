@@ -6,7 +6,7 @@
 
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 /// "the log so far: FILE" and the command that resumes it, or that there is no log; "" if the run
 /// was to write no log.
@@ -16,4 +16,4 @@ std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 /// contain. It is "" for a run in real time, or without a log.
 std::string CommandToGoOn(const ExperimentOptions& options);
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -12,14 +12,14 @@
 #include "common/errors.h"
 #include "services/runtime/wire/digest.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 std::int64_t TimeOfStep(std::int64_t step, const Scenario& scenario) {
   return std::max<std::int64_t>(0, step) * std::llround(scenario.step_s * kMicrosPerSecond);
 }
 
-log_seal_t SealOf(const RunLog& run, const RoleBuilds& builds) {
+log_seal_t SealOf(const log::RunLog& run, const runtime::RoleBuilds& builds) {
   log_seal_t seal{};
   seal.header = {.run_id = run.run_id,
                  .step = run.steps - 1,
@@ -47,49 +47,51 @@ std::optional<LogKeeper::Identity> LogKeeper::Find() const {
   return Identity{.device = info.st_dev, .inode = info.st_ino};
 }
 
-void LogKeeper::Check(const EventLogReader& file, const std::vector<WrittenLog>& written) const {
+void LogKeeper::Check(const log::EventLogReader& file,
+                      const std::vector<log::WrittenLog>& written) const {
   if (begun_with_ && Find() != begun_with_) {
     throw std::runtime_error(fmt::format(
         "{}: the log is not the file that the run began with: it was replaced meanwhile",
         log_.string()));
   }
-  if (const std::string why = WhyNotWritten(file, written); !why.empty()) {
+  if (const std::string why = log::WhyNotWritten(file, written); !why.empty()) {
     throw std::runtime_error(fmt::format("{}: {}", log_.string(), why));
   }
 }
 
-void LogKeeper::Check(const std::vector<WrittenLog>& written) const {
+void LogKeeper::Check(const std::vector<log::WrittenLog>& written) const {
   try {
-    Check(EventLogReader(log_), written);
+    Check(log::EventLogReader(log_), written);
   } catch (const InputError& error) {  // the file is gone, or it is no event log
     throw std::runtime_error(error.what());
   }
 }
 
-bool LogKeeper::HasAllTold(const std::vector<WrittenLog>& written) const {
+bool LogKeeper::HasAllTold(const std::vector<log::WrittenLog>& written) const {
   std::error_code missing;
-  const auto told = std::ranges::max_element(written, {}, &WrittenLog::bytes);
+  const auto told = std::ranges::max_element(written, {}, &log::WrittenLog::bytes);
   return told != written.end() &&
          std::filesystem::file_size(log_, missing) == static_cast<std::uintmax_t>(told->bytes);
 }
 
-void LogKeeper::Seal(const RunLog& run, const std::vector<WrittenLog>& written,
-                     const RoleBuilds& builds, const SigningKey* key) const {
-  const EventLogReader file(log_);
+void LogKeeper::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
+                     const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const {
+  const log::EventLogReader file(log_);
   Check(file, written);
   log_seal_t seal = SealOf(run, builds);
-  Hash hash;
-  file.ReadThrough(0, file.content().size(), [&hash](Bytes piece) { hash.Add(piece); });
+  runtime::Hash hash;
+  file.ReadThrough(0, file.content().size(), [&hash](runtime::Bytes piece) { hash.Add(piece); });
   seal.file_hash = hash.Hex();
-  SealLog(log_, run.events, std::move(seal), key);
+  log::SealLog(log_, run.events, std::move(seal), key);
 }
 
-void LogKeeper::SealCutOff(const std::vector<WrittenLog>& written, const RoleBuilds& builds,
-                           const SigningKey* key) const noexcept {
+void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written,
+                           const runtime::RoleBuilds& builds,
+                           const runtime::SigningKey* key) const noexcept {
   try {
     if (!HasAllTold(written)) return;
     Check(written);
-    RunLogReader reader(log_);
+    log::RunLogReader reader(log_);
     while (reader.Next() != nullptr) {
     }
     // Behind a torn event a seal would be read as the rest of it.
@@ -99,4 +101,4 @@ void LogKeeper::SealCutOff(const std::vector<WrittenLog>& written, const RoleBui
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

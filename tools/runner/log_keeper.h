@@ -11,7 +11,7 @@
 #include "services/log/run_log.h"
 #include "services/runtime/wire/other_build.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 class LogKeeper {
  public:
@@ -20,21 +20,21 @@ class LogKeeper {
 
   /// @param written the last report of each of the run's recorders
   /// @throws std::runtime_error if another file has replaced the log, or its bytes differ
-  void Check(const std::vector<WrittenLog>& written) const;
+  void Check(const std::vector<log::WrittenLog>& written) const;
   /// Whether the file is exactly as long as the recorders have reported.
-  bool HasAllTold(const std::vector<WrittenLog>& written) const;
+  bool HasAllTold(const std::vector<log::WrittenLog>& written) const;
 
   /// Checks the file again and seals it.
   /// @param run read from the whole file
   /// @param builds the build that each role has reported
   /// @param key signs the seal; nullptr: no signature
   /// @throws std::runtime_error as Check(), or if the seal cannot be written
-  void Seal(const RunLog& run, const std::vector<WrittenLog>& written, const RoleBuilds& builds,
-            const SigningKey* key) const;
+  void Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
+            const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const;
   /// The same for a run that ended early, whose log has not been read. If the log cannot be sealed,
   /// it stays as it is.
-  void SealCutOff(const std::vector<WrittenLog>& written, const RoleBuilds& builds,
-                  const SigningKey* key) const noexcept;
+  void SealCutOff(const std::vector<log::WrittenLog>& written, const runtime::RoleBuilds& builds,
+                  const runtime::SigningKey* key) const noexcept;
 
  private:
   struct Identity {
@@ -44,10 +44,10 @@ class LogKeeper {
   };
   std::optional<Identity> Find() const;
   /// Checks the bytes on the disk. @throws std::runtime_error as Check()
-  void Check(const EventLogReader& file, const std::vector<WrittenLog>& written) const;
+  void Check(const log::EventLogReader& file, const std::vector<log::WrittenLog>& written) const;
 
   std::filesystem::path log_;
   std::optional<Identity> begun_with_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runner

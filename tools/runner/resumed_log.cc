@@ -9,7 +9,7 @@
 #include "services/log/run_log.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 // The roles of a killed runner are killed with it, which takes the kernel a moment. Their recorder
@@ -22,23 +22,24 @@ constexpr Duration kEndOfOthers = milliseconds(2000);
 
 /// Checks that a file exists and is an event log. @return its path @throws InputError
 const std::filesystem::path& Readable(const std::filesystem::path& log) {
-  ReadFront(log);
+  log::ReadFront(log);
   return log;
 }
 
 /// A log that was sealed is the one that was sealed; its new seal must not make it one.
-void CheckSeal(const std::filesystem::path& log, const SigningKey* key) {
-  RunLogReader reader(log, RunLogReader::Compared::kFile);
+void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key) {
+  log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
   while (reader.Next() != nullptr) {
   }
-  const RunLog& run = reader.run();
+  const log::RunLog& run = reader.run();
   if (run.altered) Refuse(log, "the log is not the one that was sealed: " + run.note);
-  if (key == nullptr || !run.seal || VerifySeal(*run.seal, *key) == SealSignature::kHolds) return;
+  if (key == nullptr || !run.seal || log::VerifySeal(*run.seal, *key) == log::SealSignature::kHolds)
+    return;
   Refuse(log, "the seal of the log is not signed with this key");
 }
 
-Resumption Read(const std::filesystem::path& log, const SigningKey* key) {
-  LogFront front = ReadFront(log);
+Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key) {
+  log::LogFront front = log::ReadFront(log);
   if (!front.parts.Complete()) {
     Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
   }
@@ -50,9 +51,9 @@ Resumption Read(const std::filesystem::path& log, const SigningKey* key) {
     Refuse(log, "the log was made with other message types, by another version of Fogline");
   }
   CheckSeal(log, key);
-  const Remains remains = ReadRemains(log, front);
+  const log::Remains remains = log::ReadRemains(log, front);
   if (!remains.final) {
-    if (const std::string odd = OddEnd(log, front, remains); !odd.empty()) {
+    if (const std::string odd = log::OddEnd(log, front, remains); !odd.empty()) {
       Refuse(log, odd + ": this is not how fogline run leaves a log");
     }
   }
@@ -61,11 +62,11 @@ Resumption Read(const std::filesystem::path& log, const SigningKey* key) {
 
 }  // namespace
 
-ResumedLog::ResumedLog(const std::filesystem::path& log, const SigningKey* key)
+ResumedLog::ResumedLog(const std::filesystem::path& log, const runtime::SigningKey* key)
     : lock_(Readable(log), FileLock::Kind::kOwn, "--resume", "run", kEndOfOthers),
       resumption_(Read(log, key)),
       scenario_(ParseScenario(resumption_.front.parts.Text(), log.string())) {
   CheckPossible(scenario_, log);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -8,7 +8,7 @@
 #include "scenario/sections/scenario.h"
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 /// A log of a run in lockstep that has ended early, or is complete. Its lock keeps other runs away
 /// until the end of this object. The constructor does not change the file, even if it refuses it.
@@ -16,7 +16,7 @@ class ResumedLog {
  public:
   /// @param key that its seal is signed with, if it has one; nullptr: any or none
   /// @throws InputError with the reason why the log cannot be resumed
-  ResumedLog(const std::filesystem::path& log, const SigningKey* key);
+  ResumedLog(const std::filesystem::path& log, const runtime::SigningKey* key);
 
   const Scenario& scenario() const { return scenario_; }
   const Resumption& resumption() const { return resumption_; }
@@ -29,4 +29,4 @@ class ResumedLog {
   Scenario scenario_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runner

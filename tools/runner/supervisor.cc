@@ -9,7 +9,7 @@
 
 #include "tools/processes/child.h"
 
-namespace fogline {
+namespace fogline::runner {
 namespace {
 
 // Time in which the roles must leave after STOP.
@@ -42,12 +42,12 @@ std::optional<std::int64_t> ActivityOf(pid_t pid) {
 
 }  // namespace
 
-Supervisor::Supervisor(Bus& bus, RunCoordinator& coordinator, Options options)
+Supervisor::Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options)
     : bus_(bus), coordinator_(coordinator), options_(std::move(options)) {
   const TimePoint now = Clock::now();
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(options_.external, info.role) != options_.external.end()) continue;
-    children_.push_back({.role = info.role, .policy = RestartPolicy(options_.restarts)});
+    children_.push_back({.role = info.role, .policy = runtime::RestartPolicy(options_.restarts)});
     Start(children_.back(), now);
   }
 }
@@ -62,7 +62,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
     // replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
-  child.pid = group_.Start(child.role, ProgramOf(child.role), arguments);
+  child.pid = group_.Start(child.role, processes::ProgramOf(child.role), arguments);
   child.started = now;
   child.start_at.reset();
   child.activity.reset();
@@ -73,13 +73,13 @@ void Supervisor::Start(Child& child, TimePoint now) {
 
 void Supervisor::Look(TimePoint now) {
   coordinator_.Attend(now);
-  const std::vector<ProcessGroup::Exit> exits = group_.Collect();
+  const std::vector<processes::ProcessGroup::Exit> exits = group_.Collect();
   if (!exits.empty()) {
     // The last messages of the processes are handled before their end.
     bus_.Wait(kLookEvery);
     bus_.Drain();
   }
-  for (const ProcessGroup::Exit& exit : exits) OnExit(exit, now);
+  for (const processes::ProcessGroup::Exit& exit : exits) OnExit(exit, now);
   for (Child& child : children_) {
     if (child.start_at && now >= *child.start_at) {
       StartAgain(child, now);
@@ -105,7 +105,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
                            child.policy.limit()));
 }
 
-void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
+void Supervisor::OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
@@ -133,7 +133,7 @@ void Supervisor::OnExit(const ProcessGroup::Exit& exit, TimePoint now) {
 }
 
 void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
-  const RunCoordinator::Member& member = coordinator_.member(child.role);
+  const runtime::RunCoordinator::Member& member = coordinator_.member(child.role);
   const bool met = member.status && member.status->pid == child.pid;
   const Duration silent = coordinator_.HeldAgainst(met ? member.heard : child.started, now);
   const Duration limit = met ? options_.silence : kStartLimit;
@@ -196,7 +196,7 @@ std::vector<Restarts> Supervisor::restarts() const {
   std::vector<Restarts> restarts;
   for (const RoleInfo& info : kRoles) {
     const auto child = std::ranges::find(children_, info.role, &Child::role);
-    const RunCoordinator::Member& member = coordinator_.member(info.role);
+    const runtime::RunCoordinator::Member& member = coordinator_.member(info.role);
     if (child != children_.end()) {
       if (child->policy.restarts() == 0) continue;
       restarts.push_back({.role = std::string(info.name),
@@ -214,4 +214,4 @@ std::vector<Restarts> Supervisor::restarts() const {
   return restarts;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runner

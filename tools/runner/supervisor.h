@@ -14,7 +14,7 @@
 #include "tools/processes/process_group.h"
 #include "tools/runner/experiment.h"
 
-namespace fogline {
+namespace fogline::runner {
 
 class Supervisor {
  public:
@@ -32,7 +32,7 @@ class Supervisor {
   };
 
   /// Starts every role. @throws std::runtime_error
-  Supervisor(Bus& bus, RunCoordinator& coordinator, Options options);
+  Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options);
 
   /// Checks for dead and hanging processes, and restarts those whose delay is over. Call it every
   /// few tens of milliseconds.
@@ -43,12 +43,12 @@ class Supervisor {
 
   /// The restarted roles, here or elsewhere.
   std::vector<Restarts> restarts() const;
-  const ProcessGroup& group() const { return group_; }
+  const processes::ProcessGroup& group() const { return group_; }
 
  private:
   struct Child {
     Role role;
-    RestartPolicy policy;
+    runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
     std::optional<std::int64_t> activity{};  // measured in the middle of its silence
@@ -61,19 +61,19 @@ class Supervisor {
   void Start(Child& child, TimePoint now);
   /// Restarts the process; if that fails, a later call tries again.
   void StartAgain(Child& child, TimePoint now);
-  void OnExit(const ProcessGroup::Exit& exit, TimePoint now);
+  void OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now);
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
   /// Reports deaf roles that are not restarted here, once for each time.
   void NameTheDeaf();
 
-  Bus& bus_;
-  RunCoordinator& coordinator_;
+  runtime::Bus& bus_;
+  runtime::RunCoordinator& coordinator_;
   Options options_;
-  ProcessGroup group_;
+  processes::ProcessGroup group_;
   std::vector<Child> children_;
   std::set<Role> deaf_;  // deaf roles that were reported
 };
 
-}  // namespace fogline
+}  // namespace fogline::runner

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace fogline {
+namespace fogline::spy {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ fs::path HearLoopback(const fs::path& programs) {
   return Readable(library) ? library : fs::path();
 }
 
-}  // namespace fogline
+}  // namespace fogline::spy

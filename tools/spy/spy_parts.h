@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fogline {
+namespace fogline::spy {
 
 /// Path of a program as the shell finds it; "" if it is not in PATH.
 std::filesystem::path InPath(const std::string& program);
@@ -28,4 +28,4 @@ std::filesystem::path TypesJar(const std::filesystem::path& programs);
 /// program's build or installation; "" if there is none.
 std::filesystem::path HearLoopback(const std::filesystem::path& programs);
 
-}  // namespace fogline
+}  // namespace fogline::spy

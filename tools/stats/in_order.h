@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace fogline {
+namespace fogline::stats {
 
 /// Units in progress for each thread: enough to keep all threads busy while the slowest unit holds
 /// up the delivery.
@@ -77,4 +77,4 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
           tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order, finish));
 }
 
-}  // namespace fogline
+}  // namespace fogline::stats

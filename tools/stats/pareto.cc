@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace fogline {
+namespace fogline::stats {
 
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points) {
   std::vector<std::size_t> order;
@@ -30,4 +30,4 @@ std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points) {
   return front;
 }
 
-}  // namespace fogline
+}  // namespace fogline::stats

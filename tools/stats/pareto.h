@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace fogline {
+namespace fogline::stats {
 
 /// Benefit of a threshold (SI, more is better) and its cost (RHE, less is better).
 struct TradeOff {
@@ -19,4 +19,4 @@ struct TradeOff {
 /// dominates no point.
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points);
 
-}  // namespace fogline
+}  // namespace fogline::stats

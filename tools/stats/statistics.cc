@@ -6,7 +6,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
-namespace fogline {
+namespace fogline::stats {
 namespace {
 
 /// Half of the probability outside a confidence interval of 95 %.
@@ -51,4 +51,4 @@ Summary Statistics::Result() const {
   return summary;
 }
 
-}  // namespace fogline
+}  // namespace fogline::stats

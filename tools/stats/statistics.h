@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace fogline {
+namespace fogline::stats {
 
 /// Mean and spread of a sample, in the unit of its values. nullopt means too few values: the mean
 /// needs one, everything else needs two.
@@ -41,4 +41,4 @@ class Statistics {
   double squares_ = 0;  // sum of squared distances from the mean
 };
 
-}  // namespace fogline
+}  // namespace fogline::stats

@@ -44,7 +44,7 @@ Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replic
   Estimate estimate{.n = n, .mean = value, .deviation = kNone, .low = kNone, .high = kNone};
   const bool lacking = std::ranges::any_of(replicates, [](double r) { return std::isnan(r); });
   if (n < 2 || std::isnan(value) || replicates.empty() || lacking) return estimate;
-  Statistics statistics;
+  stats::Statistics statistics;
   for (const double replicate : replicates) statistics.Add(replicate);
   estimate.deviation = statistics.deviation().value_or(kNone);
   std::ranges::sort(replicates);

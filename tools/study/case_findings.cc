@@ -19,8 +19,8 @@ bool IsZeroThroughout(std::span<const double> values) {
 /// "truck (268 of 300 runs instead of 0)".
 std::string WithCollisions(const Comparison& comparison, std::size_t c, std::size_t variant,
                            std::size_t other) {
-  const EventShare with = comparison.Collisions({c, variant});
-  const EventShare without = comparison.Collisions({c, other});
+  const metrics::EventShare with = comparison.Collisions({c, variant});
+  const metrics::EventShare without = comparison.Collisions({c, other});
   return fmt::format("{} ({} of {} runs instead of {})", comparison.cases()[c].name, with.events,
                      with.runs, without.events);
 }
@@ -30,8 +30,8 @@ std::string LineOf(const Comparison& comparison, std::size_t c, std::size_t vari
   if (const auto same = SameCase(comparison, c, variant, 0)) {
     return fmt::format("{}: the same runs as {}.", label, comparison.cases()[*same].name);
   }
-  const EventShare without = comparison.Collisions({c, 0});
-  const EventShare with = comparison.Collisions({c, variant});
+  const metrics::EventShare without = comparison.Collisions({c, 0});
+  const metrics::EventShare with = comparison.Collisions({c, variant});
   const std::int64_t cut_short = comparison.PairsCutShort({c, variant}, {c, 0});
   if (cut_short > 0) {
     return fmt::format(
@@ -73,7 +73,7 @@ Verdict CompareCollisions(const Comparison& comparison, Cell a, Cell b) {
     if (of_b[i] > 0 && !(of_a[i] > 0)) ++only_b;
   }
   if (only_a + only_b == 0) return Verdict::kUndecided;
-  const EventShare share = ClopperPearson(only_a, only_a + only_b);
+  const metrics::EventShare share = metrics::ClopperPearson(only_a, only_a + only_b);
   if (share.lower > kEven) return Verdict::kMore;
   if (share.upper < kEven) return Verdict::kLess;
   return Verdict::kUndecided;

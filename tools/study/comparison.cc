@@ -21,10 +21,11 @@ std::vector<ComparedMeasure> AllMeasures() {
   std::vector<ComparedMeasure> all{
       {"si_pct", "%", "safety improvement over the paired run without traded control"},
       {"collided", "", "probability of a collision"}};
-  VisitMeasures(RunMeasures{}, [&](std::string_view name, const auto&, std::string_view unit,
-                                   std::string_view description) {
-    all.push_back({std::string(name), std::string(unit), std::string(description)});
-  });
+  metrics::VisitMeasures(
+      metrics::RunMeasures{},
+      [&](std::string_view name, const auto&, std::string_view unit, std::string_view description) {
+        all.push_back({std::string(name), std::string(unit), std::string(description)});
+      });
   return all;
 }
 
@@ -70,7 +71,7 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
                  std::numeric_limits<double>::quiet_NaN());
   const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
   const std::size_t block = variants_.size() + 1;
-  ComputeInOrder(
+  stats::ComputeInOrder(
       0, units, context.jobs, [] { return PairedWorker(); },
       [&](PairedWorker& worker, std::int64_t unit) {
         const auto first = static_cast<std::size_t>(unit / seeds_) * block;
@@ -121,13 +122,13 @@ Estimate Comparison::Difference(Cell a, Cell b, std::string_view measure) const 
   return PairedDifference(Values(a, measure), Values(b, measure));
 }
 
-EventShare Comparison::Collisions(Cell cell) const {
+metrics::EventShare Comparison::Collisions(Cell cell) const {
   std::int64_t events = 0;
   for (const double collided : Values(cell, "collided")) events += collided > 0 ? 1 : 0;
-  return ClopperPearson(events, seeds_);
+  return metrics::ClopperPearson(events, seeds_);
 }
 
-EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
+metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
   std::int64_t events = 0;
   std::int64_t runs = 0;
   for (const double value : Values(cell, measure)) {
@@ -135,7 +136,7 @@ EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit)
     ++runs;
     if (value <= limit) ++events;
   }
-  return runs == 0 ? EventShare{} : ClopperPearson(events, runs);
+  return runs == 0 ? metrics::EventShare{} : metrics::ClopperPearson(events, runs);
 }
 
 std::span<const double> Comparison::AllOf(Cell cell) const {
@@ -178,7 +179,7 @@ std::string Comparison::Csv(std::size_t reference) const {
       for (const ComparedMeasure& measure : ComparedMeasures()) {
         Estimate mean = Mean({c, v}, measure.name);
         if (measure.name == "collided") {
-          const EventShare share = Collisions({c, v});
+          const metrics::EventShare share = Collisions({c, v});
           mean.low = share.lower;
           mean.high = share.upper;
         }
@@ -222,7 +223,7 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
       const Cell cell = cases_on_axis ? Cell{p, s} : Cell{s, p};
       Estimate mean = Mean(cell, measure);
       if (measure == "collided") {
-        const EventShare share = Collisions(cell);
+        const metrics::EventShare share = Collisions(cell);
         mean.low = share.lower;
         mean.high = share.upper;
       }

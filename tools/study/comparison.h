@@ -73,10 +73,10 @@ class Comparison {
   /// The difference a - b, paired seed by seed.
   Estimate Difference(Cell a, Cell b, std::string_view measure) const;
   /// Share of runs with a collision.
-  EventShare Collisions(Cell cell) const;
+  metrics::EventShare Collisions(Cell cell) const;
   /// Share of runs in which a measure is at most `limit`, among the runs that have it. `runs` is 0
   /// if no run has it.
-  EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
+  metrics::EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
   /// Whether two cells have the same runs: every measure, seed by seed.
   bool HasSameRuns(Cell a, Cell b) const;
   /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs

@@ -78,7 +78,7 @@ report::StudyFigure OverVisibility(const Comparison& comparison, std::string_vie
       const Cell cell{first + 2 * i + driver, variant};
       Estimate mean = comparison.Mean(cell, measure);
       if (measure == "collided") {
-        const EventShare share = comparison.Collisions(cell);
+        const metrics::EventShare share = comparison.Collisions(cell);
         mean.low = share.lower;
         mean.high = share.upper;
       }

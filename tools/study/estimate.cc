@@ -27,7 +27,7 @@ class Collection {
   }
 
   Estimate Result() const {
-    const Summary summary = statistics_.Result();
+    const stats::Summary summary = statistics_.Result();
     const double mean = summary.mean.value_or(kNone);
     const double half = summary.ci95.value_or(kNone);
     return {.n = summary.count,
@@ -39,7 +39,7 @@ class Collection {
   }
 
  private:
-  Statistics statistics_;
+  stats::Statistics statistics_;
   std::int64_t infinite_ = 0;
 };
 
@@ -91,7 +91,7 @@ std::string Text(const Estimate& estimate) {
   return Text(estimate, static_cast<int>(decimals));
 }
 
-std::string Text(const EventShare& share) {
+std::string Text(const metrics::EventShare& share) {
   return fmt::format("{} of {} runs, {:.1f} % [{:.1f} %, {:.1f} %]", share.events, share.runs,
                      kPercent * share.share, kPercent * share.lower, kPercent * share.upper);
 }

@@ -46,7 +46,7 @@ std::string Text(const Estimate& estimate, int decimals);
 /// The same with 2 to 6 decimals, so that the interval has two digits.
 std::string Text(const Estimate& estimate);
 /// "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
-std::string Text(const EventShare& share);
+std::string Text(const metrics::EventShare& share);
 /// "12.3"; "–" for NaN and infinity.
 std::string Text(double value, int decimals);
 

@@ -11,26 +11,26 @@ namespace {
 
 /// If a pair of cars existed and never closed in, its smallest time to collision is infinite
 /// instead of missing.
-void KeepInfinite(PairMeasures& pair) {
+void KeepInfinite(metrics::PairMeasures& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
 }
 
 // The values are in the order of ComparedMeasures().
-RunValues ValuesOf(RunMeasures measures, const std::optional<double>& si_pct) {
+RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& si_pct) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
   RunValues values{si_pct.value_or(kNone),
                    measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
-  VisitMeasures(measures,
-                [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
-                  if constexpr (std::is_same_v<V, std::optional<double>>) {
-                    values.push_back(value.value_or(kNone));
-                  } else {
-                    values.push_back(static_cast<double>(value));
-                  }
-                });
+  metrics::VisitMeasures(
+      measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
+        if constexpr (std::is_same_v<V, std::optional<double>>) {
+          values.push_back(value.value_or(kNone));
+        } else {
+          values.push_back(static_cast<double>(value));
+        }
+      });
   return values;
 }
 
@@ -52,14 +52,14 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
                                              std::int64_t seed) {
   baseline_.clear();
   Run(scenarios.front(), seed,
-      [this](const StepView& step) { baseline_.push_back(step.ToSample()); });
+      [this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
-    MeasureAccumulator measures(scenario);
-    SafetyImprovement improvement(scenario.measures.safety_floor_m);
+    metrics::MeasureAccumulator measures(scenario);
+    metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
     std::size_t i = 0;
-    Run(scenario, seed, [&](const StepView& step) {
-      const Sample sample = step.ToSample();
+    Run(scenario, seed, [&](const metrics::StepView& step) {
+      const metrics::Sample sample = step.ToSample();
       measures.Add(sample);
       // If one run of the pair ended early, SI covers only the steps that both have.
       if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);

@@ -27,9 +27,9 @@ class PairedWorker {
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit);
 
-  std::optional<ClosedLoop> loop_;
+  std::optional<metrics::ClosedLoop> loop_;
   Scenario scenario_;
-  std::vector<Sample> baseline_;
+  std::vector<metrics::Sample> baseline_;
 };
 
 }  // namespace fogline::study

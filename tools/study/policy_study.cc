@@ -15,7 +15,7 @@ namespace {
 /// Every policy of the table.
 std::vector<StudyVariant> Variants() {
   std::vector<StudyVariant> variants;
-  for (const PolicyRow& row : Policies()) {
+  for (const policies::PolicyRow& row : policies::Policies()) {
     variants.push_back({std::string(row.name), {fmt::format("/arbitrator/policy={}", row.name)}});
   }
   return variants;
@@ -46,8 +46,8 @@ constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
 /// Rule::kNever.
 std::vector<std::size_t> HandOvers() {
   std::vector<std::size_t> handovers;
-  for (std::size_t v = 0; v < Policies().size(); ++v) {
-    if (Policies()[v].rule != Rule::kNever) handovers.push_back(v);
+  for (std::size_t v = 0; v < policies::Policies().size(); ++v) {
+    if (policies::Policies()[v].rule != policies::Rule::kNever) handovers.push_back(v);
   }
   return handovers;
 }

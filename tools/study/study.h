@@ -26,7 +26,7 @@ class StudyStopped : public std::runtime_error {
 /// Input of a study.
 struct StudyContext {
   std::filesystem::path scenarios;  // folder with paper.json and dense_fog.json
-  SeedRange seeds;
+  sweep::SeedRange seeds;
   int jobs = 1;
   /// Called repeatedly with the finished and the total number of units; returns false to stop.
   std::function<bool(std::int64_t done, std::int64_t total)> progress;
@@ -54,7 +54,7 @@ struct Study {
   std::string_view name;
   std::string_view title;
   std::string_view question;
-  SeedRange seeds;  // default of --seeds
+  sweep::SeedRange seeds;  // default of --seeds
   StudyResult (*run)(const StudyContext& context);
 };
 

@@ -162,7 +162,7 @@ std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
   std::vector<std::string> some;
   std::vector<std::string> none;
   for (const std::size_t v : Distinct(comparison, test_case, AllVariants(comparison))) {
-    const EventShare share = comparison.Collisions({test_case, v});
+    const metrics::EventShare share = comparison.Collisions({test_case, v});
     const std::string& name = comparison.variants()[v].name;
     if (share.events == 0) {
       none.push_back(name);
@@ -170,7 +170,7 @@ std::string CollisionText(const Comparison& comparison, std::size_t test_case) {
       some.push_back(fmt::format("{} {}", name, Text(share)));
     }
   }
-  const double upper = ClopperPearson(0, comparison.seeds()).upper * kPercent;
+  const double upper = metrics::ClopperPearson(0, comparison.seeds()).upper * kPercent;
   if (some.empty()) {
     return fmt::format(
         "No car collides in any run: with 0 of {}, the probability is at most {:.2g} %.",

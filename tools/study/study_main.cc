@@ -32,14 +32,14 @@ struct StudyArguments {
   std::filesystem::path out = "studies";
   std::filesystem::path scenarios = "scenario";
   std::string seeds;
-  int jobs = AllCores();
+  int jobs = sweep::AllCores();
   bool json = false;
 };
 
 /// A finished study.
 struct Made {
   const Study* study;
-  SeedRange seeds;
+  sweep::SeedRange seeds;
   StudyResult result;
 };
 
@@ -47,7 +47,7 @@ struct Made {
 constexpr std::int64_t kMostSeeds = 100'000;
 
 /// @throws InputError
-void RequireFew(const SeedRange& seeds, const std::string& text) {
+void RequireFew(const sweep::SeedRange& seeds, const std::string& text) {
   if (seeds.count() <= kMostSeeds) return;
   throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
 }
@@ -83,7 +83,8 @@ std::vector<const Study*> Chosen(const std::string& name) {
 }
 
 Made Make(const Study& study, const StudyArguments& arguments) {
-  const SeedRange seeds = arguments.seeds.empty() ? study.seeds : ParseSeeds(arguments.seeds);
+  const sweep::SeedRange seeds =
+      arguments.seeds.empty() ? study.seeds : sweep::ParseSeeds(arguments.seeds);
   std::optional<Progress> progress;
   const StudyContext context{.scenarios = arguments.scenarios,
                              .seeds = seeds,
@@ -174,7 +175,7 @@ class OutFolder {
 
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
-  if (!arguments.seeds.empty()) RequireFew(ReadSeeds(arguments.seeds), arguments.seeds);
+  if (!arguments.seeds.empty()) RequireFew(cli::ReadSeeds(arguments.seeds), arguments.seeds);
   RequireScenarios(arguments.scenarios);
   const OutFolder folder(arguments.out);
   WatchInterrupts();
@@ -192,15 +193,15 @@ int RunStudy(const StudyArguments& arguments) {
   const std::filesystem::path text = arguments.out / (stem + ".md");
   Write(text, report::MakeStudyText(CommandOf(arguments), sections));
   if (arguments.json) {
-    PrintJson(ToJson(arguments, all, page, text));
+    cli::PrintJson(ToJson(arguments, all, page, text));
   } else {
     fmt::print("{}\n{}\n", PathText(page), PathText(text));
   }
-  return kDone;
+  return cli::kDone;
 }
 
-void AddStudy(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand(kStudy.verb, kStudy.purpose);
+void AddStudy(CLI::App& app, cli::Action& action) {
+  CLI::App* verb = app.add_subcommand(cli::kStudy.verb, cli::kStudy.purpose);
   const auto arguments = std::make_shared<StudyArguments>();
   verb->add_option("NAME", arguments->name, fmt::format("One of {}", Names()))->required();
   verb->add_option("--out", arguments->out, "Folder for the files, which are replaced")
@@ -218,7 +219,7 @@ void AddStudy(CLI::App& app, Action& action) {
   for (const Study& study : Studies()) {
     table += fmt::format("  {:<11}{} ({} seeds)\n", study.name, study.title, study.seeds.count());
   }
-  ShowExitCodes(*verb, {.interruptible = true});
+  cli::ShowExitCodes(*verb, {.interruptible = true});
   verb->footer(fmt::format(
       "Studies:\n{}\n"
       "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with findings, figures and tables (of "
@@ -238,5 +239,5 @@ void AddStudy(CLI::App& app, Action& action) {
 }  // namespace fogline::study
 
 int main(int argc, char** argv) {
-  return fogline::RunOneVerb(argc, argv, fogline::study::AddStudy);
+  return fogline::cli::RunOneVerb(argc, argv, fogline::study::AddStudy);
 }

@@ -48,7 +48,7 @@ std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::s
   if (jerk.n == 0) {
     return fmt::format("{} has no hand-over", comparison.variants()[v].name);
   }
-  const EventShare comfortable =
+  const metrics::EventShare comfortable =
       comparison.AtMost({c, v}, "max_handover_jerk_mps3", kComfortableJerk_mps3);
   const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
   return fmt::format("{} has {} m/s3 (at most {:g} in {} of {} runs, worst {}) and an SI of {}",

@@ -107,7 +107,7 @@ double HardestOf(const Comparison& comparison) {
 std::string MethodOf(const Comparison& comparison) {
   constexpr double kGravity_mps2 = 9.81;
   const double hardest = HardestOf(comparison);
-  const double wet = FrictionOf(Surface::kWet) * kGravity_mps2;
+  const double wet = models::FrictionOf(Surface::kWet) * kGravity_mps2;
   return fmt::format(
       "{} seeds of paper.json, of dense_fog.json, and of the latter with a leader who brakes with "
       "6 m/s2 from 20 to 7 m/s in the middle of the fog; host and follower as cars of that kind, "

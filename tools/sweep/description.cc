@@ -9,7 +9,7 @@
 #include "scenario/io/json.h"
 #include "scenario/io/loader.h"
 
-namespace fogline {
+namespace fogline::sweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -73,4 +73,4 @@ void WriteDescription(const std::filesystem::path& csv, const Description& descr
   file.Finish();
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -9,7 +9,7 @@
 
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 struct Description {
   std::string sweep;          // everything except the shard, as JSON; equal sweeps have equal text
@@ -36,4 +36,4 @@ Description ReadDescription(const std::filesystem::path& csv);
 /// @throws InputError if it cannot be created, std::runtime_error when the disk is full
 void WriteDescription(const std::filesystem::path& csv, const Description& description);
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -10,7 +10,7 @@
 #include "common/errors.h"
 #include "tools/stats/in_order.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 template <class Visit>
 void SweepWorker::Run(Visit&& visit) {
@@ -43,14 +43,14 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    Run([this](const StepView& step) { baseline_.push_back(step.ToSample()); });
+    Run([this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
-  MeasureAccumulator measures(scenario_);
-  SafetyImprovement improvement(scenario_.measures.safety_floor_m);
+  metrics::MeasureAccumulator measures(scenario_);
+  metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
   std::size_t i = 0;
-  Run([&](const StepView& step) {
-    const Sample sample = step.ToSample();
+  Run([&](const metrics::StepView& step) {
+    const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     // If one run of the pair ended early, SI covers only the steps that both have.
     if (policy != Policy::kNone && i < baseline_.size()) {
@@ -62,7 +62,7 @@ SweepRow SweepWorker::ComputeRow() {
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume) {
-  ComputeInOrder(
+  stats::ComputeInOrder(
       begin, end, jobs, [&plan] { return SweepWorker(plan); },
       [](SweepWorker& worker, std::int64_t unit) {
         std::vector<SweepRow> rows;
@@ -74,4 +74,4 @@ void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int j
 
 int AllCores() { return tbb::info::default_concurrency(); }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

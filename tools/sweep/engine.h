@@ -10,11 +10,11 @@
 #include "services/metrics/run_metrics.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// Result of a row of a sweep.
 struct SweepRow {
-  RunMeasures measures;
+  metrics::RunMeasures measures;
   /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
   /// for a paired run without compromised safety.
   std::optional<double> si_pct;
@@ -38,8 +38,8 @@ class SweepWorker {
 
   const SweepPlan& plan_;
   Scenario scenario_;
-  std::optional<ClosedLoop> loop_;
-  std::vector<Sample> baseline_;
+  std::optional<metrics::ClosedLoop> loop_;
+  std::vector<metrics::Sample> baseline_;
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.
@@ -55,4 +55,4 @@ void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int j
 /// Number of threads that the machine can run at once.
 int AllCores();
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -18,7 +18,7 @@
 #include "tools/sweep/row_sums.h"
 #include "tools/sweep/side_files.h"
 
-namespace fogline {
+namespace fogline::sweep {
 namespace {
 
 struct ShardFile {
@@ -138,4 +138,4 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   return whole.rows;
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

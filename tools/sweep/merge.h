@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// Merges the complete files of all shards, given in any order. The merged file is written whole or
 /// not at all. @return the number of its rows
@@ -15,4 +15,4 @@ namespace fogline {
 std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
                          const std::filesystem::path& merged, bool force);
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -7,7 +7,7 @@
 
 #include "scenario/io/loader.h"
 
-namespace fogline {
+namespace fogline::sweep {
 namespace {
 
 /// Largest number of points of an axis "first:last:count".
@@ -210,4 +210,4 @@ std::string SweepPlan::NameOf(std::int64_t unit, std::int64_t row) const {
   return fmt::format("{}seed {}", name, SeedOf(unit));
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

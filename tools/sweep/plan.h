@@ -9,7 +9,7 @@
 #include "scenario/io/assignment.h"
 #include "scenario/sections/scenario.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// One field and its values, as written in a scenario file.
 struct Axis {
@@ -97,4 +97,4 @@ class SweepPlan {
   std::int64_t inner_points_ = 1;
 };
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::sweep {
 namespace {
 
 constexpr std::size_t kSumDigits = kSumLineBytes - 1;
@@ -45,4 +45,4 @@ RowChecker::Verdict RowChecker::Check(std::string_view row) {
   return line + '\n' == SumLine(row) ? Verdict::kSame : Verdict::kOther;
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

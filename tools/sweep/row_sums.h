@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// "FILE.sums".
 std::filesystem::path SumsFile(const std::filesystem::path& csv);
@@ -44,4 +44,4 @@ class RowChecker {
   bool has_sums_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -4,7 +4,7 @@
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 void RefuseForeignSideFiles(const std::filesystem::path& csv) {
   // With --force, because a file that a sweep has written is replaced without it, too.
@@ -13,4 +13,4 @@ void RefuseForeignSideFiles(const std::filesystem::path& csv) {
   RefuseToReplace(SumsFile(csv), "--out", true, "file of checksums", IsSums);
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// Refuses a sweep that would replace a file which no sweep has written: "--out scenario/paper"
 /// must not cost "scenario/paper.json".
@@ -11,4 +11,4 @@ namespace fogline {
 ///     is, --force or not", or the same of FILE.sums
 void RefuseForeignSideFiles(const std::filesystem::path& csv);
 
-}  // namespace fogline
+}  // namespace fogline::sweep

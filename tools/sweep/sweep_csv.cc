@@ -23,7 +23,7 @@
 #include "tools/sweep/row_sums.h"
 #include "tools/sweep/side_files.h"
 
-namespace fogline {
+namespace fogline::sweep {
 namespace {
 
 constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC;
@@ -34,8 +34,9 @@ std::string HeaderLine(const SweepPlan& plan) {
   std::string line;
   for (const Axis& axis : plan.axes()) line += axis.pointer + ",";
   line += "seed,si_pct";
-  VisitMeasures(RunMeasures{}, [&line](std::string_view name, const auto&, std::string_view,
-                                       std::string_view) { line += fmt::format(",{}", name); });
+  metrics::VisitMeasures(metrics::RunMeasures{},
+                         [&line](std::string_view name, const auto&, std::string_view,
+                                 std::string_view) { line += fmt::format(",{}", name); });
   return line + "\n";
 }
 
@@ -55,15 +56,15 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
   };
   AppendKey(plan, unit, index, text);
   number(row.si_pct);
-  VisitMeasures(row.measures,
-                [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
-                  text += ',';
-                  if constexpr (std::is_same_v<V, std::optional<double>>) {
-                    number(value);
-                  } else {
-                    text += fmt::format("{}", value);
-                  }
-                });
+  metrics::VisitMeasures(row.measures, [&]<class V>(std::string_view, const V& value,
+                                                    std::string_view, std::string_view) {
+    text += ',';
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      number(value);
+    } else {
+      text += fmt::format("{}", value);
+    }
+  });
   text += '\n';
 }
 
@@ -234,4 +235,4 @@ void SweepFile::Write(std::string_view text, const Handle& file) const {
                   PathText(path_), std::strerror(error)));
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

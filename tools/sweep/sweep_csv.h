@@ -13,7 +13,7 @@
 #include "tools/sweep/engine.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 class SweepFile {
  public:
@@ -63,4 +63,4 @@ class SweepFile {
   Handle sums_;  // not open for a pipe or device
 };
 
-}  // namespace fogline
+}  // namespace fogline::sweep

@@ -9,13 +9,13 @@
 #include "services/decision/policies/policies.h"
 #include "tools/sweep/engine.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file) {
-  const PolicyRow& policy = RowOf(scenario.arbitrator.policy);
+  const policies::PolicyRow& policy = policies::RowOf(scenario.arbitrator.policy);
   if (policy.uses_threshold) return;
   std::string others;
-  for (const PolicyRow& row : Policies()) {
+  for (const policies::PolicyRow& row : policies::Policies()) {
     if (row.uses_threshold) others += fmt::format("{}{}", others.empty() ? "" : ", ", row.name);
   }
   throw InputError(
@@ -44,4 +44,4 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
   return rows;
 }
 
-}  // namespace fogline
+}  // namespace fogline::sweep

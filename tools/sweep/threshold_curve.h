@@ -14,20 +14,20 @@
 #include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
 
-namespace fogline {
+namespace fogline::sweep {
 
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
   /// Adds a run. SI and RHE may be missing: SI needs compromised safety in the paired run.
-  void Add(const std::optional<double>& si, const RunMeasures& measures) {
+  void Add(const std::optional<double>& si, const metrics::RunMeasures& measures) {
     if (si) si_pct.Add(*si);
     if (measures.rhe_pct) rhe_pct.Add(*measures.rhe_pct);
     if (measures.collision != truth_t::COLLISION_NONE) ++collisions;
   }
 
   double threshold = 0;
-  Statistics si_pct;
-  Statistics rhe_pct;
+  stats::Statistics si_pct;
+  stats::Statistics rhe_pct;
   std::int64_t collisions = 0;  // runs with a collision
 };
 
@@ -46,4 +46,4 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
                                           std::span<const double> thresholds,
                                           const SeedRange& seeds, int jobs, const SeedsDone& done);
 
-}  // namespace fogline
+}  // namespace fogline::sweep

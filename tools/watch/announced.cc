@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace fogline {
+namespace fogline::watch {
 namespace {
 
 // Most of the window is for the traffic. If there are more runs than these, they are not on one
@@ -12,9 +12,9 @@ constexpr std::size_t kMaxLines = 8;
 
 }  // namespace
 
-std::vector<Line> AnnouncedLines(const std::vector<Announcement>& runs, bool followed) {
+std::vector<Line> AnnouncedLines(const std::vector<runtime::Announcement>& runs, bool followed) {
   std::vector<Line> lines;
-  for (const Announcement& run : runs) {
+  for (const runtime::Announcement& run : runs) {
     if (lines.size() == kMaxLines) {
       lines.push_back({fmt::format("{} more runs are announced", runs.size() - kMaxLines)});
       break;
@@ -25,9 +25,10 @@ std::vector<Line> AnnouncedLines(const std::vector<Announcement>& runs, bool fol
   return lines;
 }
 
-nlohmann::ordered_json AnnouncedJson(const std::vector<Announcement>& runs, bool followed) {
+nlohmann::ordered_json AnnouncedJson(const std::vector<runtime::Announcement>& runs,
+                                     bool followed) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Announcement& run : runs) {
+  for (const runtime::Announcement& run : runs) {
     nlohmann::ordered_json entry{{"run_id", run.run_id},
                                  {"lcm_url", run.url},
                                  {"scenario", run.scenario},
@@ -41,4 +42,4 @@ nlohmann::ordered_json AnnouncedJson(const std::vector<Announcement>& runs, bool
   return list;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -8,12 +8,12 @@
 #include "services/runtime/discovery/announcements.h"
 #include "tools/watch/traffic_text.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 /// One line for each run. @param followed whether the view shows the first run
-std::vector<Line> AnnouncedLines(const std::vector<Announcement>& runs, bool followed);
+std::vector<Line> AnnouncedLines(const std::vector<runtime::Announcement>& runs, bool followed);
 
 /// A list of objects. @param followed whether the view shows the first run
-nlohmann::ordered_json AnnouncedJson(const std::vector<Announcement>& runs, bool followed);
+nlohmann::ordered_json AnnouncedJson(const std::vector<runtime::Announcement>& runs, bool followed);
 
-}  // namespace fogline
+}  // namespace fogline::watch

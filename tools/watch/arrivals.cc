@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::watch {
 
 void Arrivals::Add(std::size_t bytes, TimePoint now) {
   if (messages_ > 0) {
@@ -34,4 +34,4 @@ ArrivalView Arrivals::Observe(TimePoint now, Duration interval) {
   return view;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

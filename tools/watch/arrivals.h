@@ -6,7 +6,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 /// Statistics of arrivals at the end of an interval of observation.
 struct ArrivalView {
@@ -44,4 +44,4 @@ class Arrivals {
   double longest_gap_s_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::watch {
 
 void StepSequence::Add(std::int64_t step, TimePoint now) {
   if (step < 0 || step > kMaxStep) {
@@ -81,4 +81,4 @@ void StepSequence::MoveTo(std::int64_t newest) {
   counts_.newest = newest;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -8,7 +8,7 @@
 #include "common/clock.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 /// The steps of one channel of one run, as they arrive. Steps before the first seen one do not
 /// count: an observer that starts in the middle of a run has not lost its beginning.
@@ -27,7 +27,7 @@ class StepSequence {
   Counts counts() const;
 
   /// Only the recorder can repeat a step that is older than the newest one by this many steps.
-  static constexpr std::int64_t kWindow = kRingSteps;
+  static constexpr std::int64_t kWindow = runtime::kRingSteps;
   /// No run has this many steps. The limit keeps the arithmetic below from overflowing.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
   /// A step that is further ahead is believed only when its successor follows at once. The rule and
@@ -50,4 +50,4 @@ class StepSequence {
   TimePoint progressed_{};     // when `newest` grew last
 };
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::watch {
 namespace {
 
 constexpr const char* kEnter = "\033[?1049h\033[?25l";  // alternate screen, no cursor
@@ -74,4 +74,4 @@ void Terminal::Write(const std::string& text) {
   gone_ = std::fputs(text.c_str(), stdout) == EOF || std::fflush(stdout) != 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -10,7 +10,7 @@
 
 #include "tools/watch/traffic_text.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 class Terminal {
  public:
@@ -41,4 +41,4 @@ class Terminal {
   termios before_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -2,7 +2,7 @@
 
 #include "tools/watch/traffic_text.h"
 
-namespace fogline {
+namespace fogline::watch {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -59,7 +59,7 @@ Json RoleJson(const RoleView& role) {
             {"cpu_ms", status.cpu_ms},
             {"rss_bytes", status.rss_bytes},
             {"error", status.error}};
-  for (const RefusalKind& kind : kRefusals) {
+  for (const runtime::RefusalKind& kind : runtime::kRefusals) {
     if (status.*kind.counter != 0) json["refused"][std::string(kind.key)] = status.*kind.counter;
   }
   return json;
@@ -95,4 +95,4 @@ Json TrafficJson(const TrafficView& view, std::string_view url) {
   return json;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

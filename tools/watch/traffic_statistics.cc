@@ -6,19 +6,19 @@
 #include "services/runtime/discovery/announcements.h"
 #include "services/runtime/wire/message_signer.h"
 
-namespace fogline {
+namespace fogline::watch {
 namespace {
 
 struct KnownType {
   std::int64_t fingerprint;
   const char* name;
-  bool (*decodes)(Bytes);
+  bool (*decodes)(runtime::Bytes);
 };
 
 template <class M>
-bool Decodes(Bytes bytes) {
+bool Decodes(runtime::Bytes bytes) {
   M message{};
-  return Decode(bytes, message);
+  return runtime::Decode(bytes, message);
 }
 
 /// The type of every channel, in the order of kGraph.
@@ -32,15 +32,15 @@ const auto& KnownTypes() {
 }
 
 /// Name of the type whose fingerprint the message has; "" if it is no type of Fogline.
-std::string_view TypeNameOf(Bytes bytes) {
-  if (bytes.size() < kRunIdOffset) return "";
+std::string_view TypeNameOf(runtime::Bytes bytes) {
+  if (bytes.size() < runtime::kRunIdOffset) return "";
   for (const KnownType& type : KnownTypes()) {
-    if (type.fingerprint == ReadInt64(bytes, 0)) return type.name;
+    if (type.fingerprint == runtime::ReadInt64(bytes, 0)) return type.name;
   }
   return "";
 }
 
-void CountUndecodable(Bytes bytes, Undecodable& undecodable) {
+void CountUndecodable(runtime::Bytes bytes, Undecodable& undecodable) {
   const std::string_view type = TypeNameOf(bytes);
   ++undecodable[type.empty() ? "unknown" : std::string(type)];
 }
@@ -54,14 +54,16 @@ std::int64_t ChannelView::NumUndecodable() const {
 }
 
 bool IsHousekeeping(std::string_view channel) {
-  return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm") || channel == kBeaconChannel;
+  return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm") ||
+         channel == runtime::kBeaconChannel;
 }
 
-void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now) {
-  if (LooksSigned(bytes)) bytes = WithoutSignature(bytes);  // shown, but not verified
+void TrafficStatistics::Add(std::string_view channel, runtime::Bytes bytes, TimePoint now) {
+  if (runtime::LooksSigned(bytes))
+    bytes = runtime::WithoutSignature(bytes);  // shown, but not verified
   const std::size_t index = ChannelNamed(channel);
-  if (index < kNumChannels && bytes.size() >= kHeaderEnd) {
-    const std::int64_t run_id = ReadInt64(bytes, kRunIdOffset);
+  if (index < kNumChannels && bytes.size() >= runtime::kHeaderEnd) {
+    const std::int64_t run_id = runtime::ReadInt64(bytes, runtime::kRunIdOffset);
     if (KnownTypes()[index].decodes(bytes)) {
       return AddToRun(RunOf(run_id), index, bytes, now);
     }
@@ -83,7 +85,8 @@ void TrafficStatistics::Add(std::string_view channel, Bytes bytes, TimePoint now
   }
 }
 
-void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, TimePoint now) {
+void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, runtime::Bytes bytes,
+                                 TimePoint now) {
   ChannelRecord& record = run.channels[channel];
   record.any = true;
   record.type = KnownTypes()[channel].name;
@@ -91,7 +94,7 @@ void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, Bytes byte
   run.heard = now;
   if (kChannels[channel].pace == Pace::kStep) {
     if (!record.steps) record.steps.emplace();
-    record.steps->Add(ReadInt64(bytes, kStepOffset), now);
+    record.steps->Add(runtime::ReadInt64(bytes, runtime::kStepOffset), now);
   } else if (channel == IndexOf<run_t>()) {
     AddRun(run, bytes);
   } else if (channel == IndexOf<status_t>()) {
@@ -99,17 +102,17 @@ void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, Bytes byte
   }
 }
 
-void TrafficStatistics::AddRun(RunRecord& run, Bytes bytes) {
+void TrafficStatistics::AddRun(RunRecord& run, runtime::Bytes bytes) {
   run_t message{};
-  if (!Decode(bytes, message)) return;
+  if (!runtime::Decode(bytes, message)) return;
   run.phase = message.phase;
   run.pace = message.pace;
   run.scenario_hash = message.scenario_hash;
 }
 
-void TrafficStatistics::AddStatus(RunRecord& run, Bytes bytes, TimePoint now) {
+void TrafficStatistics::AddStatus(RunRecord& run, runtime::Bytes bytes, TimePoint now) {
   status_t status{};
-  if (!Decode(bytes, status)) return;
+  if (!runtime::Decode(bytes, status)) return;
   for (RoleRecord& role : run.roles) {
     if (role.status.instance != status.instance || role.status.role != status.role) continue;
     if (status.sequence <= role.status.sequence) return;  // a copy, or a newer one has overtaken it
@@ -226,4 +229,4 @@ std::vector<RoleView> TrafficStatistics::ObserveRoles(RunRecord& run, TimePoint 
   return views;
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

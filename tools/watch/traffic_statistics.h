@@ -18,7 +18,7 @@
 #include "tools/watch/arrivals.h"
 #include "tools/watch/step_sequence.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 /// Messages that could not be decoded, counted by the type that their fingerprint names (then the
 /// channel or the size is wrong), or by "unknown".
@@ -71,7 +71,7 @@ class TrafficStatistics {
  public:
   explicit TrafficStatistics(TimePoint now) : observed_(now) {}
 
-  void Add(std::string_view channel, Bytes bytes, TimePoint now);
+  void Add(std::string_view channel, runtime::Bytes bytes, TimePoint now);
 
   /// The current statistics. It ends an interval of observation and begins the next one.
   TrafficView Observe(TimePoint now);
@@ -113,9 +113,9 @@ class TrafficStatistics {
     std::vector<RoleRecord> roles;
   };
 
-  void AddToRun(RunRecord& run, std::size_t channel, Bytes bytes, TimePoint now);
-  void AddRun(RunRecord& run, Bytes bytes);
-  void AddStatus(RunRecord& run, Bytes bytes, TimePoint now);
+  void AddToRun(RunRecord& run, std::size_t channel, runtime::Bytes bytes, TimePoint now);
+  void AddRun(RunRecord& run, runtime::Bytes bytes);
+  void AddStatus(RunRecord& run, runtime::Bytes bytes, TimePoint now);
   RunRecord* FindRun(std::int64_t run_id);
   RunRecord& RunOf(std::int64_t run_id);
   ChannelRecord& OtherOf(std::string_view channel);
@@ -131,4 +131,4 @@ class TrafficStatistics {
   std::int64_t unknown_names_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::watch

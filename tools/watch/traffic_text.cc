@@ -6,7 +6,7 @@
 
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::watch {
 namespace {
 
 constexpr double kMilli = 1e-3;
@@ -77,7 +77,7 @@ std::string Remarks(const RoleView& role) {
     add(fmt::format("waits for {} for {:.1f} s", Printable(status.waiting_for),
                     kMilli * static_cast<double>(status.waiting_ms)));
   }
-  for (const RefusalKind& kind : kRefusals) {
+  for (const runtime::RefusalKind& kind : runtime::kRefusals) {
     const std::int64_t count = status.*kind.counter;
     if (count != 0) add(fmt::format("refused {} {}", count, kind.what));
   }
@@ -196,4 +196,4 @@ std::string_view PhaseName(std::int8_t phase) {
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::watch

@@ -9,7 +9,7 @@
 
 #include "tools/watch/traffic_statistics.h"
 
-namespace fogline {
+namespace fogline::watch {
 
 /// One line, without a line feed.
 struct Line {
@@ -31,4 +31,4 @@ nlohmann::ordered_json TrafficJson(const TrafficView& view, std::string_view url
 std::string_view StateName(std::int8_t state);
 std::string_view PhaseName(std::int8_t phase);
 
-}  // namespace fogline
+}  // namespace fogline::watch

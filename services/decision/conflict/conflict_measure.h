@@ -2,7 +2,7 @@
 // result. The arbitrator decides what follows from a conflict.
 #pragma once
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// A range with its stated standard deviation. All numbers are finite, also if it is not valid.
 struct StatedRange {
@@ -52,4 +52,4 @@ class BlameMeasure {
   virtual void Reset() = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -15,7 +15,7 @@
 #include "services/decision/conflict/over_time/sequential.h"
 #include "services/decision/conflict/over_time/third_witness.h"
 
-namespace fogline {
+namespace fogline::conflict {
 namespace {
 
 using Parameters = ConflictParameters;
@@ -165,12 +165,6 @@ const Row* Find(std::span<const Row> rows, std::string_view name) {
 
 }  // namespace
 
-using Names = std::span<const std::string_view>;
-constinit const Names ChoiceNames<MeasureChoice>::kNames = kConflictNames;
-constinit const Names ChoiceNames<MeasureChoice>::kDocs = kConflictDocs;
-constinit const Names ChoiceNames<BlameChoice>::kNames = kBlameNames;
-constinit const Names ChoiceNames<BlameChoice>::kDocs = kBlameDocs;
-
 std::span<const ConflictMeasureRow> ConflictMeasures() { return kConflictMeasures; }
 std::span<const BlameMeasureRow> BlameMeasures() { return kBlameMeasures; }
 
@@ -181,5 +175,15 @@ const ConflictMeasureRow* FindConflictMeasure(std::string_view name) {
 const BlameMeasureRow* FindBlameMeasure(std::string_view name) {
   return Find(BlameMeasures(), name);
 }
+
+}  // namespace fogline::conflict
+
+namespace fogline {
+
+using Names = std::span<const std::string_view>;
+constinit const Names ChoiceNames<MeasureChoice>::kNames = conflict::kConflictNames;
+constinit const Names ChoiceNames<MeasureChoice>::kDocs = conflict::kConflictDocs;
+constinit const Names ChoiceNames<BlameChoice>::kNames = conflict::kBlameNames;
+constinit const Names ChoiceNames<BlameChoice>::kDocs = conflict::kBlameDocs;
 
 }  // namespace fogline

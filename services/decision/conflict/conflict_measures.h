@@ -8,7 +8,7 @@
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/conflict_parameters.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// One measure. `Measure` is ConflictMeasure or BlameMeasure.
 template <class Measure>
@@ -34,4 +34,4 @@ std::span<const BlameMeasureRow> BlameMeasures();
 const ConflictMeasureRow* FindConflictMeasure(std::string_view name);
 const BlameMeasureRow* FindBlameMeasure(std::string_view name);
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -5,7 +5,7 @@
 
 #include "scenario/sections/control.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// Modes of a LiDAR: it measures the range of the car; of the fog or another object; it has no
 /// echo.
@@ -105,4 +105,4 @@ struct ConflictParameters {
   double stray_range_m = 250;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

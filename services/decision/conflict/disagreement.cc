@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::conflict {
 
 double Disagreement::standardised() const { return difference_m / std::sqrt(variance_m2()); }
 
@@ -42,4 +42,4 @@ std::optional<Disagreement> DisagreementSource::Next(const Evidence& evidence) {
   return std::nullopt;
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -7,7 +7,7 @@
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/conflict_parameters.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// d = radar - LiDAR, above 0 if the LiDAR's range is too short, as in fog.
 struct Disagreement {
@@ -51,4 +51,4 @@ class DisagreementSource {
   std::optional<Disagreement> measured_;  // the last one
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -5,7 +5,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most) with
 /// the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
@@ -36,4 +36,4 @@ class Adaptive final : public EngagementPolicy {
   AdaptiveSection section_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

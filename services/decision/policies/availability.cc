@@ -6,7 +6,7 @@
 
 #include "services/models/driver/take_over_time.h"
 
-namespace fogline {
+namespace fogline::policies {
 namespace {
 
 constexpr double kPercentile = 0.95;  // of take-over times, after Marberger et al. 2018
@@ -32,9 +32,9 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
 
 Availability::Availability(const Scenario& scenario)
     : section_(scenario.arbitrator.availability),
-      take_over_s_(
-          TakeOverTime(scenario.arbitrator.take_over.time, scenario.arbitrator.take_over.lead_s)
-              .Quantile(kPercentile)),
+      take_over_s_(models::TakeOverTime(scenario.arbitrator.take_over.time,
+                                        scenario.arbitrator.take_over.lead_s)
+                       .Quantile(kPercentile)),
       isolation_(scenario.arbitrator) {}
 
 EngagementRequest Availability::Decide(const ArbitratorView& view) {
@@ -43,7 +43,7 @@ EngagementRequest Availability::Decide(const ArbitratorView& view) {
 }
 
 bool Availability::DriverIsAvailable(const ArbitratorView& view) const {
-  if (view.lambda_human >= kMainAuthority || !view.surroundings.followed) return true;
+  if (view.lambda_human >= models::kMainAuthority || !view.surroundings.followed) return true;
   const double time_s = TimeUntilHardBraking(
       view.surroundings.follower_gap_m, view.surroundings.follower_speed_mps - view.ego.speed_mps,
       std::max(0.0, -view.ego.acceleration_mps2), section_.comfort_mps2);
@@ -51,4 +51,4 @@ bool Availability::DriverIsAvailable(const ArbitratorView& view) const {
   return std::min(time_s, section_.horizon_s) > required_s;
 }
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -3,7 +3,7 @@
 
 #include "services/decision/policies/isolation.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host, while it
 /// keeps its speed and the host brakes with `host_braking_mps2` >= 0:
@@ -42,4 +42,4 @@ class Availability final : public EngagementPolicy {
   Isolation isolation_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -5,7 +5,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// The human drives while P C_a >= (1 - P) C_h, that is while P >= C_h/(C_h + C_a), the threshold
 /// in force. P is the probability that the automation is deceived; the policy uses the DoC as P.
@@ -40,4 +40,4 @@ class Bayes final : public EngagementPolicy {
   BayesSection section_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -5,7 +5,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// lambda_H = clip((DoC - from)/width, 0, 1): both drive, the human in proportion to the conflict.
 /// The threshold in force is the DoC at which he has half of the authority.
@@ -26,4 +26,4 @@ class Blend final : public EngagementPolicy {
   BlendSection section_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -6,21 +6,21 @@
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Parameters of the measures from section `arbitrator` and its `transfer`. Parameters that the
 /// scenario does not have are the defaults of services/decision/conflict/conflict_parameters.h.
-ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
+conflict::ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
 /// The rows that the scenario has chosen.
-const ConflictMeasureRow& RowOf(MeasureChoice choice);
-const BlameMeasureRow& RowOf(BlameChoice choice);
+const conflict::ConflictMeasureRow& RowOf(MeasureChoice choice);
+const conflict::BlameMeasureRow& RowOf(BlameChoice choice);
 
 /// Range and standard deviation as the sensor states them.
-inline StatedRange StatedBy(const radar_t& radar) {
+inline conflict::StatedRange StatedBy(const radar_t& radar) {
   return {.valid = radar.valid != 0, .range_m = radar.range_m, .std_m = radar.range_std_m};
 }
-inline StatedRange StatedBy(const lidar_t& lidar) {
+inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
   return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
 }
 
@@ -32,11 +32,12 @@ class Witness {
  public:
   explicit Witness(const FusionSection& section);
 
-  StatedRange Prediction(const track_t& track, const radar_t& radar, const lidar_t& lidar) const;
+  conflict::StatedRange Prediction(const track_t& track, const radar_t& radar,
+                                   const lidar_t& lidar) const;
 
  private:
   double radar_variance_m2_;
   double lidar_variance_m2_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

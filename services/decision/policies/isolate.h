@@ -4,7 +4,7 @@
 
 #include "services/decision/policies/isolation.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Fault isolation: the fusion goes on without the sensor that is to blame, and the human never
 /// drives.
@@ -25,4 +25,4 @@ class Isolate final : public EngagementPolicy {
   Isolation isolation_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

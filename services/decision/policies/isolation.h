@@ -7,7 +7,7 @@
 #include "services/decision/policies/evidence.h"
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Drops the sensor with the larger blame, by the scenario's measure of blame, if this blame is at
 /// least blame_threshold. Never drops both. The witness is the filter's prediction.
@@ -17,15 +17,15 @@ class Isolation {
       : blame_(RowOf(section.blame).make(ConflictParametersOf(section))),
         threshold_(section.blame_threshold) {}
 
-  SensorSelection Judge(const Evidence& evidence) {
+  SensorSelection Judge(const conflict::Evidence& evidence) {
     const auto [radar, lidar] = blame_->Step(evidence);
     return {.radar = radar < threshold_ || radar <= lidar,
             .lidar = lidar < threshold_ || lidar <= radar};
   }
 
  private:
-  std::unique_ptr<BlameMeasure> blame_;
+  std::unique_ptr<conflict::BlameMeasure> blame_;
   double threshold_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

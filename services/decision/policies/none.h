@@ -3,7 +3,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// lambda_A = 1 throughout.
 class None final : public EngagementPolicy {
@@ -17,4 +17,4 @@ class None final : public EngagementPolicy {
   }
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -5,7 +5,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Selects the best sensor by the truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA
 /// 2022). Of two values the fusion uses the one nearer to the true gap, or the radar's if they are
@@ -29,4 +29,4 @@ class Oracle final : public EngagementPolicy {
   }
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

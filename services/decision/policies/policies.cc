@@ -13,7 +13,7 @@
 #include "services/decision/policies/oracle.h"
 #include "services/decision/policies/traded.h"
 
-namespace fogline {
+namespace fogline::policies {
 namespace {
 
 // One row for each policy. Scenario files, their schema and every list of policies have this order.
@@ -45,9 +45,6 @@ constexpr auto kDocColumn = Column<&PolicyRow::doc>();
 
 }  // namespace
 
-constinit const std::span<const std::string_view> ChoiceNames<Policy>::kNames = kNameColumn;
-constinit const std::span<const std::string_view> ChoiceNames<Policy>::kDocs = kDocColumn;
-
 std::span<const PolicyRow> Policies() { return kPolicies; }
 
 const PolicyRow& RowOf(Policy policy) { return kPolicies[static_cast<std::size_t>(policy)]; }
@@ -57,5 +54,13 @@ std::optional<Policy> FindPolicy(std::string_view name) {
   if (found == kPolicies.end()) return std::nullopt;
   return static_cast<Policy>(found - kPolicies.begin());
 }
+
+}  // namespace fogline::policies
+
+namespace fogline {
+
+constinit const std::span<const std::string_view> ChoiceNames<Policy>::kNames =
+    policies::kNameColumn;
+constinit const std::span<const std::string_view> ChoiceNames<Policy>::kDocs = policies::kDocColumn;
 
 }  // namespace fogline

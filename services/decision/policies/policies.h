@@ -9,7 +9,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 struct PolicyRow {
   std::string_view name;  // in the scenario, lower_snake, unique
@@ -50,4 +50,4 @@ const PolicyRow& RowOf(Policy policy);
 /// The policy with this name; nullopt if there is none.
 std::optional<Policy> FindPolicy(std::string_view name);
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -14,7 +14,7 @@
 #include "services/graph.h"
 #include "services/models/minimal_risk/modes.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// Which sensors the fusion uses in this step. The values of a sensor that is not trusted are
 /// compared with the prediction, but correct nothing.
@@ -27,7 +27,7 @@ struct SensorSelection {
 
 /// Inputs of a policy in the fusion, before the filter uses the values of the step.
 struct FusionView {
-  const Evidence& evidence;
+  const conflict::Evidence& evidence;
   /// From the host's front bumper to the preceding car, for policies with kNeedsTrueGap.
   std::optional<double> true_gap_m;
 };
@@ -116,4 +116,4 @@ class EngagementPolicy {
   virtual EngagementRequest Decide(const ArbitratorView& view) = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

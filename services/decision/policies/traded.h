@@ -3,7 +3,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// lambda_A = 1 if 0 <= DoC < DoC_th, else 0 (Sourav & Cheng 2024).
 class Traded final : public EngagementPolicy {
@@ -17,4 +17,4 @@ class Traded final : public EngagementPolicy {
   }
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -7,7 +7,7 @@
 
 #include "common/whole_steps.h"
 
-namespace fogline {
+namespace fogline::take_over {
 namespace {
 
 // TakeOverTime uses the draws from 0 to 99 of a step.
@@ -130,4 +130,4 @@ double TakeOver::Acceleration(const TakeOverInputs& inputs) {
   return 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::take_over

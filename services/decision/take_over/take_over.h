@@ -14,7 +14,7 @@
 #include "services/models/driver/take_over_time.h"
 #include "services/models/minimal_risk/minimal_risk.h"
 
-namespace fogline {
+namespace fogline::take_over {
 
 /// Inputs of the decision of a step.
 struct TakeOverInputs {
@@ -88,8 +88,8 @@ class TakeOver {
   std::int64_t escalation_steps_;
   std::int64_t recovery_steps_;
   Random random_;
-  TakeOverTime time_;
-  MinimalRisk manoeuvre_;
+  models::TakeOverTime time_;
+  models::MinimalRisk manoeuvre_;
 
   std::optional<TakeOverRequest> request_;
   std::int64_t answer_step_ = 0;   // of this request's acknowledgement
@@ -98,4 +98,4 @@ class TakeOver {
   TakeOverOutcome out_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::take_over

@@ -11,7 +11,7 @@
 #include "fogline/arbitration_t.hpp"
 #include "services/decision/take_over/take_over_request.h"
 
-namespace fogline {
+namespace fogline::take_over {
 
 /// Name of the state that belongs to a mode of HOST_COMMAND; "UNKNOWN" for an invalid mode.
 std::string_view NameOfMode(std::int8_t mode);
@@ -57,4 +57,4 @@ class TakeOverLog {
   std::vector<TakeOverRequest> requests_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::take_over

@@ -7,7 +7,7 @@
 
 #include "services/decision/take_over/take_over_table.h"
 
-namespace fogline {
+namespace fogline::take_over {
 
 /// Least change of the command by the driver alone for which an input counts as effective, in m/s2.
 /// Our choice: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or
@@ -47,4 +47,4 @@ struct TakeOverRequest {
   friend bool operator==(const TakeOverRequest&, const TakeOverRequest&) = default;
 };
 
-}  // namespace fogline
+}  // namespace fogline::take_over

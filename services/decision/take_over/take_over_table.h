@@ -9,7 +9,7 @@
 
 #include "fogline/arbitration_t.hpp"
 
-namespace fogline {
+namespace fogline::take_over {
 
 enum class TakeOverState : std::uint8_t {
   kAutomated,
@@ -193,4 +193,4 @@ static_assert(
     }(),
     "a state has one authority whatever led there, and a change of state tells what is logged");
 
-}  // namespace fogline
+}  // namespace fogline::take_over

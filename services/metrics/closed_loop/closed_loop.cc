@@ -1,6 +1,6 @@
 #include "services/metrics/closed_loop/closed_loop.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
     : demands_(scenario),
@@ -17,12 +17,12 @@ void ClosedLoop::Restart(const Scenario& scenario) {
   demands_ = UsesOptionalInput(scenario);
   acc_.Restart(scenario);
   follower_.Restart(scenario);
-  world_ = World(scenario);
-  radar_ = Radar(scenario);
-  lidar_ = Lidar(scenario);
-  fusion_ = Fusion(scenario);
-  driver_ = Driver(scenario);
-  arbitrator_ = Arbitrator(scenario);
+  world_ = world::World(scenario);
+  radar_ = radar::Radar(scenario);
+  lidar_ = lidar::Lidar(scenario);
+  fusion_ = fusion::Fusion(scenario);
+  driver_ = driver::Driver(scenario);
+  arbitrator_ = arbitrator::Arbitrator(scenario);
 }
 
-}  // namespace fogline
+}  // namespace fogline::metrics

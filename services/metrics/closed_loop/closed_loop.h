@@ -15,7 +15,7 @@
 #include "services/radar/radar.h"
 #include "services/world/world.h"
 
-namespace fogline {
+namespace fogline::metrics {
 
 /// The messages of one step; they belong to the algorithms and are valid until the next step.
 struct StepView {
@@ -89,9 +89,9 @@ class ClosedLoop {
   /// Which roles receive their channels on demand in this scenario (services/algorithm.h).
   struct UsesOptionalInput {
     explicit UsesOptionalInput(const Scenario& scenario)
-        : fusion(AlgorithmTraits<Fusion>::UsesOptionalInput(scenario)),
-          driver(AlgorithmTraits<Driver>::UsesOptionalInput(scenario)),
-          arbitrator(AlgorithmTraits<Arbitrator>::UsesOptionalInput(scenario)) {}
+        : fusion(AlgorithmTraits<fusion::Fusion>::UsesOptionalInput(scenario)),
+          driver(AlgorithmTraits<driver::Driver>::UsesOptionalInput(scenario)),
+          arbitrator(AlgorithmTraits<arbitrator::Arbitrator>::UsesOptionalInput(scenario)) {}
     bool fusion;
     bool driver;
     bool arbitrator;
@@ -106,14 +106,14 @@ class ClosedLoop {
   }
 
   UsesOptionalInput demands_;
-  World world_;
-  Radar radar_;
-  Lidar lidar_;
-  Fusion fusion_;
-  Acc acc_;
-  Driver driver_;
-  Arbitrator arbitrator_;
-  Follower follower_;
+  world::World world_;
+  radar::Radar radar_;
+  lidar::Lidar lidar_;
+  fusion::Fusion fusion_;
+  acc::Acc acc_;
+  driver::Driver driver_;
+  arbitrator::Arbitrator arbitrator_;
+  follower::Follower follower_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::metrics

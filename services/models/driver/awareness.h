@@ -7,7 +7,7 @@
 
 #include "scenario/sections/human.h"
 
-namespace fogline {
+namespace fogline::models {
 
 enum class DriverTask {
   kMonitors,  // the automation drives and has not asked him to take over
@@ -68,4 +68,4 @@ class Awareness {
   double awareness_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -8,7 +8,7 @@
 
 #include "services/models/driver/visibility.h"
 
-namespace fogline {
+namespace fogline::models {
 
 FogSight::FogSight(const FogSightParameters& parameters) : parameters_(parameters) {
   const FogSightParameters& p = parameters;
@@ -69,4 +69,4 @@ double SpeedForSightDistance(double range_m, double reaction_time_s, double dece
   return std::sqrt(before * before + 2.0 * deceleration_mps2 * range_m) - before;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -6,7 +6,7 @@
 #include "scenario/sections/human.h"
 #include "services/models/driver/situation.h"
 
-namespace fogline {
+namespace fogline::models {
 
 enum class Seen { kOutline, kLamps, kNothing };
 
@@ -40,4 +40,4 @@ class FogSight {
 /// tau and deceleration b: v tau + v^2 / (2 b) = range.
 double SpeedForSightDistance(double range_m, double reaction_time_s, double deceleration_mps2);
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
@@ -78,4 +78,4 @@ double Following::Adaptive(double speed_mps, const CarAhead& ahead) const {
   return (1.0 - coolness_) * improved + coolness_ * cool;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

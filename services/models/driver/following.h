@@ -7,7 +7,7 @@
 #include "services/models/driver/idm.h"
 #include "services/models/driver/situation.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// The IDM of services/driver, and the two models that Kesting, Treiber & Helbing (Philosophical
 /// Transactions of the Royal Society A 368:4585, 2010) and Treiber & Kesting (Traffic Flow
@@ -56,4 +56,4 @@ class Following {
   Idm idm_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -6,7 +6,7 @@
 
 #include "scenario/sections/whole_steps.h"
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 const HumanParameters& Checked(const HumanParameters& human) {
@@ -105,4 +105,4 @@ const Situation& HumanDriver::SeenAgo(std::size_t steps) const {
   return seen_[(last_ + seen_.size() - steps) % seen_.size()];
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

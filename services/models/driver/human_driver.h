@@ -12,7 +12,7 @@
 #include "services/models/driver/ornstein_uhlenbeck.h"
 #include "services/models/driver/situation.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Properties of a driver that may change from step to step.
 struct Attention {
@@ -70,4 +70,4 @@ class HumanDriver {
   bool begun_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

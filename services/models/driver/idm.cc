@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::models {
 
 Idm::Idm(const DriverSection& driver)
     : driver_(driver),
@@ -27,4 +27,4 @@ double Idm::DesiredGap(double speed_mps, double preceding_speed_mps) const {
   return driver_.standstill_m + std::max(0.0, dynamic_gap);
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 
 #include "scenario/sections/control.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Intelligent Driver Model (Treiber, Hennecke & Helbing, Physical Review E 62:1805, 2000):
 ///
@@ -31,4 +31,4 @@ class Idm {
   double twice_sqrt_ab_mps2_;  // 2 sqrt(a_max b)
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace fogline {
+namespace fogline::models {
 
 /// Ornstein-Uhlenbeck process of mean 0, variance 1 and correlation e^(-t / tau). Its steps are
 /// exact (Gillespie, Physical Review E 54:2084, 1996):
@@ -32,4 +32,4 @@ class OrnsteinUhlenbeck {
   bool begun_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace fogline {
+namespace fogline::models {
 
 struct CarAhead {
   double gap_m = 0;  // bumper to bumper
@@ -18,4 +18,4 @@ struct Situation {
   std::optional<CarAhead> ahead;  // empty if the driver sees no car ahead
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

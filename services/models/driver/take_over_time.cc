@@ -7,7 +7,7 @@
 
 #include <boost/math/special_functions/erf.hpp>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 constexpr std::uint32_t kSumoDraws = 100;
@@ -72,4 +72,4 @@ double TakeOverTime::Quantile(double probability) const {
   return location_ + scale_ * UpperQuantile((1.0 - probability) * above_0);
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

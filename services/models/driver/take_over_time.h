@@ -6,7 +6,7 @@
 #include "common/random.h"
 #include "scenario/sections/take_over.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Take-over time T for a request with lead time t. A driver is late if T > t.
 ///
@@ -43,4 +43,4 @@ class TakeOverTime {
   double scale_ = 0;     // s, or the standard deviation in s
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 double Square(double x) { return x * x; }
@@ -59,4 +59,4 @@ double FuzzyDeceleration(const FuzzyParameters& fuzzy, const Situation& seen) {
   return comfortable * ProactiveFuzzy(fuzzy, seen);
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 
 #include "services/models/driver/situation.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
 /// Defaults: the parameter discussion of ad-rss-lib, for the vehicle behind.
@@ -52,4 +52,4 @@ double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 /// otherwise PFS b_c.
 double FuzzyDeceleration(const FuzzyParameters& fuzzy, const Situation& seen);
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 // Tolerance for the rounding of sums of steps: 0.4 s have passed after four steps of 0.1 s.
@@ -71,4 +71,4 @@ bool SafetyResponse::HumanInDanger(const Situation& seen) const {
          ahead.gap_m <= response_.critical_headway_s * seen.speed_mps;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

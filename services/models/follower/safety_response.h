@@ -5,7 +5,7 @@
 #include "services/models/driver/situation.h"
 #include "services/models/follower/safe_distance.h"
 
-namespace fogline {
+namespace fogline::models {
 
 enum class SafetyModel { kReferenceHuman, kRss, kFuzzy };
 
@@ -63,4 +63,4 @@ class SafetyResponse {
   double braking_mps2_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

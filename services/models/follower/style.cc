@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 constexpr double kMpsPerKmph = 1.0 / 3.6;
@@ -50,4 +50,4 @@ bool DrawChance(double share, const Random& random, std::int64_t follower) {
   return random.Uniform2(follower, 0)[1] < share;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

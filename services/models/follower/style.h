@@ -7,7 +7,7 @@
 #include "scenario/sections/control.h"
 #include "services/models/driver/human_driver.h"
 
-namespace fogline {
+namespace fogline::models {
 
 enum class Style { kAggressive, kNormal, kCautious };
 
@@ -39,4 +39,4 @@ Style DrawStyle(const StyleShares& shares, const Random& random, std::int64_t fo
 /// share, seed and number of the car, and is independent of the car's style.
 bool DrawChance(double share, const Random& random, std::int64_t follower);
 
-}  // namespace fogline
+}  // namespace fogline::models

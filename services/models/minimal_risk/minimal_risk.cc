@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 // Factor on the braking of the last step: without it rounding would leave a speed of 1e-17 m/s.
@@ -39,4 +39,4 @@ double MinimalRisk::Releasable(double speed_mps) const {
   return kToRest * speed_mps / (steps * step_s_) + 0.5 * (steps - 1.0) * change;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

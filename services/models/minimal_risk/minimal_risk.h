@@ -4,7 +4,7 @@
 
 #include "scenario/sections/scenario.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Brakes to standstill within limits on deceleration d and jerk j, starting from the acceleration
 /// that is applied. a is the command of the step before, v > 0 the speed, h the length of a step.
@@ -51,4 +51,4 @@ class MinimalRisk {
   double acceleration_mps2_ = 0;  // at first the applied one, then the last command
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -5,7 +5,7 @@
 
 #include "fogline/arbitration_t.hpp"
 
-namespace fogline {
+namespace fogline::models {
 
 /// The host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs of a run
 /// in real time, or a request that the driver did not answer in time.
@@ -33,4 +33,4 @@ constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -6,7 +6,7 @@
 
 #include "scenario/sections/whole_steps.h"
 
-namespace fogline {
+namespace fogline::models {
 
 Actuator::Actuator(double delay_s, double lag_s, double step_s) : step_s_(step_s) {
   if (!(delay_s >= 0.0) || !(lag_s >= 0.0) || !(step_s > 0.0)) {
@@ -52,4 +52,4 @@ double Actuator::Demanded(std::size_t steps_ago) const {
   return demands_n_[(last_ + demands_n_.size() - steps_ago) % demands_n_.size()];
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace fogline {
+namespace fogline::models {
 
 /// Pure delay D followed by a first-order lag tau,
 ///
@@ -57,4 +57,4 @@ class Actuator {
   double force_n_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::models {
 
 GradeProfile::GradeProfile(std::vector<GradePoint> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -40,4 +40,4 @@ double GradeProfile::GradeAt(double position_m) const {
   return before.grade + share * (after->grade - before.grade);
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

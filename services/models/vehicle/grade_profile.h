@@ -6,7 +6,7 @@
 
 #include "scenario/sections/vehicle.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// The grade between points is interpolated linearly; before the first and after the last point it
 /// is constant. Without points the road is level. Copies share the points, which never change.
@@ -26,4 +26,4 @@ class GradeProfile {
   std::shared_ptr<const std::vector<GradePoint>> points_;  // none: a level road
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

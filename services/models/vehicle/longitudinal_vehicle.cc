@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 void Require(bool holds, const char* what) {
@@ -132,4 +132,4 @@ double LongitudinalVehicle::MeanAcceleration(double force_n, double mass_kg,
   return (p - q * v * v) * s / ((1.0 + q * v * s) * step_s_);
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -7,7 +7,7 @@
 #include "services/models/vehicle/pedals.h"
 #include "services/models/vehicle/vehicle_parameters.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// Acceleration of free fall in m/s2 (standard value, ISO 80000-3).
 inline constexpr double kGravity_mps2 = 9.80665;
@@ -90,4 +90,4 @@ class LongitudinalVehicle {
   double last_mps2_ = 0;  // result of the last Step()
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fogline {
+namespace fogline::models {
 namespace {
 
 // Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, infinite if there is none; gap > 0. Of
@@ -61,4 +61,4 @@ std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
   return now;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace fogline {
+namespace fogline::models {
 
 /// Position and speed of a car; the speed is never negative.
 struct Motion {
@@ -26,4 +26,4 @@ std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
                                     double ahead_acceleration_mps2, double behind_speed_mps,
                                     double behind_acceleration_mps2, double duration_s);
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -1,7 +1,7 @@
 // Splits a demanded force between two pedals.
 #pragma once
 
-namespace fogline {
+namespace fogline::models {
 
 enum class Pedal { kThrottle, kBrake };
 
@@ -38,4 +38,4 @@ class Pedals {
   Pedal pedal_ = Pedal::kThrottle;
 };
 
-}  // namespace fogline
+}  // namespace fogline::models

@@ -4,7 +4,7 @@
 
 #include "scenario/sections/vehicle.h"
 
-namespace fogline {
+namespace fogline::models {
 
 /// A vehicle on its longitudinal axis. The defaults are the sedan. If no published figure was
 /// available, the source says "estimate": a usual value of our choice.
@@ -119,4 +119,4 @@ constexpr double FrictionOf(Surface surface) {
   return 0.9;
 }
 
-}  // namespace fogline
+}  // namespace fogline::models

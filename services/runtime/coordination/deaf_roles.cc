@@ -7,7 +7,7 @@
 
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // A role that lost its inputs to the network recovers within a second. Twice that is long enough,
@@ -88,4 +88,4 @@ std::optional<Deafness> DeafRoles::Missing(Role role, Duration limit) const {
                   .missed = worst->missed};
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -13,8 +13,10 @@
 #include "services/graph.h"
 
 namespace fogline {
-
 class status_t;
+}  // namespace fogline
+
+namespace fogline::runtime {
 
 struct Deafness {
   std::size_t channel;  // what the role does not hear, a place in kChannels
@@ -67,4 +69,4 @@ class DeafRoles {
   std::array<Speaker, kRoles.size()> speakers_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

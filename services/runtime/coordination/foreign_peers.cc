@@ -8,14 +8,14 @@
 #include "common/text.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // The longest host name (POSIX HOST_NAME_MAX on Linux).
 constexpr std::size_t kMaxHost = 64;
 
 /// A host's name from the network, made safe to print.
-std::string HostName(const std::string& name) { return Printable(name.substr(0, kMaxHost)); }
+std::string PrintableHost(const std::string& name) { return Printable(name.substr(0, kMaxHost)); }
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void ForeignPeers::Hear(const status_t& status) {
   if (std::ranges::find(kRoles, status.role, &RoleInfo::name) == kRoles.end()) return;
   const auto known = std::ranges::find_if(watched_, [&status](const Watched& one) {
     return one.stranger.run_id == status.header.run_id && one.stranger.pid == status.pid &&
-           one.stranger.role == status.role && one.stranger.host == HostName(status.host);
+           one.stranger.role == status.role && one.stranger.host == PrintableHost(status.host);
   });
   if (known != watched_.end()) {
     ++known->heard;
@@ -41,7 +41,7 @@ void ForeignPeers::Hear(const status_t& status) {
   }
   watched_.push_back({.stranger = {.role = status.role,
                                    .pid = status.pid,
-                                   .host = HostName(status.host),
+                                   .host = PrintableHost(status.host),
                                    .run_id = status.header.run_id},
                       .heard = 1});
 }
@@ -66,4 +66,4 @@ std::string ForeignPeers::Text() const {
   return text;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

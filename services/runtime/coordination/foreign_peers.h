@@ -9,7 +9,7 @@
 
 #include "fogline/status_t.hpp"
 
-namespace fogline {
+namespace fogline::runtime {
 
 struct ForeignPeer {
   std::string role;
@@ -51,4 +51,4 @@ class ForeignPeers {
   bool forgotten_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

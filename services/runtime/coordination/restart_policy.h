@@ -7,7 +7,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class RestartPolicy {
  public:
@@ -45,4 +45,4 @@ class RestartPolicy {
   Duration wait_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

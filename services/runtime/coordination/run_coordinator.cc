@@ -11,7 +11,7 @@
 #include "services/runtime/lockstep/node.h"
 #include "services/runtime/lockstep/possible_status.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
@@ -378,4 +378,4 @@ std::string RunCoordinator::Culprit(TimePoint now) const {
   return fmt::format("step {}: every role waits for another", stuck);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

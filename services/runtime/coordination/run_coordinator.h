@@ -24,7 +24,7 @@
 #include "services/runtime/wire/scenario_parts.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 struct RunCoordinatorOptions {
   std::int64_t run_id = 0;
@@ -203,4 +203,4 @@ class RunCoordinator {
   std::vector<std::uint8_t> buffer_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -7,7 +7,7 @@
 
 #include "services/runtime/coordination/run_coordinator.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // A STATUS may take this long on its way. If one arrives later than that, its sender is alive.
@@ -140,4 +140,4 @@ void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now) {
   progressed_ = now;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::runtime {
 
 std::string Text(const std::vector<SendTrouble>& troubles) {
   std::string text;
@@ -22,4 +22,4 @@ std::string Text(const std::vector<SendTrouble>& troubles) {
   return text;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

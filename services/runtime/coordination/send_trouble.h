@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The failed sends of one process.
 struct SendTrouble {
@@ -18,4 +18,4 @@ struct SendTrouble {
 /// "world 3, fusion 12 (Operation not permitted); lidar 1 (Network is unreachable)", "" for none.
 std::string Text(const std::vector<SendTrouble>& troubles);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -11,7 +11,7 @@
 #include "common/clock.h"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class SignsOfLife {
  public:
@@ -60,4 +60,4 @@ class SignsOfLife {
   std::array<Mark, kRoles.size()> since_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

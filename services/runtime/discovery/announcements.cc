@@ -10,7 +10,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/wire/refusals.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // Runner and listener share a clock, but it may be set between two readings.
@@ -103,4 +103,4 @@ std::vector<Announcement> Announcements::Current(TimePoint now) const {
   return current;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -11,7 +11,7 @@
 #include "services/graph.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The channel of beacon_t. It is no part of kGraph: no run has it.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
@@ -74,4 +74,4 @@ class Announcements {
   std::int64_t refused_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

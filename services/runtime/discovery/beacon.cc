@@ -14,7 +14,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 std::int64_t WallMicroseconds() {
@@ -91,4 +91,4 @@ void BeaconListener::Look() {
   if (bus_) bus_->Drain();
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

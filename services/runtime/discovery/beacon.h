@@ -13,7 +13,7 @@
 
 struct _lcm_t;
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The runner's side. It is best effort: if a beacon cannot be sent, the run goes on without it. A
 /// beacon stays on this machine (ttl=0) whatever ttl the meeting address has. It is never signed,
@@ -66,4 +66,4 @@ class BeaconListener {
   LoadShedder gate_{3000};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

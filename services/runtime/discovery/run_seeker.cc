@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 
 std::optional<Announcement> RunSeeker::Look(TimePoint now) {
   pauses_.Attend(now);
@@ -41,4 +41,4 @@ void RunSeeker::GiveUp() {
   if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

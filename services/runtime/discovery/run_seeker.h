@@ -11,7 +11,7 @@
 #include "common/own_pauses.h"
 #include "services/runtime/discovery/beacon.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class RunSeeker {
  public:
@@ -57,4 +57,4 @@ class RunSeeker {
   std::deque<std::int64_t> in_vain_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -9,7 +9,7 @@
 #include "common/clock.h"
 #include "services/runtime/lockstep/node.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The rule of one node, from when the node has joined a run. It has access only to the parts of
 /// the node that the protected functions below give it.
@@ -63,4 +63,4 @@ class FireRule {
   Node& node_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 
 void LeadRule::OnGo(const run_t& run, TimePoint now) {
   gate_.OnGo(run, now);
@@ -25,4 +25,4 @@ TimePoint LeadRule::Poll(TimePoint now) {
   return Running() ? std::min(at, LockstepRule::Poll(now)) : at;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -5,7 +5,7 @@
 #include "services/runtime/lockstep/lockstep_rule.h"
 #include "services/runtime/lockstep/step_gate.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class LeadRule final : public LockstepRule {
  public:
@@ -24,4 +24,4 @@ class LeadRule final : public LockstepRule {
   StepGate& gate_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // The shortest time between two requests of a node that asks because another process asked it.
@@ -108,4 +108,4 @@ StepRange LockstepRule::Lacking(const Input& input, std::int64_t first, std::int
   return {.first = first, .count = count};
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -16,7 +16,7 @@
 #include "services/runtime/lockstep/retry_timer.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class LockstepRule : public FireRule {
  public:
@@ -56,4 +56,4 @@ class LockstepRule : public FireRule {
   RetryTimer patience_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -14,7 +14,7 @@
 #include "services/runtime/lockstep/lockstep_rule.h"
 #include "services/runtime/wire/build_id.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // Every node receives an answer. A node that asks for the same step within this time has the
@@ -401,4 +401,4 @@ bool Node::ComputeNow(std::int64_t step) {
   return true;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -22,7 +22,7 @@
 #include "services/runtime/wire/scenario_parts.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class FireRule;
 
@@ -207,4 +207,4 @@ class Node {
   const bool ends_with_runner_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -6,7 +6,7 @@
 #include "services/runtime/wire/refusals.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // A step takes a second at most (scenario field step_s).
@@ -35,4 +35,4 @@ bool IsPossible(const status_t& status) {
          std::ranges::all_of(status.input_late, Counted);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -4,11 +4,11 @@
 
 #include "fogline/status_t.hpp"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// False if a counter is higher than any process can count, or a step or time is outside any run.
 /// If true for many STATUS messages, sums of their counters and differences of their times do not
 /// overflow.
 bool IsPossible(const status_t& status);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -7,7 +7,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class RateLimiter {
  public:
@@ -39,4 +39,4 @@ class RateLimiter {
   TimePoint filled_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

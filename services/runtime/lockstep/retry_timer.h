@@ -7,7 +7,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class RetryTimer {
  public:
@@ -69,4 +69,4 @@ class RetryTimer {
   Duration step_time_{};  // smoothed
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

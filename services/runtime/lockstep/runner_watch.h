@@ -8,7 +8,7 @@
 #include "common/own_pauses.h"
 #include "fogline/run_t.hpp"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Whether a run has a place for a role that is started elsewhere.
 enum class Seat {
@@ -70,4 +70,4 @@ class RunnerWatch {
   Duration stall_limit_ = kStallLimit;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr Duration kFirstPatience = milliseconds(20);
@@ -80,4 +80,4 @@ TimePoint StepGate::NextPoll(std::int64_t next, TimePoint now) const {
   return at;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

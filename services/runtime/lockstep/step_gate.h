@@ -12,7 +12,7 @@
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/step_ring.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class StepGate {
  public:
@@ -59,4 +59,4 @@ class StepGate {
   Duration patience_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

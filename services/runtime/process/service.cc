@@ -18,7 +18,7 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/traffic_options.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
@@ -292,4 +292,4 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
   }
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

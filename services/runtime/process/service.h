@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Makes the node of a process. Called after the command line has been read.
 using NodeFactory =
@@ -32,4 +32,4 @@ int RunService(int argc, char** argv) {
                     });
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

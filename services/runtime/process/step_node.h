@@ -23,7 +23,7 @@
 #include "services/runtime/realtime/deadline_rule.h"
 #include "services/runtime/realtime/tick_rule.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// @tparam Failsafe the algorithm that replaces Algorithm in real time; void: Algorithm also runs
 ///     in real time
@@ -242,4 +242,4 @@ class StepNode final : public Node {
   std::optional<StepGate> gate_;  // only for the role that begins the steps
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

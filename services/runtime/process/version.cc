@@ -6,11 +6,11 @@
 
 #include "fogline/fingerprint.hpp"
 
-namespace fogline {
+namespace fogline::runtime {
 
 std::string VersionText() {
   return fmt::format("{}, message types {:016x}", FOGLINE_VERSION,
                      static_cast<std::uint64_t>(TypeFingerprint()));
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

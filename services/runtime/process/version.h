@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Version and message types, such as "0.1.0, message types 4fe3a21b90c7d655". `--version` of every
 /// program prints this text. It is the same for programs that work together.
 std::string VersionText();
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // The first channel of the set; kNumChannels if it is empty.
@@ -33,4 +33,4 @@ std::string Text(const Culprit& culprit) {
   return fmt::format("{} ({} lost)", NameOf(culprit.role), kChannels[culprit.channel].name);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -10,7 +10,7 @@
 
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Channels by their place in kChannels.
 using ChannelSet = std::bitset<kNumChannels>;
@@ -35,4 +35,4 @@ std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& rep
 /// "lidar (LIDAR lost)".
 std::string Text(const Culprit& culprit);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

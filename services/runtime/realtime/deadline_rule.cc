@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 
 DeadlineRule::DeadlineRule(Node& node, const Scenario& scenario, double speed)
     : RealtimeRule(node, scenario, speed),
@@ -41,4 +41,4 @@ void DeadlineRule::Decide(std::int64_t step, TimePoint now) {
   ComputeDue(step, inputs()[tick_input()].heard, now);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -8,7 +8,7 @@
 
 #include "services/runtime/realtime/realtime_rule.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class DeadlineRule final : public RealtimeRule {
  public:
@@ -22,4 +22,4 @@ class DeadlineRule final : public RealtimeRule {
   Duration patience_;  // from the tick to the deadline
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::runtime {
 
 // A duration is m 2^e us, rounded down, with m in [64, 128); below 64 us e is 0 and m the duration.
 // Its cell is 64 e + m.
@@ -43,4 +43,4 @@ std::int64_t DurationHistogram::QuantileUs(double q) const {
   return max_us_;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -8,7 +8,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
 /// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
@@ -44,4 +44,4 @@ class DurationHistogram {
   std::int64_t max_us_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -6,7 +6,7 @@
 
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 std::size_t PlaceOf(std::string_view role) {
@@ -115,4 +115,4 @@ std::string FallbackLog::Culprit(const status_t& status) const {
   return culprit ? std::string(NameOf(culprit->role)) : "";
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

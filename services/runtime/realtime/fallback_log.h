@@ -12,7 +12,7 @@
 #include "services/input_state.h"
 #include "services/runtime/realtime/culprit.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// A change in how a role reacts to its inputs, or an input that is lost or there again. (An input
 /// that is only stale is reported if the role reacts to it.)
@@ -72,4 +72,4 @@ class FallbackLog {
   std::int64_t left_out_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 Duration Periods(double periods, Duration period) {
@@ -90,4 +90,4 @@ double InputHealth::RateHz(TimePoint now) const {
   return interval_s > 0 ? 1 / interval_s : 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -10,7 +10,7 @@
 #include "scenario/sections/realtime.h"
 #include "services/input_state.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Age, rate and state of an input that brings one step in every period.
 ///
@@ -75,4 +75,4 @@ class InputHealth {
   std::size_t next_arrival_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -5,7 +5,7 @@
 
 #include "services/runtime/realtime/culprit.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // The steps by which the world may be ahead of the estimate: one because a tick may be early by the
@@ -183,4 +183,4 @@ void RealtimeRule::NameCulprit(TimePoint now) {
   status().waiting_ms = age_ms;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

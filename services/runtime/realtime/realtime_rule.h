@@ -28,7 +28,7 @@
 #include "services/runtime/realtime/run_clock.h"
 #include "services/runtime/realtime/step_horizon.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// How long a step takes on the wall clock.
 /// @pre IsSpeed(speed)
@@ -124,4 +124,4 @@ class RealtimeRule : public FireRule {
   std::string fallback_;  // in the last STATUS
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include "fogline/status_t.hpp"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr double kMedian = 0.5;
@@ -55,4 +55,4 @@ void WriteInput(std::string_view channel, const InputHealth& health, TimePoint n
   status.input_late.push_back(health.late());
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

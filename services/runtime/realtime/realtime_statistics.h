@@ -9,8 +9,10 @@
 #include "services/runtime/realtime/input_health.h"
 
 namespace fogline {
-
 class status_t;
+}  // namespace fogline
+
+namespace fogline::runtime {
 
 /// A tick is the moment at which a step is due: the beginning of a period at the world, the arrival
 /// of an input at another role. Latency goes from sensor to command: from when the world has sent a
@@ -51,4 +53,4 @@ void ClearInputs(status_t& status);
 void WriteInput(std::string_view channel, const InputHealth& health, TimePoint now,
                 status_t& status);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

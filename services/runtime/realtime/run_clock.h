@@ -8,7 +8,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The clock runs with the wall clock while the run goes on. It stands still when the next step is
 /// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
@@ -63,4 +63,4 @@ class RunClock {
   TimePoint limit_;         // the time at which this clock stands still
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -13,7 +13,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class StepHorizon {
  public:
@@ -65,4 +65,4 @@ class StepHorizon {
   TimePoint recent_since_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // How long the recorder may take to write the last steps. It may wait for repairs or be started
@@ -179,4 +179,4 @@ TimePoint TickRule::LookForTruth(TimePoint now) {
   return truth_ ? truth_at_ + kAnswersLast : ask_at_;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

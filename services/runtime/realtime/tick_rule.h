@@ -18,7 +18,7 @@
 #include "services/runtime/lockstep/step_gate.h"
 #include "services/runtime/realtime/realtime_rule.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class TickRule final : public RealtimeRule {
  public:
@@ -77,4 +77,4 @@ class TickRule final : public RealtimeRule {
   bool subscribed_ = false;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

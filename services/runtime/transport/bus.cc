@@ -25,7 +25,7 @@
 #include "services/runtime/transport/tcpq_client.h"
 #include "services/runtime/wire/channel_filter.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 /// Adds options to a udpm URL that does not give them. Larger buffers survive bursts (a default one
@@ -365,4 +365,4 @@ std::string FreshMulticastUrl() {
   return fmt::format("udpm://239.255.76.67:{}?ttl=0", kFirstPort + randombytes_uniform(kPorts));
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -24,11 +24,11 @@
 struct _lcm_t;
 struct _lcm_recv_buf_t;
 
-namespace fogline {
-
-namespace tcpq {
+namespace fogline::runtime::tcpq {
 class Client;
 }
+
+namespace fogline::runtime {
 
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the
 /// subscribers of the same object.
@@ -175,4 +175,4 @@ struct Bus::Topic {
 /// share one.
 std::string FreshMulticastUrl();
 
-}  // namespace fogline
+}  // namespace fogline::runtime

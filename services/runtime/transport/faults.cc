@@ -10,7 +10,7 @@
 #include "common/errors.h"
 #include "common/random.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 /// The delay of a message that is overtaken: a few steps of a run over udpm.
@@ -128,4 +128,4 @@ TimePoint Faults::NextDue() const {
   return waiting_.empty() ? TimePoint::max() : waiting_.begin()->first;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -15,7 +15,7 @@
 #include "services/graph.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// How bad the network is: the probability of each fault for each message, independently.
 struct FaultRates {
@@ -61,4 +61,4 @@ class Faults {
   std::multimap<TimePoint, Message> waiting_;  // by the time when they are due
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -19,7 +19,7 @@
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/wire/channel_filter.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 thread_local LcmSockets* in_charge = nullptr;
@@ -125,21 +125,23 @@ void GroupMembership::Renew() {
   trouble_ = std::move(trouble);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime
 
 // These functions replace the C library's, in LCM's code too. So a filter is attached before
 // bind(), and no datagram arrives before it.
 extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
-  return fogline::in_charge != nullptr ? fogline::in_charge->OnBind(socket, address, size)
-                                       : fogline::Bind(socket, address, size);
+  return fogline::runtime::in_charge != nullptr
+             ? fogline::runtime::in_charge->OnBind(socket, address, size)
+             : fogline::runtime::Bind(socket, address, size);
 }
 extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
-  return fogline::in_charge != nullptr ? fogline::in_charge->OnConnect(socket, address, size)
-                                       : fogline::Connect(socket, address, size);
+  return fogline::runtime::in_charge != nullptr
+             ? fogline::runtime::in_charge->OnConnect(socket, address, size)
+             : fogline::runtime::Connect(socket, address, size);
 }
 extern "C" int setsockopt(int socket, int level, int name, const void* value,
                           socklen_t size) noexcept {
-  return fogline::in_charge != nullptr
-             ? fogline::in_charge->OnOption(socket, level, name, value, size)
-             : fogline::SetOption(socket, level, name, value, size);
+  return fogline::runtime::in_charge != nullptr
+             ? fogline::runtime::in_charge->OnOption(socket, level, name, value, size)
+             : fogline::runtime::SetOption(socket, level, name, value, size);
 }

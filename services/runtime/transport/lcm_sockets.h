@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// While an object lives, it controls every UDP socket that LCM opens in its thread. A thread may
 /// have one object at a time.
@@ -73,4 +73,4 @@ class GroupMembership {
   std::string trouble_;  // as said last
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -13,7 +13,7 @@
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_url.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr std::string_view kUdpm = "udpm://";
@@ -150,4 +150,4 @@ bool MayBeAnnounced(std::string_view url) {
   return address && IsMulticast(address->group) && address->port != 0 && address->ttl <= 1;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

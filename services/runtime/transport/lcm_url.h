@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// LCM's own default address, for traffic that stays on this machine.
 inline constexpr std::string_view kLcmDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
@@ -48,4 +48,4 @@ bool SameNetwork(std::string_view a, std::string_view b);
 /// messages that reach LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

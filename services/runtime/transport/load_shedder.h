@@ -8,7 +8,7 @@
 
 #include "common/clock.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 class LoadShedder {
  public:
@@ -44,4 +44,4 @@ class LoadShedder {
   TimePoint since_{};
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -15,7 +15,7 @@
 #include "common/file.h"
 #include "services/runtime/transport/lcm_sockets.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr std::string_view kDefaultGroup = "239.255.76.67";
@@ -142,4 +142,4 @@ std::string WhyNoMulticast(std::string_view url) {
       *group, kLoopbackRoute);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

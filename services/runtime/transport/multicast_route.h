@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Lets LCM work on a machine without a network. Needs root.
 inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev lo";
@@ -37,4 +37,4 @@ bool HasGroup(std::string_view table, std::string_view interface, const std::str
 /// Why a udpm:// URL cannot be opened, and what to do about it; "" if no reason is known.
 std::string WhyNoMulticast(std::string_view url);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

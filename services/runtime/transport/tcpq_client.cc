@@ -18,7 +18,7 @@
 #include "common/file.h"
 #include "common/process/poll.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 namespace {
 
 // How long a relay may take to answer, and how long it may accept no byte.
@@ -267,4 +267,4 @@ bool Client::ConnectAgain(Duration timeout) {
   return true;
 }
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

@@ -18,7 +18,7 @@
 #include "services/runtime/wire/tcpq_frame.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 
 /// The relay has ended or stopped working, and does not come back.
 class ConnectionLost : public std::runtime_error {
@@ -114,4 +114,4 @@ class Client {
   TimePoint try_at_{};
 };
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

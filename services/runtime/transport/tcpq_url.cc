@@ -10,7 +10,7 @@
 
 #include "common/errors.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 namespace {
 
 constexpr std::string_view kScheme = "tcpq://";
@@ -62,4 +62,4 @@ Endpoint ResolveUrl(std::string_view url) {
   return endpoint;
 }
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

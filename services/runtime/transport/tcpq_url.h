@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 
 inline constexpr std::uint16_t kDefaultPort = 7700;  // LCM's
 
@@ -28,4 +28,4 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 /// The same after "tcpq://".
 Endpoint ResolveUrl(std::string_view url);
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

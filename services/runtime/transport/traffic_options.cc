@@ -7,7 +7,7 @@
 
 #include "common/errors.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::vector<std::string> ToArguments(const TrafficOptions& options) {
   return arguments;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -12,7 +12,7 @@ namespace CLI {
 class App;
 }
 
-namespace fogline {
+namespace fogline::runtime {
 
 struct TrafficOptions {
   std::string key_file;  // "": unsigned
@@ -34,4 +34,4 @@ void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus);
 /// The options as arguments for another process.
 std::vector<std::string> ToArguments(const TrafficOptions& options);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

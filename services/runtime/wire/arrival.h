@@ -6,7 +6,7 @@
 #include "common/clock.h"
 #include "services/runtime/wire/refusals.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The bytes of a message and the decoded message. The bytes are decoded and checked when the first
 /// reader asks, and only once for all readers. One object serves all messages of a channel, so only
@@ -66,4 +66,4 @@ class Arrival {
   bool examined_ = false;  // whether reading_ belongs to bytes_
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

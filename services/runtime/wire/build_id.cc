@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // Linkers put the program headers behind the file's header, and the notes behind the program
@@ -90,4 +90,4 @@ std::string BuildText(BuildId build) {
                                 : fmt::format("{:016x}", static_cast<std::uint64_t>(build));
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -10,7 +10,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The first 8 bytes of a program's GNU build id.
 using BuildId = std::int64_t;
@@ -28,4 +28,4 @@ BuildId OwnBuildId();
 /// 16 hexadecimal digits, or "unknown".
 std::string BuildText(BuildId build);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

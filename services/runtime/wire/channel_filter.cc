@@ -15,7 +15,7 @@
 
 #include "services/runtime/wire/message_signer.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 // A filter of a UDP socket sees the datagram from the UDP header on.
@@ -151,4 +151,4 @@ bool AttachFilter(int socket, std::vector<sock_filter> program) {
   return setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) == 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

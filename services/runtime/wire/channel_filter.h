@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Which messages of a channel are wanted: those whose data has one of `texts` at `offset`.
 struct Contents {
@@ -49,4 +49,4 @@ std::vector<sock_filter> AnyChannelFilter();
 /// @throws std::logic_error if the program is longer than the kernel allows (BPF_MAXINSNS)
 [[nodiscard]] bool AttachFilter(int socket, std::vector<sock_filter> program);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr std::size_t kHashBytes = 32;
@@ -46,4 +46,4 @@ std::string HashOf(std::string_view text) {
   return ToHex(hash);
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

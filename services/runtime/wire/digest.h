@@ -7,7 +7,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// BLAKE2b-256 of bytes that come in pieces.
 class Hash {
@@ -46,4 +46,4 @@ class Digest {
 /// BLAKE2b-256 of a text, 64 hexadecimal digits.
 std::string HashOf(std::string_view text);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

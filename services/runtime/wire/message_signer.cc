@@ -16,7 +16,7 @@
 #include "common/file.h"
 #include "common/text.h"
 
-namespace fogline {
+namespace fogline::runtime {
 namespace {
 
 constexpr std::size_t kKeyIdOffset = kSignatureMagic.size();
@@ -224,4 +224,4 @@ MessageSigner::Opened MessageSigner::Open(std::string_view channel, Bytes messag
   return good ? Opened{Verdict::kGood, payload} : Opened{Verdict::kBadlySigned, {}};
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

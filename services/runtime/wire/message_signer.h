@@ -22,7 +22,7 @@
 #include "services/graph.h"
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// 32 secret bytes. A key file has them as 64 hexadecimal digits, and a line end or none.
 class SigningKey {
@@ -98,4 +98,4 @@ class MessageSigner {
   std::vector<std::uint8_t> message_;  // the last signed message
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace fogline {
+namespace fogline::runtime {
 
 std::string OtherBuild::Text() const {
   const std::string process = fmt::format("{} (pid {} on {})", NameOf(role), pid, host);
@@ -25,4 +25,4 @@ std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const 
                     .ours = expected};
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

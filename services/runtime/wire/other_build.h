@@ -11,7 +11,7 @@
 #include "services/graph.h"
 #include "services/runtime/wire/build_id.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// The build of each role's program in the runner's folder, by place in kRoles.
 using RoleBuilds = std::array<BuildId, kRoles.size()>;
@@ -33,4 +33,4 @@ struct OtherBuild {
 /// are equal.
 std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const RoleBuilds& ours);
 
-}  // namespace fogline
+}  // namespace fogline::runtime

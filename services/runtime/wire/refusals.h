@@ -8,7 +8,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 struct RefusalKind {
   std::string_view key;  // in JSON and in status_t
@@ -42,4 +42,4 @@ template <class M>
 /// How many messages of each kind were refused, in the order of kRefusals.
 using Refusals = std::array<std::int64_t, kRefusals.size()>;
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -9,7 +9,7 @@
 
 #include "services/runtime/wire/digest.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for its other
 /// fields.
@@ -104,4 +104,4 @@ class ScenarioParts {
   std::string hash_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -8,7 +8,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 /// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder.
 /// So a step that a role may still ask for is in the ring of its producer, or it is older than
@@ -80,4 +80,4 @@ class StepRing {
   std::int64_t newest_ = -1;
 };
 
-}  // namespace fogline
+}  // namespace fogline::runtime

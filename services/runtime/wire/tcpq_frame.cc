@@ -6,7 +6,7 @@
 
 #include "common/text.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 namespace {
 
 constexpr std::size_t kWord = 4;
@@ -112,4 +112,4 @@ void AppendFrame(FrameType type, std::string_view name, Bytes payload,
   out.insert(out.end(), payload.begin(), payload.end());
 }
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

@@ -18,7 +18,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 
 inline constexpr std::uint32_t kRelayMagic = 0x287617fa;
 inline constexpr std::uint32_t kClientMagic = 0x287617fb;
@@ -79,4 +79,4 @@ void AppendHello(std::uint32_t magic, std::vector<std::uint8_t>& out);
 void AppendFrame(FrameType type, std::string_view name, Bytes payload,
                  std::vector<std::uint8_t>& out);
 
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

@@ -17,7 +17,7 @@
 #include "fogline/fingerprint.hpp"
 #include "services/graph.h"
 
-namespace fogline {
+namespace fogline::runtime {
 
 using Bytes = std::span<const std::uint8_t>;
 
@@ -94,4 +94,4 @@ std::string_view FirstNonFiniteField(const M& message) {
   return found;
 }
 
-}  // namespace fogline
+}  // namespace fogline::runtime

@@ -47,11 +47,11 @@ std::map<std::string, int> Column(const std::string& csv, const std::string& nam
 }
 
 TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
-  ASSERT_TRUE(FindPolicy("cautious"));
+  ASSERT_TRUE(policies::FindPolicy("cautious"));
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"cautious\""));
   const study::StudyResult result = Make("policy");
   const std::map<std::string, int> variants = Column(result.files[0].content, "variant");
-  EXPECT_EQ(variants.size(), Policies().size());
+  EXPECT_EQ(variants.size(), policies::Policies().size());
   ASSERT_TRUE(variants.contains("cautious"));
   EXPECT_EQ(variants.at("cautious"), variants.at("traded")) << "in every case, by every measure";
   for (const std::string& finding : result.section.findings) {
@@ -64,11 +64,11 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
 }
 
 TEST(ExtensionTest, AnotherMeasureOfTheTableIsInTheScenarioAndInTheConflictStudy) {
-  ASSERT_NE(FindConflictMeasure("relative"), nullptr);
+  ASSERT_NE(conflict::FindConflictMeasure("relative"), nullptr);
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"relative\""));
   const study::StudyResult result = Make("conflict");
   const std::map<std::string, int> measures = Column(result.files[0].content, "measure");
-  EXPECT_EQ(measures.size(), ConflictMeasures().size());
+  EXPECT_EQ(measures.size(), conflict::ConflictMeasures().size());
   ASSERT_TRUE(measures.contains("relative"));
   EXPECT_EQ(measures.at("relative"), measures.at("doc")) << "in every condition";
 }

@@ -20,4 +20,4 @@ class MyDriver {
   fogline::driver_command_t out_{};
 };
 
-int main(int argc, char** argv) { return fogline::RunService<MyDriver>(argc, argv); }
+int main(int argc, char** argv) { return fogline::runtime::RunService<MyDriver>(argc, argv); }

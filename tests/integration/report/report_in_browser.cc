@@ -102,7 +102,8 @@ TEST_F(ReportInBrowserTest, DrawsTwentyFourRunsInDifferentLines) {
   const std::vector<report::ReportRun> runs(24, ExampleRun({.threshold = 0.5, .steps = 20}));
   std::vector<report::ReportRun> different = runs;
   for (std::size_t i = 0; i < different.size(); ++i) {
-    for (Sample& sample : different[i].samples) sample.host_speed_mps += static_cast<double>(i);
+    for (metrics::Sample& sample : different[i].samples)
+      sample.host_speed_mps += static_cast<double>(i);
   }
   const json found = Show(different, kDesktop, R"(
     click("[value=overlaid]");
@@ -288,7 +289,7 @@ TEST_F(ReportInBrowserTest, TakesTextOfARunForTextOnly) {
 TEST_F(ReportInBrowserTest, ComparesRunsOfDifferentLengthAndStep) {
   std::vector<report::ReportRun> runs = ExampleRuns(100);
   runs[0].samples.resize(40);
-  for (Sample& sample : runs[1].samples) sample.time_s *= 2.5;
+  for (metrics::Sample& sample : runs[1].samples) sample.time_s *= 2.5;
   const json found = Show(runs, kDesktop, R"(
     setTime(15.0);
     await settled();
@@ -307,7 +308,7 @@ TEST_F(ReportInBrowserTest, ShowsRunsWithoutFollowerOrStepsWithoutAnError) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<report::ReportRun> runs = ExampleRuns(60);
   runs[0].samples.clear();
-  for (Sample& sample : runs[1].samples) {
+  for (metrics::Sample& sample : runs[1].samples) {
     sample.follower_gap_m = sample.follower_safe_distance_m = sample.follower_speed_mps = kNone;
   }
   runs.resize(2);

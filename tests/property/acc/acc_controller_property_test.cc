@@ -11,16 +11,17 @@
 namespace fogline {
 namespace {
 
-using Solver = AccController::Solver;
+using Solver = acc::AccController::Solver;
 
 constexpr double kTolerance = 1e-9;
 
 // From calm to hopeless situations. The speed is logarithmic, so slow cars are as frequent as fast
 // ones.
-AccController::Input RandomInput(Draw& draw, const AccSection& section) {
+acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
   const double scale = draw.LogUniform(0.01, 1);
   const double speed = draw.LogUniform(0.5, 55);
-  return {.distance_m = std::max(0.0, SafeDistance(section, speed) + scale * draw.Uniform(-60, 60)),
+  return {.distance_m =
+              std::max(0.0, acc::SafeDistance(section, speed) + scale * draw.Uniform(-60, 60)),
           .relative_speed_mps = scale * draw.Uniform(-20, 20),
           .speed_mps = speed,
           .acceleration_mps2 = scale * draw.Uniform(-9, 6),
@@ -44,9 +45,9 @@ void ForRandomSituations(std::int64_t seed, Check&& check) {
     const double step_s = RandomStep(draw);
     for (int k = 0; k < 5; ++k) {
       SCOPED_TRACE(testing::Message() << "section " << i << " situation " << k);
-      AccController acc(section, step_s);
-      const AccController::Input input = RandomInput(draw, section);
-      const AccController::Output output = acc.Step(input);
+      acc::AccController acc(section, step_s);
+      const acc::AccController::Input input = RandomInput(draw, section);
+      const acc::AccController::Output output = acc.Step(input);
       check(section, step_s, input, acc, output);
       if (testing::Test::HasFailure()) return;
     }
@@ -65,7 +66,7 @@ TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
 
 TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
   ForRandomSituations(2, [](const AccSection& section, double step_s, const auto& input,
-                            const AccController& acc, const auto& output) {
+                            const acc::AccController& acc, const auto& output) {
     const double change = section.max_jerk_mps3 * step_s / section.engine_gain;
     double previous = PreviousControl(section, input.acceleration_mps2);
     for (const double u : acc.plan()) {
@@ -80,8 +81,8 @@ TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
 
 // The highest speed that the car reaches or would settle at during the fall-back plan.
 double HighestInFallback(const AccSection& section, double step_s,
-                         const AccController::Input& input) {
-  const AccProgram program(section, step_s);
+                         const acc::AccController::Input& input) {
+  const acc::AccProgram program(section, step_s);
   double settled = input.speed_mps + section.engine_time_constant_s * input.acceleration_mps2;
   double highest = std::max(input.speed_mps, settled);
   double control = PreviousControl(section, input.acceleration_mps2);
@@ -98,7 +99,7 @@ double HighestInFallback(const AccSection& section, double step_s,
 TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
   int close = 0;
   ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,
-                             const AccController& acc, const auto&) {
+                             const acc::AccController& acc, const auto&) {
     if (HighestInFallback(section, step_s, input) > section.max_speed_mps) return;
     const double tau = section.engine_time_constant_s;
     double speed = input.speed_mps;
@@ -120,8 +121,8 @@ TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
 TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
   int faster = 0;
   ForRandomSituations(4, [&](const AccSection& section, double step_s, const auto& input,
-                             const AccController& acc, const auto&) {
-    const AccProgram program(section, step_s);
+                             const acc::AccController& acc, const auto&) {
+    const acc::AccProgram program(section, step_s);
     double settled = input.speed_mps + section.engine_time_constant_s * input.acceleration_mps2;
     if (settled <= section.max_speed_mps) return;
     ++faster;
@@ -141,16 +142,16 @@ TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
 TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
   int close = 0;
   ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
-                             const AccController& acc, const auto& output) {
+                             const acc::AccController& acc, const auto& output) {
     if (output.solver != Solver::kUnconstrained) return;
-    const DiscreteAccModel model = Discretise(MakeAccModel(section), step_s);
+    const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), step_s);
     const double preceding = input.speed_mps + input.relative_speed_mps;
-    Eigen::Vector3d x(input.distance_m - SafeDistance(section, input.speed_mps),
+    Eigen::Vector3d x(input.distance_m - acc::SafeDistance(section, input.speed_mps),
                       input.relative_speed_mps, input.acceleration_mps2);
     for (const double u : acc.plan()) {
       x = model.phi * x + model.gamma * u;
       const double speed = preceding - x(kDeltaV);
-      const double gap = x(kDeltaD) + SafeDistance(section, speed);
+      const double gap = x(kDeltaD) + acc::SafeDistance(section, speed);
       EXPECT_GE(gap, section.min_gap_m - kTolerance);
       EXPECT_GE(speed + section.engine_time_constant_s * x(kOwnAcceleration), -kTolerance);
       if (gap < section.min_gap_m + 1) ++close;
@@ -177,14 +178,15 @@ TEST(AccControllerPropertyTest, NeverHitsALeaderThatBrakesNoHarderThanItself) {
   const AccSection section;
   for (int i = 0; i < 50; ++i) {
     const double speed = draw.Uniform(5, 35);
-    TwoCars cars{
-        .gap_m = SafeDistance(section, speed), .preceding_speed_mps = speed, .speed_mps = speed};
-    AccController acc(section, cars.step_s);
+    TwoCars cars{.gap_m = acc::SafeDistance(section, speed),
+                 .preceding_speed_mps = speed,
+                 .speed_mps = speed};
+    acc::AccController acc(section, cars.step_s);
     double acceleration = 0;
     for (int k = 0; k < 600; ++k) {
       if (draw.Chance(0.03)) acceleration = draw.Uniform(section.min_acceleration_mps2, 2);
       if (cars.preceding_speed_mps > 38) acceleration = std::min(acceleration, 0.0);
-      const AccController::Output output = acc.Step(cars.Sense());
+      const acc::AccController::Output output = acc.Step(cars.Sense());
       ASSERT_NE(output.solver, Solver::kFallback) << i << " " << k;
       cars.Advance(output.acceleration_mps2, acceleration);
       ASSERT_GT(cars.gap_m, 0) << "run " << i << " step " << k;

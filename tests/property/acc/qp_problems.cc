@@ -31,17 +31,18 @@ void Write(const QuadraticProgram& program, const Eigen::VectorXd& x) {
 
 // Writes a program and its solution if the solution has active limits. @return whether it was
 // written
-bool SolveAndWrite(QpSolver& solver, const QuadraticProgram& program) {
-  const QpSolver::Result result = solver.Solve(program.linear, program.lower, program.upper);
+bool SolveAndWrite(acc::QpSolver& solver, const QuadraticProgram& program) {
+  const acc::QpSolver::Result result = solver.Solve(program.linear, program.lower, program.upper);
   // It also writes an unsolved program, so that the comparison fails.
-  if (result.status == QpSolver::Status::kOptimal && solver.multipliers().isZero(0)) return false;
+  if (result.status == acc::QpSolver::Status::kOptimal && solver.multipliers().isZero(0))
+    return false;
   Write(program, solver.solution());
   return true;
 }
 
 // Whether the set of feasible plans has an interior, which an interior-point method needs. A car
 // that is too fast has none: it must brake along one line until it is slow enough.
-bool HasInterior(const AccSection& section, const AccSituation& now) {
+bool HasInterior(const AccSection& section, const acc::AccSituation& now) {
   return now.speed_mps + section.engine_time_constant_s * now.state(kOwnAcceleration) <
          section.max_speed_mps;
 }
@@ -50,15 +51,15 @@ void WritePrograms() {
   Draw draw(kSeed);
   for (int written = 0; written < kProblemsOfEachKind;) {
     const QuadraticProgram program = RandomProgram(draw);
-    QpSolver solver(program.hessian, program.constraints, {});
+    acc::QpSolver solver(program.hessian, program.constraints, {});
     if (SolveAndWrite(solver, program)) ++written;
   }
   for (int written = 0; written < kProblemsOfEachKind;) {
     const AccSection section = RandomSection(draw);
-    const AccProgram acc(section, RandomStep(draw));
-    QpSolver solver(acc.hessian(), acc.constraints(), {});
+    const acc::AccProgram acc(section, RandomStep(draw));
+    acc::QpSolver solver(acc.hessian(), acc.constraints(), {});
     for (int k = 0; k < 10 && written < kProblemsOfEachKind; ++k) {
-      const AccSituation now = RandomSituation(draw, acc);
+      const acc::AccSituation now = RandomSituation(draw, acc);
       if (HasInterior(section, now) && SolveAndWrite(solver, ProgramOf(acc, now))) ++written;
     }
   }

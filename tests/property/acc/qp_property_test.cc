@@ -12,15 +12,15 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using Status = QpSolver::Status;
+using Status = acc::QpSolver::Status;
 
-constexpr QpSolver::Options kOptions{.max_iterations = 10'000};
+constexpr acc::QpSolver::Options kOptions{.max_iterations = 10'000};
 
 double Largest(const VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; }
 
 // Expects the conditions of Karush, Kuhn & Tucker. They are necessary and sufficient for the only
 // minimum of a strictly convex program. @return the number of active limits
-int ExpectMinimum(const QuadraticProgram& program, const QpSolver& solver) {
+int ExpectMinimum(const QuadraticProgram& program, const acc::QpSolver& solver) {
   const VectorXd& x = solver.solution();
   const VectorXd& y = solver.multipliers();
   const VectorXd slope = program.hessian * x + program.linear;
@@ -50,7 +50,7 @@ TEST(QpPropertyTest, RandomProgramsAreSolvedToTheirMinimum) {
   for (int i = 0; i < 2000; ++i) {
     SCOPED_TRACE(i);
     const QuadraticProgram program = RandomProgram(draw);
-    QpSolver solver(program.hessian, program.constraints, kOptions);
+    acc::QpSolver solver(program.hessian, program.constraints, kOptions);
     ASSERT_EQ(solver.Solve(program.linear, program.lower, program.upper).status, Status::kOptimal);
     if (ExpectMinimum(program, solver) > 0) ++with_active_limits;
     if (HasFailure()) return;
@@ -63,8 +63,8 @@ TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
   Draw draw(2);
   int with_active_limits = 0;
   for (int i = 0; i < 100; ++i) {
-    const AccProgram acc(RandomSection(draw), RandomStep(draw));
-    QpSolver solver(acc.hessian(), acc.constraints(), kOptions);
+    const acc::AccProgram acc(RandomSection(draw), RandomStep(draw));
+    acc::QpSolver solver(acc.hessian(), acc.constraints(), kOptions);
     for (int k = 0; k < 20; ++k) {
       SCOPED_TRACE(testing::Message() << "section " << i << " situation " << k);
       const QuadraticProgram program = ProgramOf(acc, RandomSituation(draw, acc));
@@ -80,11 +80,11 @@ TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
 TEST(QpPropertyTest, TheMinimumDoesNotDependOnTheStart) {
   Draw draw(3);
   for (int i = 0; i < 100; ++i) {
-    const AccProgram acc(RandomSection(draw), RandomStep(draw));
-    QpSolver warm(acc.hessian(), acc.constraints(), kOptions);
+    const acc::AccProgram acc(RandomSection(draw), RandomStep(draw));
+    acc::QpSolver warm(acc.hessian(), acc.constraints(), kOptions);
     for (int k = 0; k < 5; ++k) {
       const QuadraticProgram program = ProgramOf(acc, RandomSituation(draw, acc));
-      QpSolver cold(acc.hessian(), acc.constraints(), kOptions);
+      acc::QpSolver cold(acc.hessian(), acc.constraints(), kOptions);
       warm.Solve(program.linear, program.lower, program.upper);
       cold.Solve(program.linear, program.lower, program.upper);
       EXPECT_LE(Largest(warm.solution() - cold.solution()), 1e-8 * (1 + Largest(cold.solution())))
@@ -117,7 +117,7 @@ TEST(QpPropertyTest, ContradictionsAreFound) {
         program.upper(row) + weight * program.upper(other) + draw.LogUniform(1e-6, 1);
     program.upper(m) = std::numeric_limits<double>::infinity();
     // THEN there is no solution
-    QpSolver solver(program.hessian, program.constraints, kOptions);
+    acc::QpSolver solver(program.hessian, program.constraints, kOptions);
     EXPECT_EQ(solver.Solve(program.linear, program.lower, program.upper).status,
               Status::kInfeasible)
         << i;

@@ -85,8 +85,8 @@ inline AccSection RandomSection(Draw& draw) {
 inline double RandomStep(Draw& draw) { return draw.LogUniform(0.02, 0.5); }
 
 /// From calm to hopeless situations. The speed may be above the section's maximum.
-inline AccSituation RandomSituation(Draw& draw, const AccProgram& program) {
-  AccSituation now;
+inline acc::AccSituation RandomSituation(Draw& draw, const acc::AccProgram& program) {
+  acc::AccSituation now;
   const double scale = draw.LogUniform(0.01, 1);
   now.state = {scale * draw.Uniform(-50, 50), scale * draw.Uniform(-15, 15),
                scale * draw.Uniform(-8, 5)};
@@ -95,7 +95,7 @@ inline AccSituation RandomSituation(Draw& draw, const AccProgram& program) {
   return now;
 }
 
-inline QuadraticProgram ProgramOf(const AccProgram& program, const AccSituation& now) {
+inline QuadraticProgram ProgramOf(const acc::AccProgram& program, const acc::AccSituation& now) {
   const Eigen::Vector4d parameters(now.state(0), now.state(1), now.state(2), now.previous_control);
   const Eigen::Index rows = program.constraints().rows();
   QuadraticProgram result{.hessian = program.hessian(),

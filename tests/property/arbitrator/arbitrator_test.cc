@@ -25,14 +25,14 @@ std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
 TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCentre) {
   for (const double slope : {0.5, 10.0, 40.0}) {
     for (double z = 0; z < 2; z += 0.01) {
-      const double doc = DegreeOfConflict(z, slope, 1);
+      const double doc = conflict::DegreeOfConflict(z, slope, 1);
       EXPECT_GE(doc, 0);
       EXPECT_LE(doc, 1);
       // DoC grows strictly, as long as it is not within rounding of 1.
       if (doc < 1 - 1e-12) {
-        EXPECT_LT(doc, DegreeOfConflict(z + 0.01, slope, 1));
+        EXPECT_LT(doc, conflict::DegreeOfConflict(z + 0.01, slope, 1));
       }
-      EXPECT_NEAR(doc + DegreeOfConflict(2 - z, slope, 1), 1, 1e-13);
+      EXPECT_NEAR(doc + conflict::DegreeOfConflict(2 - z, slope, 1), 1, 1e-13);
     }
   }
 }
@@ -40,7 +40,7 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
 // A simple window with deque and loops must agree exactly: no drift, and no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
-    ConflictWindow window(length);
+    conflict::ConflictWindow window(length);
     std::deque<std::optional<double>> last;
     const Random random(static_cast<std::int64_t>(length), Stream::kLidar);
     for (int k = 0; k < 2000; ++k) {
@@ -66,8 +66,8 @@ TEST(ConflictWindowPropertyTest, ConflictDependsOnTheWindowAloneToTheLastBit) {
   constexpr int kLength = 8;
   const Random random(1, Stream::kLidar);
   for (int history = 0; history < 3 * kLength; ++history) {
-    ConflictWindow young(kLength);
-    ConflictWindow old(kLength);
+    conflict::ConflictWindow young(kLength);
+    conflict::ConflictWindow old(kLength);
     for (int k = 0; k < history; ++k) old.Push(1e9 * random.Normal2(k, 5)[0]);
     for (int k = 0; k < kLength; ++k) {
       young.Push(AnyDifference(random, k));
@@ -79,7 +79,7 @@ TEST(ConflictWindowPropertyTest, ConflictDependsOnTheWindowAloneToTheLastBit) {
 }
 
 TEST(ConflictWindowPropertyTest, MeanOfAbsoluteIsNeverBelowTheOtherReading) {
-  ConflictWindow window(6);
+  conflict::ConflictWindow window(6);
   const Random random(2, Stream::kLidar);
   for (int k = 0; k < 2000; ++k) {
     window.Push(AnyDifference(random, k));
@@ -96,7 +96,7 @@ TEST(ArbitratorPropertyTest, PassesOneOfTheTwoOffersOnAsTheThresholdSays) {
       Scenario scenario;
       scenario.arbitrator.threshold = threshold;
       scenario.arbitrator.missing_lidar = missing;
-      Arbitrator arbitrator(scenario);
+      arbitrator::Arbitrator arbitrator(scenario);
       const Random random(3, Stream::kLidar);
       for (int k = 0; k < 500; ++k) {
         ego_t ego{};
@@ -131,7 +131,7 @@ TEST(ArbitratorPropertyTest, ConstantConflictCrossesTheThresholdAtItsInverse) {
     for (const double side : {-1.0, 1.0}) {
       Scenario scenario;
       scenario.arbitrator.threshold = threshold;
-      Arbitrator arbitrator(scenario);
+      arbitrator::Arbitrator arbitrator(scenario);
       radar_t radar{};
       lidar_t lidar{};
       radar.valid = lidar.valid = 1;

@@ -42,8 +42,8 @@ TEST(FailsafePropertyTest, IsTheArbitratorBitByBitWhileAllInputsAreThere) {
   for (const auto missing : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
     Scenario scenario;
     scenario.arbitrator.missing_lidar = missing;
-    Arbitrator regular(scenario);
-    FailsafeArbitrator failsafe(scenario);
+    arbitrator::Arbitrator regular(scenario);
+    arbitrator::FailsafeArbitrator failsafe(scenario);
     const Random random(1, Stream::kRadar);
     Messages m;
     for (std::int64_t k = 0; k < 2000; ++k) {
@@ -66,7 +66,7 @@ TEST(FailsafePropertyTest, IsTheArbitratorBitByBitWhileAllInputsAreThere) {
       ASSERT_EQ(a.conflict_m, b.conflict_m);
       ASSERT_EQ(a.threshold, b.threshold);
       ASSERT_EQ(a.mode, b.mode);
-      ASSERT_EQ(failsafe.decision(), Decision::kRegular);
+      ASSERT_EQ(failsafe.decision(), arbitrator::Decision::kRegular);
     }
   }
 }
@@ -102,7 +102,7 @@ struct Previous {
 };
 
 // Checks the rules that every command must obey.
-void Check(const arbitration_t& out, const ArbitratorInputs& inputs, const ego_t& ego,
+void Check(const arbitration_t& out, const arbitrator::ArbitratorInputs& inputs, const ego_t& ego,
            const MinimalRiskSection& limits, double step_s, const Previous& previous) {
   ASSERT_TRUE(std::isfinite(out.acceleration_mps2));
   if (previous.mode == arbitration_t::MINIMAL_RISK) {
@@ -129,11 +129,11 @@ void Check(const arbitration_t& out, const ArbitratorInputs& inputs, const ego_t
 }
 
 TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
-  std::map<Decision, int> taken;
+  std::map<arbitrator::Decision, int> taken;
   for (std::int64_t run = 0; run < 300; ++run) {
     Scenario scenario;
     const Random random(run, Stream::kLidar);
-    FailsafeArbitrator arbitrator(scenario);
+    arbitrator::FailsafeArbitrator arbitrator(scenario);
     Flickering<radar_t> radar(random, 10);
     Flickering<lidar_t> lidar(random, 11);
     Flickering<track_t> track(random, 12);
@@ -144,14 +144,15 @@ TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
     Previous previous;
     for (std::int64_t k = 0; k < 400; ++k) {
       Refresh(m, random, {.run_id = 1, .step = k, .utime = k * 100'000});
-      const ArbitratorInputs inputs{{InputState::kOk, &m.ego},      radar.At(k, m.radar),
-                                    lidar.At(k, m.lidar),           track.At(k, m.track),
-                                    automation.At(k, m.automation), driver.At(k, m.driver)};
+      const arbitrator::ArbitratorInputs inputs{
+          {InputState::kOk, &m.ego}, radar.At(k, m.radar),           lidar.At(k, m.lidar),
+          track.At(k, m.track),      automation.At(k, m.automation), driver.At(k, m.driver)};
       const arbitration_t& out = arbitrator.Step(m.ego.header, inputs);
       ASSERT_NO_FATAL_FAILURE(
           Check(out, inputs, m.ego, scenario.minimal_risk, scenario.step_s, previous))
           << "run " << run << " step " << k;
-      const Motion next = Advance({0, m.ego.speed_mps}, out.acceleration_mps2, scenario.step_s);
+      const models::Motion next =
+          models::Advance({0, m.ego.speed_mps}, out.acceleration_mps2, scenario.step_s);
       m.ego.speed_mps = next.speed_mps;
       m.ego.acceleration_mps2 = out.acceleration_mps2;
       previous = {out.acceleration_mps2, out.mode};
@@ -159,8 +160,10 @@ TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
     }
   }
   // Every decision must be frequent, or the test would prove little.
-  for (const Decision decision : {Decision::kRegular, Decision::kAutomation, Decision::kHuman,
-                                  Decision::kHold, Decision::kMinimalRisk}) {
+  for (const arbitrator::Decision decision :
+       {arbitrator::Decision::kRegular, arbitrator::Decision::kAutomation,
+        arbitrator::Decision::kHuman, arbitrator::Decision::kHold,
+        arbitrator::Decision::kMinimalRisk}) {
     EXPECT_GT(taken[decision], 50) << static_cast<int>(decision);
   }
 }

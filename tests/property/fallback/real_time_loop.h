@@ -40,7 +40,7 @@ class Line {
   }
 
  private:
-  InputHealth health_;
+  runtime::InputHealth health_;
   std::optional<M> newest_;
 };
 
@@ -52,8 +52,8 @@ struct Moment {
   const driver_command_t* human;
   const arbitration_t* sent;
   const arbitration_t& carried_out;
-  const FailsafeArbitrator& arbitrator;
-  const VehicleFallback& vehicle;
+  const arbitrator::FailsafeArbitrator& arbitrator;
+  const world::VehicleFallback& vehicle;
 };
 
 class RealTimeLoop {
@@ -150,15 +150,15 @@ class RealTimeLoop {
 
   Duration period_;
   Duration deadline_;
-  World world_;
-  Radar radar_;
-  Lidar lidar_;
-  Fusion fusion_;
-  Acc acc_;
-  Driver driver_;
-  Follower follower_;
-  FailsafeArbitrator arbitrator_;
-  VehicleFallback vehicle_;
+  world::World world_;
+  radar::Radar radar_;
+  lidar::Lidar lidar_;
+  fusion::Fusion fusion_;
+  acc::Acc acc_;
+  driver::Driver driver_;
+  follower::Follower follower_;
+  arbitrator::FailsafeArbitrator arbitrator_;
+  world::VehicleFallback vehicle_;
   Line<radar_t> radars_;
   Line<lidar_t> lidars_;
   Line<track_t> tracks_;

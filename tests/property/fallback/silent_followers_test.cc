@@ -66,8 +66,8 @@ TEST(SilentFollowersTest, EachStopsWithinTheLimitsAndTheHostGoesOn) {
 
 TEST(SilentFollowersTest, NobodySilentIsTheLockstepRun) {
   const Scenario scenario = Column();
-  World lockstep(scenario);
-  Follower follower(scenario);
+  world::World lockstep(scenario);
+  follower::Follower follower(scenario);
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
     // GIVEN the same host, THEN the followers' commands are those of a run in lockstep

@@ -113,9 +113,10 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(SilentRolesTest, NobodySilentIsTheLockstepRun) {
-  ClosedLoop lockstep(scenario_);
+  metrics::ClosedLoop lockstep(scenario_);
   std::vector<double> commands;
-  lockstep.Run(1, [&](const StepView& step) { commands.push_back(step.host.acceleration_mps2); });
+  lockstep.Run(
+      1, [&](const metrics::StepView& step) { commands.push_back(step.host.acceleration_mps2); });
   std::size_t k = 0;
   RealTimeLoop(scenario_).Run([&](const Moment& m) {
     ASSERT_LT(k, commands.size());

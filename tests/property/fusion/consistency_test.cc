@@ -45,7 +45,7 @@ Ensemble Simulate(const Scenario& world, const Scenario& believed, double dropou
   for (int seed = 1; seed <= kSeeds; ++seed) {
     testing::LeadSimulation lead(world, seed);
     lead.set_dropout(dropout);
-    Fusion fusion(believed);
+    fusion::Fusion fusion(believed);
     for (std::size_t k = 0; k < kSteps; ++k) {
       const testing::LeadStep step = lead.Step();
       const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);

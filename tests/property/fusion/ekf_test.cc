@@ -38,7 +38,7 @@ TEST(EkfPropertyTest, CovarianceStaysSymmetricAndPositiveDefinite) {
     scenario.lidar.lateral_offset_m = 3 * random.Normal2(0, 5)[1] / 3;
     testing::LeadSimulation lead(scenario, seed);
     lead.set_dropout(random.Uniform2(0, 6)[0]);
-    Fusion fusion(scenario);
+    fusion::Fusion fusion(scenario);
     for (int k = 0; k < 300; ++k) {
       const testing::LeadStep step = lead.Step();
       // WHEN it has made a step
@@ -57,8 +57,8 @@ TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
   const Scenario scenario;
   const double t = scenario.step_s;
   testing::LeadSimulation lead(scenario, 1);
-  Fusion steady(scenario);
-  Fusion braking(scenario);
+  fusion::Fusion steady(scenario);
+  fusion::Fusion braking(scenario);
   double distance_shift = 0;
   double speed_shift = 0;
   for (int k = 0; k < 300; ++k) {
@@ -92,8 +92,8 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Eigen::Vector3d stds(f.radar_range_std_m, f.radar_range_rate_std_mps, f.lidar_range_std_m);
   const Eigen::Matrix3d r = stds.cwiseAbs2().asDiagonal();
   testing::LeadSimulation lead(scenario, 2);
-  Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // only predicts; this test corrects
-  Fusion fusion(scenario);
+  fusion::Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // only predicts; this test corrects
+  fusion::Fusion fusion(scenario);
   for (int k = 0; k < 100; ++k) {
     const testing::LeadStep step = lead.Step();
     const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);
@@ -116,8 +116,8 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
 }
 
 TEST(EkfPropertyTest, PredictionInTwoHalvesIsThePredictionOfTheWhole) {
-  Ekf whole(0.2, 0.7);
-  Ekf half(0.1, 0.7);
+  fusion::Ekf whole(0.2, 0.7);
+  fusion::Ekf half(0.1, 0.7);
   Eigen::Matrix3d p;
   p << 2, 0.1, 0.3, 0.1, 1, -0.2, 0.3, -0.2, 0.5;
   whole.Start({30, -2, 0.4}, p);
@@ -137,9 +137,9 @@ TEST(LineOfSightPropertyTest, JacobiansAreTheSlopes) {
     const double y = random.Normal2(1, i)[0];
     const double dv = 5 * random.Normal2(1, i)[1];
     if (std::abs(d) < 0.5) continue;  // the range has a kink at 0
-    const LineOfSight sight(d, y);
-    const LineOfSight nearer(d - kStep, y);
-    const LineOfSight farther(d + kStep, y);
+    const fusion::LineOfSight sight(d, y);
+    const fusion::LineOfSight nearer(d - kStep, y);
+    const fusion::LineOfSight farther(d + kStep, y);
     EXPECT_NEAR(sight.RangeJacobian()[0], (farther.range_m() - nearer.range_m()) / (2 * kStep),
                 1e-7);
     EXPECT_NEAR(sight.RangeRateJacobian(dv)[0],
@@ -154,11 +154,11 @@ TEST(LineOfSightPropertyTest, IsLinearWithoutAnOffset) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const double d = 100 * random.Normal2(0, i)[0];
     const double dv = 10 * random.Normal2(0, i)[1];
-    const LineOfSight sight(d, 0);
+    const fusion::LineOfSight sight(d, 0);
     EXPECT_EQ(sight.range_m(), d);
     EXPECT_EQ(sight.RangeRate(dv), dv);
-    EXPECT_EQ(sight.RangeJacobian(), Ekf::Jacobian(1, 0, 0));
-    EXPECT_EQ(sight.RangeRateJacobian(dv), Ekf::Jacobian(0, 1, 0));
+    EXPECT_EQ(sight.RangeJacobian(), fusion::Ekf::Jacobian(1, 0, 0));
+    EXPECT_EQ(sight.RangeRateJacobian(dv), fusion::Ekf::Jacobian(0, 1, 0));
   }
 }
 

@@ -33,7 +33,7 @@ std::vector<lidar_t> Measure(Scenario scenario, double gap_m, double visibility_
   std::vector<lidar_t> measurements;
   for (int seed = 0; seed < kSeeds; ++seed) {
     scenario.seed = seed;
-    Lidar lidar(scenario);
+    lidar::Lidar lidar(scenario);
     for (int step = 0; step < kSteps; ++step) {
       measurements.push_back(lidar.Step(Target(step, gap_m, visibility_m)));
     }
@@ -91,8 +91,8 @@ struct Outcomes {
 //   no echo  X < -t / s and Y < -f / s
 //   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
 Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {
-  const EchoModel model(beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
-  const EchoPowers echoes = model.At(gap_m, visibility_m);
+  const lidar::EchoModel model(beam, models::ExtinctionOf(20000.0), models::ExtinctionOf(20.0));
+  const lidar::EchoPowers echoes = model.At(gap_m, visibility_m);
   const double s = beam.log_std;
   const double t = echoes.target;
   const double f = echoes.fog;
@@ -143,7 +143,8 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
   Scenario scenario = Beam();
   scenario.fog.clear_visibility_m = 1e5;
   scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
-  const double range_m = AttenuatedRange_m(scenario.lidar.beam.clear_range_m, ExtinctionOf(1e5));
+  const double range_m =
+      lidar::AttenuatedRange_m(scenario.lidar.beam.clear_range_m, models::ExtinctionOf(1e5));
   for (const std::int64_t beams : {1, 15, 101}) {
     scenario.lidar.beam.beams = beams;
     int detections = 0;
@@ -161,7 +162,8 @@ TEST(LidarProperty, FogScattersByABetaDistribution) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
   scenario.lidar.beam.log_std = 0.01;  // only the fog gives echoes
-  const EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
+  const lidar::EchoModel model(scenario.lidar.beam, models::ExtinctionOf(20000.0),
+                               models::ExtinctionOf(20.0));
   const double peak_m = model.At(60.0, 25.0).fog_range_m;
   const boost::math::beta_distribution beta(2.0, 20.0);
   std::vector<double> shares;
@@ -176,7 +178,7 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
   scenario.lidar.beam.fog_range_scale_m = 100.0;  // a scatter far beyond the target
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   for (double gap_m = 0.5; gap_m < 120.0; gap_m *= 1.1) {
     for (double visibility_m = 20.0; visibility_m < 20000.0; visibility_m *= 1.3) {
       for (std::int64_t step = 0; step < 20; ++step) {
@@ -191,7 +193,7 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
   // With the same draws in the same step, more fog never lets the target win again.
-  Lidar lidar(Beam());
+  lidar::Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;
     for (double visibility_m = 20000.0; visibility_m > 20.0; visibility_m *= 0.9) {
@@ -208,12 +210,12 @@ TEST(LidarProperty, NoStepDependsOnAnother) {
   Scenario scenario = Beam();
   scenario.lidar.range_std_m = 0.02;
   scenario.lidar.dropout_probability = 0.1;
-  Lidar forwards(scenario);
+  lidar::Lidar forwards(scenario);
   std::vector<lidar_t> expected;
   for (int step = 0; step < kSteps; ++step) {
     expected.push_back(forwards.Step(Target(step, 33.0, 80.0)));
   }
-  Lidar backwards(scenario);
+  lidar::Lidar backwards(scenario);
   for (int step = kSteps - 1; step >= 0; --step) {
     backwards.Step(Target(step * 7, 20.0, 30.0));
     const lidar_t& lidar = backwards.Step(Target(step, 33.0, 80.0));

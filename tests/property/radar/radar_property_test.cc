@@ -32,7 +32,7 @@ std::vector<radar_t> Measure(Scenario scenario) {
   std::vector<radar_t> measurements;
   for (int seed = 0; seed < kSeeds; ++seed) {
     scenario.seed = seed;
-    Radar radar(scenario);
+    radar::Radar radar(scenario);
     for (int step = 0; step < kSteps; ++step) measurements.push_back(radar.Step(Target(step)));
   }
   return measurements;
@@ -87,10 +87,10 @@ TEST(RadarProperty, NoStepDependsOnAnother) {
   // A step has its own draws, whatever the order of the steps and whatever was asked before.
   Scenario scenario;
   scenario.radar.dropout_probability = 0.2;
-  Radar forwards(scenario);
+  radar::Radar forwards(scenario);
   std::vector<radar_t> expected;
   for (int step = 0; step < kSteps; ++step) expected.push_back(forwards.Step(Target(step)));
-  Radar backwards(scenario);
+  radar::Radar backwards(scenario);
   for (int step = kSteps - 1; step >= 0; --step) {
     backwards.Step(Target(step * 7));
     const radar_t& radar = backwards.Step(Target(step));
@@ -103,7 +103,7 @@ TEST(RadarProperty, NoStepDependsOnAnother) {
 
 TEST(RadarProperty, ErrorsDoNotDependOnTheTarget) {
   Scenario scenario;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   for (int step = 0; step < kSteps; ++step) {
     truth_t near = Target(step);
     truth_t far = Target(step);
@@ -120,7 +120,7 @@ TEST(RadarProperty, DetectionEndsOnceWithGrowingDistance) {
       Scenario scenario;
       scenario.fog.model = FogModel::kBeam;
       scenario.fog.rain_mmph = rain_mmph;
-      Radar radar(scenario);
+      radar::Radar radar(scenario);
       bool seen = true;
       for (double gap_m = 1.0; gap_m < 300.0; gap_m += 1.0) {
         truth_t truth = Target(3);

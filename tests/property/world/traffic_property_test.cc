@@ -32,8 +32,8 @@ Scenario Drawn(std::int64_t seed, std::int64_t count) {
 
 std::vector<truth_t> TruthsOf(const Scenario& scenario) {
   std::vector<truth_t> truths;
-  ClosedLoop loop(scenario);
-  loop.Run(1, [&](const StepView& step) { truths.push_back(step.truth); });
+  metrics::ClosedLoop loop(scenario);
+  loop.Run(1, [&](const metrics::StepView& step) { truths.push_back(step.truth); });
   return truths;
 }
 
@@ -87,12 +87,13 @@ struct Limits {
 };
 
 Limits LimitsOf(Surface surface, double steepest, double speed_mps) {
-  const double drag = 0.5 * kAirDensity_kgpm3 * kSedan.drag_coefficient * kSedan.frontal_area_m2 *
-                      speed_mps * speed_mps / kSedan.mass_kg;
-  const double slope = kGravity_mps2 * steepest;
-  const double grip = FrictionOf(surface) * kGravity_mps2;
+  const double drag = 0.5 * models::kAirDensity_kgpm3 * models::kSedan.drag_coefficient *
+                      models::kSedan.frontal_area_m2 * speed_mps * speed_mps /
+                      models::kSedan.mass_kg;
+  const double slope = models::kGravity_mps2 * steepest;
+  const double grip = models::FrictionOf(surface) * models::kGravity_mps2;
   return {.braking = grip + slope + drag,
-          .traction = std::min(grip, kSedan.max_traction_mps2) + slope};
+          .traction = std::min(grip, models::kSedan.max_traction_mps2) + slope};
 }
 
 TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
@@ -111,7 +112,7 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
     }
     scenario.host_vehicle.model = VehicleModel::kLongitudinal;
     scenario.follower_vehicle.model = VehicleModel::kLongitudinal;
-    World world(scenario);
+    world::World world(scenario);
     truth_t before = std::get<truth_t>(world.Start(1));
     double host = 0;
     std::vector<double> followers(3);

@@ -42,7 +42,7 @@ Scenario Rough() {
 }
 
 std::vector<truth_t> Drive(const Scenario& scenario, std::uint64_t seed) {
-  World world(scenario);
+  world::World world(scenario);
   std::vector<truth_t> truths{std::get<truth_t>(world.Start(1))};
   for (const Commands& command : RandomCommands(seed, scenario.steps - 1)) {
     truths.push_back(std::get<truth_t>(

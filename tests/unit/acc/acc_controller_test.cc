@@ -12,7 +12,7 @@
 namespace fogline {
 namespace {
 
-using Solver = AccController::Solver;
+using Solver = acc::AccController::Solver;
 
 constexpr double kStep = 0.1;
 // A car at 20 m/s has a safe distance of 33 m with the default section.
@@ -31,11 +31,11 @@ struct Trip {
 };
 
 Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_mps2 = 0) {
-  AccController acc(section, kStep);
+  acc::AccController acc(section, kStep);
   Trip trip{.cars = cars};
   double previous = std::nan("");
   for (int k = 0; k < steps; ++k) {
-    const AccController::Output output = acc.Step(trip.cars.Sense());
+    const acc::AccController::Output output = acc.Step(trip.cars.Sense());
     if (output.solver == Solver::kFallback) ++trip.fallbacks;
     if (k > 0) {
       const double change = std::abs(output.control - previous);
@@ -43,7 +43,7 @@ Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_
     }
     previous = output.control;
     trip.cars.Advance(output.acceleration_mps2, preceding_mps2);
-    const double delta_d = trip.cars.gap_m - SafeDistance(section, trip.cars.speed_mps);
+    const double delta_d = trip.cars.gap_m - acc::SafeDistance(section, trip.cars.speed_mps);
     trip.smallest_gap_m = std::min(trip.smallest_gap_m, trip.cars.gap_m);
     trip.smallest_delta_d_m = std::min(trip.smallest_delta_d_m, delta_d);
     trip.largest_delta_d_m = std::max(trip.largest_delta_d_m, delta_d);
@@ -53,9 +53,9 @@ Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_
 }
 
 TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
-  AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep);
   TwoCars cars{.gap_m = kSafe + 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
-  const AccController::Output output = acc.Step(cars.Sense());
+  const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_GT(output.acceleration_mps2, 0);
   EXPECT_LT(output.control, 0);  // a positive u decelerates
   const Trip trip = Drive(AccSection{}, cars, 50);
@@ -64,18 +64,18 @@ TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
 }
 
 TEST(AccControllerTest, DeceleratesWhenTheGapIsTooSmall) {
-  AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep);
   const TwoCars cars{.gap_m = kSafe - 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
-  const AccController::Output output = acc.Step(cars.Sense());
+  const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_LT(output.acceleration_mps2, 0);
   EXPECT_GT(output.control, 0);
   EXPECT_GT(Drive(AccSection{}, cars, 50).cars.gap_m, cars.gap_m);
 }
 
 TEST(AccControllerTest, DoesNothingAtTheSafeDistance) {
-  AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep);
   const TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
-  const AccController::Output output = acc.Step(cars.Sense());
+  const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_EQ(output.acceleration_mps2, 0);
   EXPECT_EQ(output.safe_distance_m, kSafe);
   EXPECT_EQ(output.solver, Solver::kUnconstrained);
@@ -142,7 +142,7 @@ TEST(AccControllerTest, TheMinimumGapOverrulesTheSafeDistance) {
 
 TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
   const AccSection section;
-  AccController acc(section, kStep);
+  acc::AccController acc(section, kStep);
   const TwoCars cars{.gap_m = 1, .preceding_speed_mps = 0, .speed_mps = 0};
   for (int k = 0; k < 20; ++k) EXPECT_LE(acc.Step(cars.Sense()).acceleration_mps2, 0);
 }
@@ -168,14 +168,14 @@ TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
 
 TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
   const AccSection section;
-  AccController acc(section, kStep);
+  acc::AccController acc(section, kStep);
   TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   for (int k = 0; k < 40; ++k) {
-    AccController::Input input = cars.Sense();
+    acc::AccController::Input input = cars.Sense();
     input.has_target = false;
-    const AccController::Output output = acc.Step(input);
+    const acc::AccController::Output output = acc.Step(input);
     EXPECT_EQ(output.solver, Solver::kFallback);
-    EXPECT_EQ(output.safe_distance_m, SafeDistance(section, cars.speed_mps));
+    EXPECT_EQ(output.safe_distance_m, acc::SafeDistance(section, cars.speed_mps));
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep);
     cars.Advance(output.acceleration_mps2);
   }
@@ -183,14 +183,14 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
-  AccController one(AccSection{}, kStep);
-  AccController other(AccSection{}, kStep);
-  const AccController::Input input{.distance_m = 0,
-                                   .relative_speed_mps = 0,
-                                   .speed_mps = kSpeed,
-                                   .acceleration_mps2 = 0,
-                                   .has_target = false};
-  AccController::Input far = input;
+  acc::AccController one(AccSection{}, kStep);
+  acc::AccController other(AccSection{}, kStep);
+  const acc::AccController::Input input{.distance_m = 0,
+                                        .relative_speed_mps = 0,
+                                        .speed_mps = kSpeed,
+                                        .acceleration_mps2 = 0,
+                                        .has_target = false};
+  acc::AccController::Input far = input;
   far.distance_m = 100;
   far.relative_speed_mps = 5;
   EXPECT_EQ(one.Step(input).acceleration_mps2, other.Step(far).acceleration_mps2);
@@ -199,13 +199,13 @@ TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
 TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   AccSection section;
   section.max_iterations = 1;
-  AccController acc(section, kStep);
+  acc::AccController acc(section, kStep);
   // GIVEN a situation in which the hardest braking has many active limits
-  const AccController::Output output = acc.Step({.distance_m = 10,
-                                                 .relative_speed_mps = -10,
-                                                 .speed_mps = kSpeed,
-                                                 .acceleration_mps2 = 0,
-                                                 .has_target = true});
+  const acc::AccController::Output output = acc.Step({.distance_m = 10,
+                                                      .relative_speed_mps = -10,
+                                                      .speed_mps = kSpeed,
+                                                      .acceleration_mps2 = 0,
+                                                      .has_target = true});
   // THEN the command is the first step of the fall-back plan
   EXPECT_EQ(output.solver, Solver::kFallback);
   EXPECT_EQ(output.iterations, 1);
@@ -221,7 +221,7 @@ TEST(AccControllerTest, TakesOverWithoutABump) {
   for (double a = -8; a <= 5; a += 0.25) {
     for (const double gap_m : {10.0, 33.0, 90.0}) {
       // GIVEN an ACC that had no effect on the car for a while
-      AccController acc(section, kStep);
+      acc::AccController acc(section, kStep);
       TwoCars cars{.gap_m = gap_m, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
       for (int k = 0; k < 10; ++k) acc.Step(cars.Sense());
       // WHEN the driver accelerates or brakes
@@ -239,7 +239,7 @@ TEST(AccControllerTest, TakesOverWithoutABump) {
 TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLeftBehind) {
   AccSection section;
   section.engine_gain = 0.732;
-  AccController acc(section, kStep);
+  acc::AccController acc(section, kStep);
   TwoCars cars{.gap_m = 100, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
   for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
@@ -251,12 +251,12 @@ TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLe
 }
 
 TEST(AccControllerTest, EqualInputsGiveEqualBits) {
-  AccController one(AccSection{}, kStep);
-  AccController other(AccSection{}, kStep);
+  acc::AccController one(AccSection{}, kStep);
+  acc::AccController other(AccSection{}, kStep);
   TwoCars cars{.gap_m = 15, .preceding_speed_mps = 12, .speed_mps = kSpeed};
   for (int k = 0; k < 300; ++k) {
-    const AccController::Output a = one.Step(cars.Sense());
-    const AccController::Output b = other.Step(cars.Sense());
+    const acc::AccController::Output a = one.Step(cars.Sense());
+    const acc::AccController::Output b = other.Step(cars.Sense());
     ASSERT_EQ(a.acceleration_mps2, b.acceleration_mps2) << k;
     ASSERT_EQ(a.control, b.control) << k;
     ASSERT_EQ(a.iterations, b.iterations) << k;
@@ -275,7 +275,7 @@ TEST(AccControllerTest, RefusesWeightsThatMakeAnIllConditionedProblem) {
   section.weight_control = 1e-6;
   section.weight_control_change = 0;
   try {
-    AccController acc(section, 1.0);
+    acc::AccController acc(section, 1.0);
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("raise weight_control"));

@@ -16,13 +16,13 @@ AccSection Section(double headway_s, double time_constant_s, double gain) {
 }
 
 // Phi and Gamma in closed form: the integrals of a(t) = e^(-t/T) a(0) - K (1 - e^(-t/T)) u.
-DiscreteAccModel ClosedForm(const AccSection& section, double h) {
+acc::DiscreteAccModel ClosedForm(const AccSection& section, double h) {
   const double tau = section.engine_time_constant_s;
   const double gain = section.engine_gain;
   const double rise = -std::expm1(-h / tau);        // of a, caused by u
   const double speed = h - tau * rise;              // the integral of rise
   const double distance = h * h / 2 - tau * speed;  // the integral of speed
-  DiscreteAccModel model;
+  acc::DiscreteAccModel model;
   model.phi << 1, h, -tau * speed - section.headway_s * tau * rise,  //
       0, 1, -tau * rise,                                             //
       0, 0, 1 - rise;
@@ -31,7 +31,7 @@ DiscreteAccModel ClosedForm(const AccSection& section, double h) {
 }
 
 TEST(AccModelTest, HasTheMatricesOfThePaper) {
-  const AccModel model = MakeAccModel(Section(1.5, 0.5, 0.8));
+  const acc::AccModel model = acc::MakeAccModel(Section(1.5, 0.5, 0.8));
   EXPECT_EQ(model.a, (Eigen::Matrix3d{{0, 1, -1.5}, {0, 0, -1}, {0, 0, -2}}));
   EXPECT_EQ(model.b, Eigen::Vector3d(0, 0, -1.6));
   EXPECT_EQ(model.c, Eigen::RowVector3d(0, 0, 1));
@@ -39,7 +39,8 @@ TEST(AccModelTest, HasTheMatricesOfThePaper) {
 
 TEST(AccModelTest, SettlesAtMinusGainTimesControl) {
   // GIVEN a constant positive control
-  const DiscreteAccModel model = Discretise(MakeAccModel(Section(1.5, 0.46, 0.732)), 0.1);
+  const acc::DiscreteAccModel model =
+      acc::Discretise(acc::MakeAccModel(Section(1.5, 0.46, 0.732)), 0.1);
   const double control = 2.0;
   // WHEN 10 s have passed, more than twenty time constants
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -56,8 +57,8 @@ TEST(AccModelTest, DiscretisationEqualsTheIntegralsWrittenOut) {
     for (const double time_constant_s : {0.01, 0.46, 10.0}) {
       for (const double headway_s : {0.0, 1.5, 10.0}) {
         const AccSection section = Section(headway_s, time_constant_s, 0.732);
-        const DiscreteAccModel model = Discretise(MakeAccModel(section), step_s);
-        const DiscreteAccModel expected = ClosedForm(section, step_s);
+        const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), step_s);
+        const acc::DiscreteAccModel expected = ClosedForm(section, step_s);
         const double tolerance = 1e-13 * (1 + expected.phi.cwiseAbs().maxCoeff());
         EXPECT_LE((model.phi - expected.phi).cwiseAbs().maxCoeff(), tolerance)
             << "h " << step_s << " T_e " << time_constant_s << " T_hw " << headway_s;
@@ -69,7 +70,7 @@ TEST(AccModelTest, DiscretisationEqualsTheIntegralsWrittenOut) {
 }
 
 TEST(AccModelTest, DiscretisationEqualsThePowerSeries) {
-  const AccModel model = MakeAccModel(Section(1.5, 0.46, 0.732));
+  const acc::AccModel model = acc::MakeAccModel(Section(1.5, 0.46, 0.732));
   const double h = 0.1;
   // Phi = sum (A h)^i / i!, Gamma = sum A^i h^(i+1) / (i+1)! B; |A h| < 0.3, so 20 terms are exact.
   Eigen::Matrix3d term = Eigen::Matrix3d::Identity();
@@ -80,23 +81,23 @@ TEST(AccModelTest, DiscretisationEqualsThePowerSeries) {
     gamma += term * model.b * (h / (i + 1));
     term = term * model.a * (h / (i + 1));
   }
-  const DiscreteAccModel discrete = Discretise(model, h);
+  const acc::DiscreteAccModel discrete = acc::Discretise(model, h);
   EXPECT_LE((discrete.phi - phi).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_LE((discrete.gamma - gamma).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(AccModelTest, TwoHalfStepsAreOneStep) {
-  const AccModel model = MakeAccModel(AccSection{});
-  const DiscreteAccModel whole = Discretise(model, 0.1);
-  const DiscreteAccModel half = Discretise(model, 0.05);
+  const acc::AccModel model = acc::MakeAccModel(AccSection{});
+  const acc::DiscreteAccModel whole = acc::Discretise(model, 0.1);
+  const acc::DiscreteAccModel half = acc::Discretise(model, 0.05);
   EXPECT_LE((half.phi * half.phi - whole.phi).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_LE((half.phi * half.gamma + half.gamma - whole.gamma).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(AccModelTest, SafeDistanceGrowsWithSpeed) {
   const AccSection section = Section(1.5, 0.46, 1.0);
-  EXPECT_EQ(SafeDistance(section, 0), section.standstill_m);
-  EXPECT_EQ(SafeDistance(section, 20), section.standstill_m + 30);
+  EXPECT_EQ(acc::SafeDistance(section, 0), section.standstill_m);
+  EXPECT_EQ(acc::SafeDistance(section, 20), section.standstill_m + 30);
 }
 
 }  // namespace

@@ -21,16 +21,16 @@ struct Drive {
 
 // A car follows another car of 20 m/s for a minute. After 5 s that car brakes to 12 m/s at 2 m/s2.
 Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
-                        const VehicleParameters& car = kSedan) {
-  AccController acc(section, kStep_s, model);
-  LongitudinalVehicle vehicle(car, FrictionOf(Surface::kDry), {}, kStep_s);
-  Motion lead{SafeDistance(section, 20), 20};
-  Motion own{0, 20};
+                        const models::VehicleParameters& car = models::kSedan) {
+  acc::AccController acc(section, kStep_s, model);
+  models::LongitudinalVehicle vehicle(car, models::FrictionOf(Surface::kDry), {}, kStep_s);
+  models::Motion lead{acc::SafeDistance(section, 20), 20};
+  models::Motion own{0, 20};
   vehicle.Begin(own, 0);
   double applied_mps2 = 0;
   Drive drive;
   for (int k = 0; k < 600; ++k) {
-    const AccController::Output output =
+    const acc::AccController::Output output =
         acc.Step({.distance_m = lead.position_m - own.position_m,
                   .relative_speed_mps = lead.speed_mps - own.speed_mps,
                   .speed_mps = own.speed_mps,
@@ -38,8 +38,8 @@ Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
                   .has_target = true});
     applied_mps2 = model == VehicleModel::kPointMass ? output.acceleration_mps2
                                                      : vehicle.Step(output.acceleration_mps2, own);
-    own = Advance(own, applied_mps2, kStep_s);
-    lead = Advance(lead, k >= 50 && k < 90 ? -2.0 : 0.0, kStep_s);
+    own = models::Advance(own, applied_mps2, kStep_s);
+    lead = models::Advance(lead, k >= 50 && k < 90 ? -2.0 : 0.0, kStep_s);
     drive.last_gap_m = lead.position_m - own.position_m;
     drive.least_gap_m = std::min(drive.least_gap_m, drive.last_gap_m);
     drive.largest_acceleration_mps2 =
@@ -54,7 +54,8 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     AccSection section;
     section.headway_s = headway_s;
     const Drive ideal = FollowABrakingCar(section, VehicleModel::kPointMass);
-    for (const VehicleParameters& car : {kCompact, kSedan, kTruck}) {
+    for (const models::VehicleParameters& car :
+         {models::kCompact, models::kSedan, models::kTruck}) {
       const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
       // Delay and lag are half a second. In this time 2 m/s2 make 0.25 m, and more while both add
       // up.
@@ -62,7 +63,7 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
       // In the end speed and gap are right, except for the dead band of the pedals.
       EXPECT_NEAR(real.last_speed_mps, 12, 0.1) << "headway " << headway_s;
-      EXPECT_NEAR(real.last_gap_m, SafeDistance(section, 12), 0.5) << "headway " << headway_s;
+      EXPECT_NEAR(real.last_gap_m, acc::SafeDistance(section, 12), 0.5) << "headway " << headway_s;
     }
   }
 }
@@ -70,7 +71,7 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
 TEST(AccOnVehicleTest, DoesNotRunAwayFromACarThatSomebodyElseDrives) {
   // GIVEN a gap that is far too small, and a driver who keeps the car at a steady speed
   const AccSection section;
-  AccController acc(section, kStep_s, VehicleModel::kLongitudinal);
+  acc::AccController acc(section, kStep_s, VehicleModel::kLongitudinal);
   double command_mps2 = 0;
   for (int k = 0; k < 100; ++k) {
     command_mps2 = acc.Step({.distance_m = 8,

@@ -26,11 +26,12 @@ AccSection ShortSection() {
   return section;
 }
 
-const AccSituation kSituation{.state = {1.5, -0.8, 0.4}, .speed_mps = 21, .previous_control = -0.3};
+const acc::AccSituation kSituation{
+    .state = {1.5, -0.8, 0.4}, .speed_mps = 21, .previous_control = -0.3};
 
 // The cost by its definition in acc_program.h, from a simulation.
-double Cost(const AccSection& section, const AccSituation& now, const VectorXd& z) {
-  const DiscreteAccModel model = Discretise(MakeAccModel(section), kStep);
+double Cost(const AccSection& section, const acc::AccSituation& now, const VectorXd& z) {
+  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep);
   Eigen::Vector3d x = now.state;
   double previous = now.previous_control;
   double cost = section.min_gap_weight * z(0) * z(0);
@@ -53,7 +54,7 @@ VectorXd SomePlan(Index size, int number) {
 
 TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
   const AccSection section = ShortSection();
-  const AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep);
   const Eigen::Vector4d p(kSituation.state(0), kSituation.state(1), kSituation.state(2),
                           kSituation.previous_control);
   const VectorXd linear = program.gradient() * p;
@@ -71,7 +72,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   AccSection section = ShortSection();
   section.max_speed_mps = 21.5;
   section.min_gap_m = 36;
-  const AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep);
   const VectorXd z = SomePlan(7, 3);
   VectorXd lower(30);
   VectorXd upper(30);
@@ -79,7 +80,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   const VectorXd below = program.constraints() * z - lower;
   const VectorXd above = upper - program.constraints() * z;
 
-  const DiscreteAccModel model = Discretise(MakeAccModel(section), kStep);
+  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep);
   const double preceding_mps = kSituation.speed_mps + kSituation.state(kDeltaV);
   Eigen::Vector3d x = kSituation.state;
   double previous = kSituation.previous_control;
@@ -88,7 +89,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
     x = model.phi * x + model.gamma * u;
     const double speed = preceding_mps - x(kDeltaV);
     const double settled = speed + section.engine_time_constant_s * x(kOwnAcceleration);
-    const double gap = x(kDeltaD) + SafeDistance(section, speed);
+    const double gap = x(kDeltaD) + acc::SafeDistance(section, speed);
     const Index row = 5 * j;
     // Under the fall-back plan this car stays below its maximum speed. So the maximum speed is the
     // limit.
@@ -106,7 +107,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
 
 TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
   // GIVEN a car at a medium speed, far behind the next car
-  const AccProgram program(ShortSection(), kStep);
+  const acc::AccProgram program(ShortSection(), kStep);
   VectorXd lower(30);
   VectorXd upper(30);
   program.Limits(kSituation, lower, upper);
@@ -120,7 +121,7 @@ TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   section.engine_gain = 0.5;
   section.fallback_deceleration_mps2 = 1.2;
   section.max_jerk_mps3 = 5;
-  const AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep);
   double u = -0.5;
   std::vector<double> plan;
   for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
@@ -133,7 +134,7 @@ TEST(AccProgramTest, FallbackPlanStaysWithinTheStrongestBraking) {
   AccSection section;
   section.fallback_deceleration_mps2 = 9;
   section.min_acceleration_mps2 = -3;
-  const AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep);
   EXPECT_EQ(program.FallbackControl(3), 3);
 }
 

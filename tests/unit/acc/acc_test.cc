@@ -23,14 +23,14 @@ track_t Track(double distance_m, double relative_speed_mps) {
 
 TEST(AccTest, AnswersWithWhatTheControllerSays) {
   const Scenario scenario;
-  Acc acc(scenario);
-  AccController controller(scenario.acc, scenario.step_s);
+  acc::Acc acc(scenario);
+  acc::AccController controller(scenario.acc, scenario.step_s);
   const accel_command_t& command = acc.Step(Ego(21, 0.2), Track(30, -1.5));
-  const AccController::Output output = controller.Step({.distance_m = 30,
-                                                        .relative_speed_mps = -1.5,
-                                                        .speed_mps = 21,
-                                                        .acceleration_mps2 = 0.2,
-                                                        .has_target = true});
+  const acc::AccController::Output output = controller.Step({.distance_m = 30,
+                                                             .relative_speed_mps = -1.5,
+                                                             .speed_mps = 21,
+                                                             .acceleration_mps2 = 0.2,
+                                                             .has_target = true});
   EXPECT_EQ(command.acceleration_mps2, output.acceleration_mps2);
   EXPECT_EQ(command.control, output.control);
   EXPECT_EQ(command.safe_distance_m, output.safe_distance_m);
@@ -39,7 +39,7 @@ TEST(AccTest, AnswersWithWhatTheControllerSays) {
 }
 
 TEST(AccTest, CopiesTheHeaderOfItsInput) {
-  Acc acc(Scenario{});
+  acc::Acc acc(Scenario{});
   const accel_command_t& command = acc.Step(Ego(20, 0), Track(33, 0));
   EXPECT_EQ(command.header.run_id, 7);
   EXPECT_EQ(command.header.step, 42);
@@ -47,12 +47,14 @@ TEST(AccTest, CopiesTheHeaderOfItsInput) {
 }
 
 TEST(AccTest, NamesItsSolverAsTheMessageDoes) {
-  EXPECT_EQ(Acc(Scenario{}).Step(Ego(20, 0), Track(33, 0)).solver, accel_command_t::UNCONSTRAINED);
-  EXPECT_EQ(Acc(Scenario{}).Step(Ego(20, 0), Track(5, -9)).solver, accel_command_t::ACTIVE_SET);
+  EXPECT_EQ(acc::Acc(Scenario{}).Step(Ego(20, 0), Track(33, 0)).solver,
+            accel_command_t::UNCONSTRAINED);
+  EXPECT_EQ(acc::Acc(Scenario{}).Step(Ego(20, 0), Track(5, -9)).solver,
+            accel_command_t::ACTIVE_SET);
 }
 
 TEST(AccTest, FallsBackWithoutATrack) {
-  Acc acc(Scenario{});
+  acc::Acc acc(Scenario{});
   track_t track = Track(33, 0);
   track.valid = 0;
   const accel_command_t& command = acc.Step(Ego(20, 0), track);
@@ -66,9 +68,9 @@ TEST(AccTest, FallsBackOnceTheTrackIsTooUncertain) {
   scenario.acc.max_track_std_m = 5;
   track_t track = Track(33, 0);
   track.covariance[0][0] = 24.9;
-  EXPECT_EQ(Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::UNCONSTRAINED);
+  EXPECT_EQ(acc::Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::UNCONSTRAINED);
   track.covariance[0][0] = 25.1;
-  EXPECT_EQ(Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::FALLBACK);
+  EXPECT_EQ(acc::Acc(scenario).Step(Ego(20, 0), track).solver, accel_command_t::FALLBACK);
 }
 
 }  // namespace

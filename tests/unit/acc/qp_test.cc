@@ -26,10 +26,10 @@ VectorXd Vector(std::initializer_list<double> values) {
 // see.
 class PlaneTest : public testing::Test {
  protected:
-  QpSolver::Result Solve(const MatrixXd& constraints, const VectorXd& lower, const VectorXd& upper,
-                         std::int64_t max_iterations = 100) {
-    QpSolver solver(MatrixXd::Identity(2, 2), constraints, {.max_iterations = max_iterations});
-    const QpSolver::Result result = solver.Solve(-point_, lower, upper);
+  acc::QpSolver::Result Solve(const MatrixXd& constraints, const VectorXd& lower,
+                              const VectorXd& upper, std::int64_t max_iterations = 100) {
+    acc::QpSolver solver(MatrixXd::Identity(2, 2), constraints, {.max_iterations = max_iterations});
+    const acc::QpSolver::Result result = solver.Solve(-point_, lower, upper);
     x_ = solver.solution();
     y_ = solver.multipliers();
     return result;
@@ -40,7 +40,7 @@ class PlaneTest : public testing::Test {
   VectorXd y_;
 };
 
-using Status = QpSolver::Status;
+using Status = acc::QpSolver::Status;
 
 TEST_F(PlaneTest, FindsTheUnconstrainedMinimumWithoutAnIteration) {
   const auto result = Solve(MatrixXd::Identity(2, 2), Vector({-9, -9}), Vector({9, 9}));
@@ -117,11 +117,11 @@ TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
   const MatrixXd constraints{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, -1, 1}};
   const VectorXd lower = VectorXd::Constant(4, -1);
   const VectorXd upper = VectorXd::Constant(4, 1);
-  QpSolver warm(hessian, constraints, {});
+  acc::QpSolver warm(hessian, constraints, {});
   for (int i = 0; i < 40; ++i) {
     // GIVEN a linear term that turns, so that every limit becomes active and inactive again
     const VectorXd linear = 10 * Vector({std::cos(0.3 * i), std::sin(0.5 * i), std::cos(0.7 * i)});
-    QpSolver cold(hessian, constraints, {});
+    acc::QpSolver cold(hessian, constraints, {});
     // WHEN one solver has solved the problems before this one and the other has not
     ASSERT_EQ(warm.Solve(linear, lower, upper).status, Status::kOptimal);
     ASSERT_EQ(cold.Solve(linear, lower, upper).status, Status::kOptimal);
@@ -131,7 +131,7 @@ TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
 }
 
 TEST(QpSolverTest, NeedsNoIterationForTheProblemThatItHasJustSolved) {
-  QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
+  acc::QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
   const VectorXd linear = Vector({-3, -2});
   const VectorXd lower = Vector({0, 0});
   const VectorXd upper = Vector({1, 1});
@@ -141,7 +141,7 @@ TEST(QpSolverTest, NeedsNoIterationForTheProblemThatItHasJustSolved) {
 }
 
 TEST(QpSolverTest, ForgetsALimitThatHasBecomeInfinite) {
-  QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
+  acc::QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
   const VectorXd linear = Vector({-3, -2});
   solver.Solve(linear, Vector({0, 0}), Vector({1, 1}));
   const auto result = solver.Solve(linear, Vector({0, 0}), Vector({kInfinity, 1}));
@@ -150,7 +150,7 @@ TEST(QpSolverTest, ForgetsALimitThatHasBecomeInfinite) {
 }
 
 TEST(QpSolverTest, SolvesAFeasibleProblemAfterAnInfeasibleOne) {
-  QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
+  acc::QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
   const VectorXd linear = Vector({-3, -2});
   ASSERT_EQ(solver.Solve(linear, Vector({1, 0}), Vector({0, 1})).status, Status::kInfeasible);
   ASSERT_EQ(solver.Solve(linear, Vector({0, 0}), Vector({1, 1})).status, Status::kOptimal);
@@ -161,13 +161,13 @@ TEST(QpSolverTest, RefusesAHessianWithoutCurvature) {
   const MatrixXd constraints = MatrixXd::Identity(2, 2);
   const MatrixXd flat{{1, 1}, {1, 1}};
   const MatrixXd saddle{{1, 0}, {0, -1}};
-  EXPECT_THROW(QpSolver(flat, constraints, {}), std::domain_error);
-  EXPECT_THROW(QpSolver(saddle, constraints, {}), std::domain_error);
+  EXPECT_THROW(acc::QpSolver(flat, constraints, {}), std::domain_error);
+  EXPECT_THROW(acc::QpSolver(saddle, constraints, {}), std::domain_error);
 }
 
 TEST(QpSolverTest, SolvesWithTheHessianAlone) {
   const MatrixXd hessian{{4, 1}, {1, 3}};
-  const QpSolver solver(hessian, MatrixXd::Identity(2, 2), {});
+  const acc::QpSolver solver(hessian, MatrixXd::Identity(2, 2), {});
   const MatrixXd columns{{1, 2}, {3, 4}};
   EXPECT_TRUE((hessian * solver.SolveHessian(columns)).isApprox(columns, 1e-14));
 }

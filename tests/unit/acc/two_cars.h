@@ -15,7 +15,7 @@ struct TwoCars {
   double acceleration_mps2 = 0;  // applied during the last step
   double step_s = 0.1;
 
-  AccController::Input Sense() const {
+  acc::AccController::Input Sense() const {
     return {.distance_m = gap_m,
             .relative_speed_mps = preceding_speed_mps - speed_mps,
             .speed_mps = speed_mps,

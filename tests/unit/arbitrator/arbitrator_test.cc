@@ -47,7 +47,7 @@ Messages WithoutRadar() {
   return m;
 }
 
-const arbitration_t& Step(Arbitrator& arbitrator, const Messages& m) {
+const arbitration_t& Step(arbitrator::Arbitrator& arbitrator, const Messages& m) {
   return arbitrator.Step(m.ego, m.radar, m.lidar, m.track, m.automation, m.driver);
 }
 
@@ -63,7 +63,7 @@ Scenario Missing(MissingLidar missing) {
 constexpr double kRoundingOfRange_m = 1e-14;
 
 TEST(ArbitratorTest, CopiesTheHeader) {
-  Arbitrator arbitrator{Scenario()};
+  arbitrator::Arbitrator arbitrator{Scenario()};
   Messages m = Differing(0);
   m.ego.header = {.run_id = 5, .step = 6, .utime = 600'000};
   const arbitration_t& out = Step(arbitrator, m);
@@ -73,7 +73,7 @@ TEST(ArbitratorTest, CopiesTheHeader) {
 }
 
 TEST(ArbitratorTest, LetsTheAutomationDriveWhileTheSensorsAgree) {
-  Arbitrator arbitrator{Scenario()};
+  arbitrator::Arbitrator arbitrator{Scenario()};
   const arbitration_t& out = Step(arbitrator, Differing(0.1));
   EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
   EXPECT_EQ(out.lambda_automation, 1);
@@ -82,7 +82,7 @@ TEST(ArbitratorTest, LetsTheAutomationDriveWhileTheSensorsAgree) {
 }
 
 TEST(ArbitratorTest, LetsTheHumanDriveWhileTheSensorsDisagree) {
-  Arbitrator arbitrator{Scenario()};
+  arbitrator::Arbitrator arbitrator{Scenario()};
   const arbitration_t& out = Step(arbitrator, Differing(2));
   EXPECT_EQ(out.acceleration_mps2, kHuman_mps2);
   EXPECT_EQ(out.lambda_automation, 0);
@@ -93,10 +93,10 @@ TEST(ArbitratorTest, LetsTheHumanDriveWhileTheSensorsDisagree) {
 TEST(ArbitratorTest, StatesConflictDegreeAndThreshold) {
   Scenario scenario;
   scenario.arbitrator.threshold = 0.8;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   const arbitration_t& out = Step(arbitrator, Differing(-0.75));
   EXPECT_EQ(out.conflict_m, 0.75);
-  EXPECT_EQ(out.doc, DegreeOfConflict(0.75, 10, 1));
+  EXPECT_EQ(out.doc, conflict::DegreeOfConflict(0.75, 10, 1));
   EXPECT_EQ(out.threshold, 0.8);
 }
 
@@ -105,17 +105,17 @@ TEST(ArbitratorTest, StatesConflictDegreeAndThreshold) {
 TEST(ArbitratorTest, HandsOverExactlyAtTheThreshold) {
   Scenario scenario;
   scenario.arbitrator.threshold = 0.5;
-  Arbitrator at(scenario);
+  arbitrator::Arbitrator at(scenario);
   EXPECT_EQ(Step(at, Differing(1)).lambda_human, 1);
   scenario.arbitrator.threshold = std::nextafter(0.5, 1.0);
-  Arbitrator above(scenario);
+  arbitrator::Arbitrator above(scenario);
   EXPECT_EQ(Step(above, Differing(1)).lambda_human, 0);
 }
 
 TEST(ArbitratorTest, ThresholdZeroAlwaysCallsTheHuman) {
   Scenario scenario;
   scenario.arbitrator.threshold = 0;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   EXPECT_EQ(Step(arbitrator, Differing(0)).lambda_human, 1);
 }
 
@@ -123,7 +123,7 @@ TEST(ArbitratorTest, ThresholdOneCallsTheHumanOnlyWhereDocRoundsToOne) {
   Scenario scenario;
   scenario.arbitrator.threshold = 1;
   scenario.arbitrator.window_steps = 1;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   EXPECT_EQ(Step(arbitrator, Differing(4)).lambda_human, 0);
   EXPECT_EQ(Step(arbitrator, Differing(5)).lambda_human, 1);
 }
@@ -132,7 +132,7 @@ TEST(ArbitratorTest, PolicyNoneNeverCallsTheHumanAndStillMeasures) {
   Scenario scenario;
   scenario.arbitrator.policy = Policy::kNone;
   scenario.arbitrator.threshold = 0;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   const arbitration_t& out = Step(arbitrator, Differing(2));
   EXPECT_EQ(out.lambda_automation, 1);
   EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
@@ -142,7 +142,7 @@ TEST(ArbitratorTest, PolicyNoneNeverCallsTheHumanAndStillMeasures) {
 }
 
 TEST(ArbitratorTest, PassesAnOfferOnWhateverTheOtherOneIs) {
-  Arbitrator arbitrator{Scenario()};
+  arbitrator::Arbitrator arbitrator{Scenario()};
   Messages m = Differing(0);
   m.driver.acceleration_mps2 = std::numeric_limits<double>::infinity();
   EXPECT_EQ(Step(arbitrator, m).acceleration_mps2, kAutomation_mps2);
@@ -153,14 +153,14 @@ TEST(ArbitratorTest, ReadsTheConflictAsTheScenarioSays) {
                                           {ConflictReading::kAbsoluteOfMean, 0.5}}) {
     Scenario scenario;
     scenario.arbitrator.conflict = reading;
-    Arbitrator arbitrator(scenario);
+    arbitrator::Arbitrator arbitrator(scenario);
     Step(arbitrator, Differing(1));
     EXPECT_EQ(Step(arbitrator, Differing(-2)).conflict_m, conflict);
   }
 }
 
 TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
-  Arbitrator arbitrator(Missing(MissingLidar::kHold));
+  arbitrator::Arbitrator arbitrator(Missing(MissingLidar::kHold));
   Step(arbitrator, Differing(3));
   Step(arbitrator, Differing(1));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
@@ -170,14 +170,14 @@ TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
 }
 
 TEST(ArbitratorTest, HoldHasNothingToRepeatBeforeTheFirstDifference) {
-  Arbitrator arbitrator(Missing(MissingLidar::kHold));
+  arbitrator::Arbitrator arbitrator(Missing(MissingLidar::kHold));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 0);
   EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 0);
   EXPECT_EQ(Step(arbitrator, Differing(3)).conflict_m, 3);
 }
 
 TEST(ArbitratorTest, SkipLetsConflictAgeOutInSilence) {
-  Arbitrator arbitrator(Missing(MissingLidar::kSkip));
+  arbitrator::Arbitrator arbitrator(Missing(MissingLidar::kSkip));
   Step(arbitrator, Differing(3));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 3);
   const arbitration_t& out = Step(arbitrator, WithoutRadar());
@@ -186,7 +186,7 @@ TEST(ArbitratorTest, SkipLetsConflictAgeOutInSilence) {
 }
 
 TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
-  Arbitrator arbitrator(Missing(MissingLidar::kConflict));
+  arbitrator::Arbitrator arbitrator(Missing(MissingLidar::kConflict));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5);
   EXPECT_EQ(Step(arbitrator, Differing(1)).conflict_m, 3);
   const arbitration_t& out = Step(arbitrator, WithoutRadar());
@@ -198,13 +198,13 @@ TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
-  scenario.arbitrator.policy = FindPolicy(name).value();
+  scenario.arbitrator.policy = policies::FindPolicy(name).value();
   scenario.arbitrator.window_steps = 1;
   return scenario;
 }
 
 TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
-  Arbitrator arbitrator(WithPolicy("blend"));
+  arbitrator::Arbitrator arbitrator(WithPolicy("blend"));
   const arbitration_t& out = Step(arbitrator, Differing(1));  // DoC 1/2, half-way from 0.2 to 0.8
   EXPECT_EQ(out.lambda_human, 0.5);
   EXPECT_EQ(out.lambda_automation, 0.5);
@@ -217,7 +217,7 @@ TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
   Scenario scenario = WithPolicy("traded");
   scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
   scenario.arbitrator.transfer.duration_s = 1;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   for (int k = 1; k <= 10; ++k) {
     const arbitration_t& out = Step(arbitrator, Differing(2));
     EXPECT_NEAR(out.lambda_human, k / 10.0, 1e-12);
@@ -227,8 +227,9 @@ TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
 }
 
 TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
-  for (const PolicyRow& row : Policies()) {
-    EXPECT_EQ(Arbitrator::UsesOptionalInput(WithPolicy(row.name)), row.needs_surroundings)
+  for (const policies::PolicyRow& row : policies::Policies()) {
+    EXPECT_EQ(arbitrator::Arbitrator::UsesOptionalInput(WithPolicy(row.name)),
+              row.needs_surroundings)
         << row.name;
   }
   // GIVEN dense fog and a follower that closes in
@@ -240,7 +241,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   Messages m = Differing(0);
   m.ego.speed_mps = 20;
   m.driver.readiness = 1;
-  Arbitrator arbitrator(WithPolicy("adaptive"));
+  arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
   // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
   arbitrator.SetOptionalInput(truth);
@@ -249,16 +250,16 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
 
 TEST(ArbitratorTest, ADegreeOfConflictCanBeMadeOfAnyMeasure) {
   Scenario scenario = WithPolicy("traded");
-  scenario.arbitrator.measure =
-      static_cast<MeasureChoice>(FindConflictMeasure("nis") - ConflictMeasures().data());
+  scenario.arbitrator.measure = static_cast<MeasureChoice>(conflict::FindConflictMeasure("nis") -
+                                                           conflict::ConflictMeasures().data());
   scenario.arbitrator.measure_slope = 1;
   scenario.arbitrator.measure_centre = 6.63;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   Messages m = Differing(0.5);
   m.radar.range_std_m = m.lidar.range_std_m = 0.1;
   const arbitration_t& out = Step(arbitrator, m);
   EXPECT_NEAR(out.conflict_m, 12.5, 1e-9);  // 0.25/0.02
-  EXPECT_EQ(out.doc, DegreeOfConflict(out.conflict_m, 1, 6.63));
+  EXPECT_EQ(out.doc, conflict::DegreeOfConflict(out.conflict_m, 1, 6.63));
   EXPECT_EQ(out.mode, arbitration_t::HUMAN);
 }
 
@@ -266,7 +267,7 @@ TEST(ArbitratorTest, GoesOnFromACommandThatWasNotItsOwn) {
   Scenario scenario = WithPolicy("traded");
   scenario.arbitrator.transfer.profile = TransferProfile::kJerkLimited;
   scenario.arbitrator.transfer.jerk_mps3 = 2;
-  Arbitrator arbitrator(scenario);
+  arbitrator::Arbitrator arbitrator(scenario);
   arbitration_t sent = Step(arbitrator, Differing(0));
   sent.acceleration_mps2 = -3;
   arbitrator.Overrule(sent);
@@ -279,7 +280,7 @@ class SharedWithTheAskedTest : public testing::Test {
  protected:
   static Scenario Sharing() {
     Scenario scenario;
-    scenario.arbitrator.policy = FindPolicy("blend").value();
+    scenario.arbitrator.policy = policies::FindPolicy("blend").value();
     scenario.arbitrator.window_steps = 1;
     scenario.arbitrator.take_over = {
         .mode = TakeOverMode::kRequested, .time = {.mean_s = 1, .std_s = 1e-3}, .recovery_s = 1};
@@ -302,7 +303,7 @@ class SharedWithTheAskedTest : public testing::Test {
     return Step(arbitrator_, m);
   }
 
-  Arbitrator arbitrator_{Sharing()};
+  arbitrator::Arbitrator arbitrator_{Sharing()};
   double readiness_ = 1;
   std::int64_t step_ = 0;
 };

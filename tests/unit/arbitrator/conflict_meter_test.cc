@@ -34,21 +34,21 @@ Messages Differing() {
 Scenario With(std::string_view measure) {
   Scenario scenario;
   scenario.fusion.radar_range_std_m = 0.4;
-  scenario.arbitrator.measure =
-      static_cast<MeasureChoice>(FindConflictMeasure(measure) - ConflictMeasures().data());
+  scenario.arbitrator.measure = static_cast<MeasureChoice>(conflict::FindConflictMeasure(measure) -
+                                                           conflict::ConflictMeasures().data());
   return scenario;
 }
 
 TEST(ConflictMeterTest, GivesEachMeasureTheEvidenceOfTheMessages) {
   const Messages m = Differing();
-  const Evidence evidence{
+  const conflict::Evidence evidence{
       .radar = {true, 40, 0.1}, .lidar = {true, 38, 0.1}, .prediction = {true, 39.9, 0.05}};
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     if (row.name == "doc") continue;
     const Scenario scenario = With(row.name);
-    ConflictMeter meter(scenario);
+    arbitrator::ConflictMeter meter(scenario);
     meter.Observe(m.radar, m.lidar, m.track);
-    const auto measure = row.make(ConflictParametersOf(scenario.arbitrator));
+    const auto measure = row.make(policies::ConflictParametersOf(scenario.arbitrator));
     // The meter has added a variance and subtracted it again.
     EXPECT_NEAR(meter.conflict(), measure->Step(evidence), 1e-9 * (1 + meter.conflict()))
         << row.name;
@@ -60,16 +60,16 @@ TEST(ConflictMeterTest, MakesADegreeOfConflictOfAnyScore) {
   scenario.arbitrator.measure_slope = 0.5;
   scenario.arbitrator.measure_centre = 10;
   const Messages m = Differing();
-  ConflictMeter meter(scenario);
+  arbitrator::ConflictMeter meter(scenario);
   meter.Observe(m.radar, m.lidar, m.track);
   EXPECT_NEAR(meter.conflict(), 200, 1e-9);  // 2^2/(0.1^2 + 0.1^2)
   EXPECT_EQ(meter.DocOf(10), 0.5);
-  EXPECT_EQ(meter.DocOf(12), DegreeOfConflict(12, 0.5, 10));
+  EXPECT_EQ(meter.DocOf(12), conflict::DegreeOfConflict(12, 0.5, 10));
 }
 
 TEST(ConflictMeterTest, TakesNoWitnessOfAnotherStep) {
   Messages m = Differing();
-  ConflictMeter meter(With("witness_nis"));
+  arbitrator::ConflictMeter meter(With("witness_nis"));
   m.radar.header.step = m.lidar.header.step = 5;
   m.track.header.step = 4;
   meter.Observe(m.radar, m.lidar, m.track);
@@ -83,11 +83,11 @@ TEST(ConflictMeterTest, TakesTheKnownOffsetOffAllMeasuresButThePapers) {
   Scenario scenario = With("nis");
   scenario.arbitrator.measure_offset_m = 2;
   const Messages m = Differing();
-  ConflictMeter meter(scenario);
+  arbitrator::ConflictMeter meter(scenario);
   meter.Observe(m.radar, m.lidar, m.track);
   EXPECT_EQ(meter.conflict(), 0);
   scenario.arbitrator.measure = MeasureChoice::kDoc;
-  ConflictMeter paper(scenario);
+  arbitrator::ConflictMeter paper(scenario);
   paper.Observe(m.radar, m.lidar, m.track);
   EXPECT_EQ(paper.conflict(), 2);
 }
@@ -96,29 +96,30 @@ TEST(ConflictMeterTest, TakesAPosteriorForTheDegreeOfConflictItself) {
   Scenario scenario = With("lidar_modes");
   scenario.arbitrator.measure_scale = MeasureScale::kProbability;
   Messages m = Differing();
-  ConflictMeter meter(scenario);
-  LidarModeConflict posterior(ConflictParametersOf(scenario.arbitrator));
+  arbitrator::ConflictMeter meter(scenario);
+  conflict::LidarModeConflict posterior(policies::ConflictParametersOf(scenario.arbitrator));
   for (const double lidar_m : {40.0, 39.8, 4.0, 40.0}) {
     m.lidar.range_m = lidar_m;
     meter.Observe(m.radar, m.lidar, m.track);
-    const double score = posterior.Step({StatedBy(m.radar), StatedBy(m.lidar), {}});
+    const double score =
+        posterior.Step({policies::StatedBy(m.radar), policies::StatedBy(m.lidar), {}});
     EXPECT_EQ(meter.DocOf(meter.conflict()), score) << lidar_m;
   }
   EXPECT_TRUE(meter.is_posterior());
   scenario.arbitrator.measure_scale = MeasureScale::kLogistic;
-  EXPECT_FALSE(ConflictMeter(scenario).is_posterior());
+  EXPECT_FALSE(arbitrator::ConflictMeter(scenario).is_posterior());
 }
 
 TEST(ConflictMeterTest, RefusesToTakeAnyOtherScoreForAProbability) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     Scenario scenario = With(row.name);
     scenario.arbitrator.measure_scale = MeasureScale::kProbability;
     if (row.name == "lidar_modes") {
-      EXPECT_NO_THROW(ConflictMeter{scenario});
+      EXPECT_NO_THROW(arbitrator::ConflictMeter{scenario});
       continue;
     }
     try {
-      const ConflictMeter meter(scenario);
+      const arbitrator::ConflictMeter meter(scenario);
       ADD_FAILURE() << row.name;
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),

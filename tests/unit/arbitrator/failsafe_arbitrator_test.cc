@@ -72,19 +72,19 @@ class FailsafeArbitratorTest : public testing::Test {
     EXPECT_NEAR(out.acceleration_mps2, acceleration_mps2, 1e-12);
   }
 
-  FailsafeArbitrator arbitrator_{SomeScenario()};
+  arbitrator::FailsafeArbitrator arbitrator_{SomeScenario()};
   ego_t ego_{};
   radar_t radar_{};
   lidar_t lidar_{};
   track_t track_{};
   accel_command_t automation_{};
   driver_command_t driver_{};
-  ArbitratorInputs inputs_;
+  arbitrator::ArbitratorInputs inputs_;
   std::int64_t step_ = 0;
 };
 
 // The state of an input with such an offer.
-InputState StateOf(Offer offer) {
+InputState StateOf(arbitrator::Offer offer) {
   return offer == kThere    ? InputState::kOk
          : offer == kNotYet ? InputState::kAwaited
                             : InputState::kLost;
@@ -94,14 +94,14 @@ InputState StateOf(Offer offer) {
 // the row.
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
-  for (const FailsafeRow& row : kFailsafeTable) {
-    for (const Offer automation : {kThere, kNotYet, kGone}) {
-      for (const Offer human : {kThere, kNotYet, kGone}) {
-        for (const Conflict conflict : {kCalm, kDisputed}) {
-          if (!Applies(row, automation, human, conflict)) continue;
+  for (const arbitrator::FailsafeRow& row : arbitrator::kFailsafeTable) {
+    for (const arbitrator::Offer automation : {kThere, kNotYet, kGone}) {
+      for (const arbitrator::Offer human : {kThere, kNotYet, kGone}) {
+        for (const arbitrator::Conflict conflict : {kCalm, kDisputed}) {
+          if (!arbitrator::Applies(row, automation, human, conflict)) continue;
           ++cases;
           SCOPED_TRACE("case " + std::to_string(cases));
-          arbitrator_ = FailsafeArbitrator(SomeScenario());
+          arbitrator_ = arbitrator::FailsafeArbitrator(SomeScenario());
           SetAll(InputState::kOk);
           radar_.range_m = lidar_.range_m + (conflict == kDisputed ? 5 : 0);
           Set(inputs_.automation, StateOf(automation), automation_);
@@ -109,19 +109,19 @@ TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
           const arbitration_t& out = Step();
           EXPECT_EQ(arbitrator_.decision(), row.decision);
           switch (row.decision) {
-            case Decision::kRegular:
+            case arbitrator::Decision::kRegular:
               conflict == kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
               break;
-            case Decision::kAutomation:
+            case arbitrator::Decision::kAutomation:
               ExpectAutomation(out);
               break;
-            case Decision::kHuman:
+            case arbitrator::Decision::kHuman:
               ExpectHuman(out);
               break;
-            case Decision::kHold:
+            case arbitrator::Decision::kHold:
               EXPECT_EQ(out.acceleration_mps2, kApplied_mps2);
               break;
-            case Decision::kMinimalRisk:
+            case arbitrator::Decision::kMinimalRisk:
               ExpectMinimalRisk(out, kApplied_mps2 - 0.2);
               break;
           }
@@ -183,7 +183,7 @@ TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
 TEST_F(FailsafeArbitratorTest, CountsThePairOfAStepOnce) {
   Scenario scenario = SomeScenario();
   scenario.arbitrator.window_steps = 4;
-  arbitrator_ = FailsafeArbitrator(scenario);
+  arbitrator_ = arbitrator::FailsafeArbitrator(scenario);
   // GIVEN differences of 0, 0 and 2 m
   Step();
   Step();
@@ -222,16 +222,16 @@ TEST_F(FailsafeArbitratorTest, StopsOnDemand) {
   ExpectAutomation(Step());
   arbitrator_.DemandMinimalRisk();
   ExpectMinimalRisk(Step(), kApplied_mps2 - 0.2);
-  EXPECT_EQ(arbitrator_.decision(), Decision::kMinimalRisk);
+  EXPECT_EQ(arbitrator_.decision(), arbitrator::Decision::kMinimalRisk);
 }
 
 TEST_F(FailsafeArbitratorTest, HandsBackOnceTheAutomationIsThereAgain) {
   inputs_.automation.state = InputState::kLost;
   ExpectHuman(Step());
-  EXPECT_EQ(FallbackText(arbitrator_.decision()), "the human drives");
+  EXPECT_EQ(arbitrator::FallbackText(arbitrator_.decision()), "the human drives");
   inputs_.automation.state = InputState::kOk;
   ExpectAutomation(Step());
-  EXPECT_EQ(FallbackText(arbitrator_.decision()), "");
+  EXPECT_EQ(arbitrator::FallbackText(arbitrator_.decision()), "");
 }
 
 }  // namespace

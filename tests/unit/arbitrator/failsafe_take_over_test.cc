@@ -51,14 +51,14 @@ class FailsafeTakeOverTest : public testing::Test {
   }
   void Agree() { radar_.range_m = lidar_.range_m; }
 
-  FailsafeArbitrator arbitrator_{Asking()};
+  arbitrator::FailsafeArbitrator arbitrator_{Asking()};
   ego_t ego_{};
   radar_t radar_{};
   lidar_t lidar_{};
   track_t track_{};
   accel_command_t automation_{};
   driver_command_t driver_{};
-  ArbitratorInputs inputs_;
+  arbitrator::ArbitratorInputs inputs_;
   arbitration_t last_{};
   std::int64_t step_ = 0;
 };

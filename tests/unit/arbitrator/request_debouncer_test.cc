@@ -11,19 +11,19 @@ namespace {
 
 constexpr double kThreshold = 0.5;
 
-double Step(RequestDebouncer& steady, double doc) {
+double Step(arbitrator::RequestDebouncer& steady, double doc) {
   return steady.Step(Compare(doc, kThreshold), doc);
 }
 
 TEST(RequestDebouncerTest, WithoutHysteresisIsTheComparison) {
-  RequestDebouncer steady(TransferSection{}, 0.1);
+  arbitrator::RequestDebouncer steady(TransferSection{}, 0.1);
   for (const double doc : {0.0, 0.5, 0.49, 1.0, 0.2}) {
     EXPECT_EQ(Step(steady, doc), doc >= kThreshold ? 1 : 0);
   }
 }
 
 TEST(RequestDebouncerTest, BandLetsTheAutomationReturnOnlyBelowIt) {
-  RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = 0.2}, 0.1);
+  arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = 0.2}, 0.1);
   EXPECT_EQ(Step(steady, 0.49), 0);
   EXPECT_EQ(Step(steady, 0.5), 1);
   EXPECT_EQ(Step(steady, 0.31), 1);
@@ -34,8 +34,8 @@ TEST(RequestDebouncerTest, BandLetsTheAutomationReturnOnlyBelowIt) {
 // With DoC 0.9 against 0.5, L grows by ln 9 = 2.197 in a step. The third step exceeds ln 99 =
 // 4.595.
 TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
-  RequestDebouncer steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01},
-                          0.1);
+  arbitrator::RequestDebouncer steady(
+      {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
   for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(steady, 0.9), expected);
   // The last step above already belongs to the next test. Three times -ln 9 leaves -4.39, so a
   // fourth is needed.
@@ -43,23 +43,23 @@ TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
 }
 
 TEST(RequestDebouncerTest, SprtDecidesWithWaldsBounds) {
-  RequestDebouncer eager({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.2, .sprt_beta = 0.01},
-                         0.1);
+  arbitrator::RequestDebouncer eager(
+      {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.2, .sprt_beta = 0.01}, 0.1);
   EXPECT_EQ(Step(eager, 0.84), 1) << "ln(0.99/0.2) = 1.60 < logit(0.84) = 1.66";
-  RequestDebouncer slow({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.2, .sprt_beta = 0.01},
-                        0.1);
+  arbitrator::RequestDebouncer slow(
+      {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.2, .sprt_beta = 0.01}, 0.1);
   EXPECT_EQ(Step(slow, 0.82), 0) << "logit(0.82) = 1.52";
 }
 
 TEST(RequestDebouncerTest, SprtStaysFiniteWhereDocOrThresholdIsRoundedToOneOrNought) {
-  RequestDebouncer steady({.hysteresis = Hysteresis::kSprt}, 0.1);
+  arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kSprt}, 0.1);
   EXPECT_EQ(steady.Step(Compare(1, 1), 1), 0) << "no evidence either way";
   EXPECT_EQ(steady.Step(Compare(1, 0), 1), 1);
   EXPECT_EQ(steady.Step(Compare(0, 1), 0), 0);
 }
 
 TEST(RequestDebouncerTest, StaysAtLeastItsTime) {
-  RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
+  arbitrator::RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
   EXPECT_EQ(Step(steady, 1), 1) << "nothing to wait for before the first transfer";
   EXPECT_EQ(Step(steady, 0), 1);
   EXPECT_EQ(Step(steady, 0), 1);
@@ -68,7 +68,7 @@ TEST(RequestDebouncerTest, StaysAtLeastItsTime) {
 }
 
 TEST(RequestDebouncerTest, TakesTheWishOfTheMomentWhenTheStayIsOver) {
-  RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
+  arbitrator::RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
   Step(steady, 1);
   Step(steady, 0);
   Step(steady, 0);
@@ -76,7 +76,8 @@ TEST(RequestDebouncerTest, TakesTheWishOfTheMomentWhenTheStayIsOver) {
 }
 
 TEST(RequestDebouncerTest, LetsAFirmWishPass) {
-  RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = 0.5, .min_dwell_s = 60}, 0.1);
+  arbitrator::RequestDebouncer steady(
+      {.hysteresis = Hysteresis::kBand, .band = 0.5, .min_dwell_s = 60}, 0.1);
   Step(steady, 1);
   EXPECT_EQ(steady.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
 }
@@ -85,7 +86,7 @@ TEST(RequestDebouncerTest, LetsAFirmWishPass) {
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
-      RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
+      arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
       const auto step = [&](double doc) { return steady.Step(Compare(doc, threshold), doc); };
       EXPECT_EQ(step(threshold), 1);
       const double lower = threshold - std::min(band, threshold / 2);
@@ -97,8 +98,8 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
 
 // ln(0.99/0.01) = 4.595: a posterior of 0.99 is this much evidence against 0.5, at any time.
 TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
-  RequestDebouncer steady({.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01},
-                          0.1, true);
+  arbitrator::RequestDebouncer steady(
+      {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1, true);
   for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.98), 0);
   EXPECT_EQ(Step(steady, 0.991), 1);
   for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.02), 1);

@@ -38,7 +38,7 @@ class SensorPairsTest : public testing::Test {
     EXPECT_EQ(pairs_.lidar().range_m, Lidar(step).range_m);
   }
 
-  SensorPairs pairs_{kSection};
+  arbitrator::SensorPairs pairs_{kSection};
 };
 
 TEST_F(SensorPairsTest, PairsTheMessagesOfTheStep) {

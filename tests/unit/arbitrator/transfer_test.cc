@@ -10,22 +10,23 @@ namespace fogline {
 namespace {
 
 constexpr double kStep_s = 0.1;
-constexpr Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_mps2 = 1.0};
+constexpr arbitrator::Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_mps2 = 1.0};
 // The rounding of sums of some tens of changes.
 constexpr double kRounding = 1e-12;
 
 // The states in `count` steps with this wanted authority of the human.
-std::vector<Transfer::State> Steps(Transfer& transfer, double wanted, int count,
-                                   const Transfer::Offers& offers = kOffers) {
-  std::vector<Transfer::State> states;
+std::vector<arbitrator::Transfer::State> Steps(
+    arbitrator::Transfer& transfer, double wanted, int count,
+    const arbitrator::Transfer::Offers& offers = kOffers) {
+  std::vector<arbitrator::Transfer::State> states;
   for (int i = 0; i < count; ++i) states.push_back(transfer.Step(wanted, offers, -0.5));
   return states;
 }
 
 TEST(TransferTest, StepHandsOverAtOnceAndPassesTheOfferOnBitByBit) {
-  Transfer transfer(TransferSection{}, kStep_s);
+  arbitrator::Transfer transfer(TransferSection{}, kStep_s);
   EXPECT_EQ(Steps(transfer, 0, 1)[0].acceleration_mps2, -0.5);
-  const Transfer::State state = Steps(transfer, 1, 1)[0];
+  const arbitrator::Transfer::State state = Steps(transfer, 1, 1)[0];
   EXPECT_EQ(state.lambda_human, 1);
   EXPECT_EQ(state.acceleration_mps2, 1.0);
 }
@@ -34,13 +35,13 @@ TEST(TransferTest, PassesAnOfferOnWhateverTheOtherOneIs) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {
-    Transfer transfer({.profile = profile}, kStep_s);
+    arbitrator::Transfer transfer({.profile = profile}, kStep_s);
     EXPECT_EQ(Steps(transfer, 0, 1, {-0.5, kNone})[0].acceleration_mps2, -0.5);
   }
 }
 
 TEST(TransferTest, LinearTakesItsDurationThereAndBack) {
-  Transfer transfer({.profile = TransferProfile::kLinear, .duration_s = 2}, kStep_s);
+  arbitrator::Transfer transfer({.profile = TransferProfile::kLinear, .duration_s = 2}, kStep_s);
   const auto there = Steps(transfer, 1, 21);
   for (int i = 0; i < 20; ++i) {
     EXPECT_NEAR(there[static_cast<std::size_t>(i)].lambda_human, (i + 1) / 20.0, kRounding);
@@ -56,7 +57,7 @@ TEST(TransferTest, LinearTakesItsDurationThereAndBack) {
 }
 
 TEST(TransferTest, SigmoidIsSymmetricSteepestInTheMiddleAndEndsExactly) {
-  Transfer transfer({.profile = TransferProfile::kSigmoid, .duration_s = 2}, kStep_s);
+  arbitrator::Transfer transfer({.profile = TransferProfile::kSigmoid, .duration_s = 2}, kStep_s);
   const auto there = Steps(transfer, 1, 21);
   for (std::size_t i = 0; i < 19; ++i) {
     EXPECT_NEAR(there[i].lambda_human + there[18 - i].lambda_human, 1, 1e-9);
@@ -69,7 +70,7 @@ TEST(TransferTest, SigmoidIsSymmetricSteepestInTheMiddleAndEndsExactly) {
 
 TEST(TransferTest, RampsTurnRoundWhereTheyAre) {
   for (const TransferProfile profile : {TransferProfile::kLinear, TransferProfile::kSigmoid}) {
-    Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
+    arbitrator::Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
     const double half_way = Steps(transfer, 1, 4).back().lambda_human;
     const double back = Steps(transfer, 0, 1)[0].lambda_human;
     EXPECT_LT(back, half_way);
@@ -80,13 +81,14 @@ TEST(TransferTest, RampsTurnRoundWhereTheyAre) {
 
 TEST(TransferTest, RampsFollowSharedAuthorityToItsValue) {
   for (const TransferProfile profile : {TransferProfile::kLinear, TransferProfile::kSigmoid}) {
-    Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
+    arbitrator::Transfer transfer({.profile = profile, .duration_s = 1}, kStep_s);
     EXPECT_EQ(Steps(transfer, 0.3, 20).back().lambda_human, 0.3);
   }
 }
 
 TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
-  Transfer transfer({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
+  arbitrator::Transfer transfer({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2},
+                                kStep_s);
   Steps(transfer, 0, 3);
   const auto states = Steps(transfer, 1, 10);
   EXPECT_EQ(states[0].lambda_human, 1);
@@ -99,14 +101,15 @@ TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
 }
 
 TEST(TransferTest, TheFirstCommandGoesOnFromWhatTheHostDoes) {
-  Transfer transfer({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
+  arbitrator::Transfer transfer({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2},
+                                kStep_s);
   EXPECT_NEAR(transfer.Step(1, kOffers, 0.1).acceleration_mps2, 0.3, kRounding);
 }
 
 TEST(TransferTest, EmergencyBrakingIsObeyedAtOnce) {
   for (const bool gate : {false, true}) {
-    Transfer transfer({.profile = TransferProfile::kJerkLimited, .yield_mps2 = 3.5, .gate = gate},
-                      kStep_s);
+    arbitrator::Transfer transfer(
+        {.profile = TransferProfile::kJerkLimited, .yield_mps2 = 3.5, .gate = gate}, kStep_s);
     Steps(transfer, 0, 3);
     Steps(transfer, 1, 2);
     EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -4.0})[0].acceleration_mps2, -4.0);
@@ -116,7 +119,7 @@ TEST(TransferTest, EmergencyBrakingIsObeyedAtOnce) {
 }
 
 TEST(TransferTest, GateLimitsAccelerationForItsTimeAndJerkUntilTheCommandHasCaughtUp) {
-  Transfer transfer(
+  arbitrator::Transfer transfer(
       {.gate = true, .gate_s = 3, .gate_acceleration_mps2 = 0.5, .gate_jerk_mps3 = 0.5}, kStep_s);
   Steps(transfer, 0, 3);
   const auto gated = Steps(transfer, 1, 30);
@@ -130,11 +133,11 @@ TEST(TransferTest, GateLimitsAccelerationForItsTimeAndJerkUntilTheCommandHasCaug
 }
 
 TEST(TransferTest, GoesOnFromWhatWasDecidedElsewhere) {
-  Transfer ramp({.profile = TransferProfile::kLinear, .duration_s = 1}, kStep_s);
+  arbitrator::Transfer ramp({.profile = TransferProfile::kLinear, .duration_s = 1}, kStep_s);
   ramp.Overrule({.lambda_human = 1, .acceleration_mps2 = 1});
   EXPECT_NEAR(Steps(ramp, 0, 1)[0].lambda_human, 0.9, kRounding);
 
-  Transfer limited({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
+  arbitrator::Transfer limited({.profile = TransferProfile::kJerkLimited, .jerk_mps3 = 2}, kStep_s);
   Steps(limited, 0, 1);
   limited.Overrule({.lambda_human = 0, .acceleration_mps2 = -3});
   EXPECT_NEAR(Steps(limited, 1, 1)[0].acceleration_mps2, -2.8, kRounding);

@@ -13,7 +13,7 @@ namespace {
 // The error text for a --free, or "".
 std::string ErrorOf(const std::string& text) {
   try {
-    const FreeField field(text);
+    const calibrate::FreeField field(text);
     return "";
   } catch (const InputError& error) {
     return error.what();
@@ -21,19 +21,19 @@ std::string ErrorOf(const std::string& text) {
 }
 
 TEST(FreeFieldTest, KnowsItsBoundsUnitAndScale) {
-  const FreeField field("/follower/weight_distance=0.001:10:log");
+  const calibrate::FreeField field("/follower/weight_distance=0.001:10:log");
   EXPECT_EQ(field.pointer(), "/follower/weight_distance");
   EXPECT_EQ(field.lowest(), 0.001);
   EXPECT_EQ(field.highest(), 10);
   EXPECT_TRUE(field.is_logarithmic());
   EXPECT_FALSE(field.is_integer());
-  EXPECT_EQ(FreeField("/fog/bias_m=0.2:0.4").unit(), "m");
+  EXPECT_EQ(calibrate::FreeField("/fog/bias_m=0.2:0.4").unit(), "m");
 }
 
 TEST(FreeFieldTest, RunsFromBoundToBound) {
   for (const char* text : {"/fog/bias_m=0.2:0.4", "/follower/weight_distance=0.001:10:log",
                            "/radar/bias_m=-0.123456789:0.3", "/arbitrator/window_steps=3:11"}) {
-    const FreeField field(text);
+    const calibrate::FreeField field(text);
     EXPECT_EQ(field.ValueAt(0), field.lowest()) << text;
     EXPECT_EQ(field.ValueAt(1), field.highest()) << text;
     EXPECT_EQ(field.ValueAt(-0.5), field.lowest()) << text;
@@ -43,7 +43,7 @@ TEST(FreeFieldTest, RunsFromBoundToBound) {
 
 TEST(FreeFieldTest, ReturnsToTheShareOfAValue) {
   for (const char* text : {"/fog/bias_m=0.2:0.4", "/follower/weight_distance=0.001:10:log"}) {
-    const FreeField field(text);
+    const calibrate::FreeField field(text);
     for (const double share : {0.0, 0.123, 0.5, 0.999}) {
       // A value is rounded to 1e-5 of the range or finer.
       EXPECT_NEAR(field.ShareOf(field.ValueAt(share)), share, 1e-5) << text;
@@ -52,25 +52,26 @@ TEST(FreeFieldTest, ReturnsToTheShareOfAValue) {
 }
 
 TEST(FreeFieldTest, GoesInEqualFactorsOnALogarithmicScale) {
-  EXPECT_DOUBLE_EQ(FreeField("/follower/weight_distance=0.01:100:log").ValueAt(0.5), 1);
-  EXPECT_DOUBLE_EQ(FreeField("/follower/weight_distance=0.01:100").ValueAt(0.5), 50.005);
+  EXPECT_DOUBLE_EQ(calibrate::FreeField("/follower/weight_distance=0.01:100:log").ValueAt(0.5), 1);
+  EXPECT_DOUBLE_EQ(calibrate::FreeField("/follower/weight_distance=0.01:100").ValueAt(0.5), 50.005);
 }
 
 TEST(FreeFieldTest, HasValuesWithFewDigits) {
-  EXPECT_EQ(FreeField("/fog/bias_m=0.2:0.4").ValueAt(1.0 / 3), 0.266667);
-  EXPECT_EQ(FreeField("/fog/bias_m=0:100").ValueAt(1.0 / 3), 33.333);
-  EXPECT_EQ(FreeField("/follower/weight_distance=0.001:10:log").ValueAt(1.0 / 3), 0.0215443);
+  EXPECT_EQ(calibrate::FreeField("/fog/bias_m=0.2:0.4").ValueAt(1.0 / 3), 0.266667);
+  EXPECT_EQ(calibrate::FreeField("/fog/bias_m=0:100").ValueAt(1.0 / 3), 33.333);
+  EXPECT_EQ(calibrate::FreeField("/follower/weight_distance=0.001:10:log").ValueAt(1.0 / 3),
+            0.0215443);
 }
 
 TEST(FreeFieldTest, RoundsIntegers) {
-  const FreeField field("/arbitrator/window_steps=3:11");
+  const calibrate::FreeField field("/arbitrator/window_steps=3:11");
   EXPECT_EQ(field.ValueAt(0.49), 7);
   EXPECT_EQ(field.ValueAt(0.57), 8);
 }
 
 TEST(FreeFieldTest, ReadsAndSetsTheScenario) {
   Scenario scenario;
-  const FreeField field("/lidar/beam/pulse_half_width_ns=1:20");
+  const calibrate::FreeField field("/lidar/beam/pulse_half_width_ns=1:20");
   EXPECT_EQ(field.Get(scenario), scenario.lidar.beam.pulse_half_width_ns);
   field.Set(scenario, 7);
   EXPECT_EQ(scenario.lidar.beam.pulse_half_width_ns, 7);
@@ -125,9 +126,9 @@ TEST(FreeFieldTest, LeavesSeedsAndThresholdsToOtherOptions) {
 }
 
 TEST(FreeFieldTest, IsGivenOnce) {
-  EXPECT_EQ(ParseFreeFields({"/fog/bias_m=0:1", "/radar/bias_m=0:1"}).size(), 2U);
+  EXPECT_EQ(calibrate::ParseFreeFields({"/fog/bias_m=0:1", "/radar/bias_m=0:1"}).size(), 2U);
   try {
-    ParseFreeFields({"/fog/bias_m=0:1", "/radar/bias_m=0:1", "/fog/bias_m=0:2"});
+    calibrate::ParseFreeFields({"/fog/bias_m=0:1", "/radar/bias_m=0:1", "/fog/bias_m=0:2"});
     FAIL() << "accepted twice";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "error: --free /fog/bias_m=0:2: given twice");

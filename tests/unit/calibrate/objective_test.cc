@@ -14,27 +14,27 @@ namespace {
 bool Always() { return true; }
 
 // A short run in fog with noise, so that the seeds give different results.
-CalibrationProblem ShortProblem() {
-  CalibrationProblem problem;
+calibrate::CalibrationProblem ShortProblem() {
+  calibrate::CalibrationProblem problem;
   problem.scenario = ParseScenario(R"({"version": 1, "steps": 120,
     "fog": {"model": "bias", "profile": "half_sine", "start_s": 2, "duration_s": 8, "bias_m": 0.4},
     "radar": {"bias_m": 0.95, "range_std_m": 0.02}, "lidar": {"range_std_m": 0.01}})");
-  problem.fields = ParseFreeFields({"/fog/bias_m=0.2:0.6"});
+  problem.fields = calibrate::ParseFreeFields({"/fog/bias_m=0.2:0.6"});
   problem.target = {{.threshold = 0.5, .si_pct = 80, .rhe_pct = 1},
                     {.threshold = 0.8, .si_pct = 10, .rhe_pct = 0}};
   problem.seeds = {1, 4};
   return problem;
 }
 
-Evaluation Evaluate(const CalibrationProblem& problem, double value = 0.4) {
+calibrate::Evaluation Evaluate(const calibrate::CalibrationProblem& problem, double value = 0.4) {
   const double values[] = {value};
-  return *Objective(problem).Evaluate(values, Always);
+  return *calibrate::Objective(problem).Evaluate(values, Always);
 }
 
 TEST(ObjectiveTest, IsZeroForTheTableThatTheScenarioHas) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.spread_weight = 0;
-  const Evaluation first = Evaluate(problem);
+  const calibrate::Evaluation first = Evaluate(problem);
   for (std::size_t i = 0; i < problem.target.size(); ++i) {
     problem.target[i].si_pct = first.rows[i].si_pct.mean();
     problem.target[i].rhe_pct = first.rows[i].rhe_pct.mean();
@@ -44,13 +44,13 @@ TEST(ObjectiveTest, IsZeroForTheTableThatTheScenarioHas) {
 }
 
 TEST(ObjectiveTest, IsTheWeightedSumOfSquares) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.rhe_weight = 3;
   problem.spread_weight = 0.5;
-  const Evaluation evaluation = Evaluate(problem);
+  const calibrate::Evaluation evaluation = Evaluate(problem);
   double sum = 0;
   for (std::size_t i = 0; i < problem.target.size(); ++i) {
-    const TableRow& row = evaluation.rows[i];
+    const calibrate::TableRow& row = evaluation.rows[i];
     const double si = *row.si_pct.mean() - *problem.target[i].si_pct;
     const double rhe = *row.rhe_pct.mean() - *problem.target[i].rhe_pct;
     const double deviation = *row.si_pct.deviation();
@@ -61,10 +61,10 @@ TEST(ObjectiveTest, IsTheWeightedSumOfSquares) {
 }
 
 TEST(ObjectiveTest, PassesOverNumbersThatTheTargetDoesNotHave) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.spread_weight = 0;
   const double whole = Evaluate(problem).objective;
-  CalibrationProblem rest = problem;
+  calibrate::CalibrationProblem rest = problem;
   problem.target[0].si_pct.reset();
   problem.target[1].rhe_pct.reset();
   rest.target[0].rhe_pct.reset();
@@ -74,22 +74,22 @@ TEST(ObjectiveTest, PassesOverNumbersThatTheTargetDoesNotHave) {
 
 TEST(ObjectiveTest, CountsSeedsWithoutCompromisedSafetyAsFarFromTheTarget) {
   // GIVEN a floor above the shortfall of every gap, so that no seed has an SI
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.scenario.measures.safety_floor_m = 10;
-  const Evaluation evaluation = Evaluate(problem);
+  const calibrate::Evaluation evaluation = Evaluate(problem);
   EXPECT_EQ(evaluation.rows[0].si_pct.count(), 0);
   EXPECT_GE(evaluation.objective, 2 * 1000.0 * 1000.0);
 }
 
 TEST(ObjectiveTest, DoesNotDependOnTheNumberOfThreads) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   const double one = Evaluate(problem).objective;
   problem.jobs = 3;
   EXPECT_EQ(Evaluate(problem).objective, one);
 }
 
 TEST(ObjectiveTest, TellsWhyAScenarioCannotRun) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.scenario.step_s = 1;
   AccSection& acc = problem.scenario.acc;
   acc.horizon_steps = 60;
@@ -104,19 +104,20 @@ TEST(ObjectiveTest, TellsWhyAScenarioCannotRun) {
             "scenario: error: ACC: the weights make an ill-conditioned problem; raise "
             "weight_control or lower the other weights or horizon_steps (at "
             "/arbitrator/threshold=0.5, seed 1) with /fog/bias_m=0.4");
-  EXPECT_THROW(Calibrate(Objective(problem), 5, Always, [](int, double) {}), InputError);
+  EXPECT_THROW(calibrate::Calibrate(calibrate::Objective(problem), 5, Always, [](int, double) {}),
+               InputError);
 }
 
 TEST(ObjectiveTest, StopsWhenAsked) {
   const double values[] = {0.4};
-  EXPECT_FALSE(Objective(ShortProblem()).Evaluate(values, [] { return false; }));
+  EXPECT_FALSE(calibrate::Objective(ShortProblem()).Evaluate(values, [] { return false; }));
 }
 
 TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
-  CalibrationProblem problem = ShortProblem();
+  calibrate::CalibrationProblem problem = ShortProblem();
   problem.scenario.arbitrator.policy = Policy::kNone;
   try {
-    const Objective objective(problem);
+    const calibrate::Objective objective(problem);
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
@@ -126,8 +127,8 @@ TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
 }
 
 TEST(CalibrateTest, IsNeverWorseThanTheStart) {
-  const Objective objective(ShortProblem());
-  const auto found = Calibrate(objective, 10, Always, [](int, double) {});
+  const calibrate::Objective objective(ShortProblem());
+  const auto found = calibrate::Calibrate(objective, 10, Always, [](int, double) {});
   ASSERT_TRUE(found && found->objective_at_start);
   EXPECT_LE(found->best.objective, *found->objective_at_start);
   EXPECT_EQ(*found->objective_at_start, Evaluate(ShortProblem()).objective);
@@ -138,19 +139,20 @@ TEST(CalibrateTest, IsNeverWorseThanTheStart) {
 TEST(CalibrateTest, ReportsOnlyProgress) {
   double last = std::numeric_limits<double>::infinity();
   int evaluations = 0;
-  Calibrate(Objective(ShortProblem()), 10, Always, [&](int done, double best) {
-    EXPECT_EQ(done, evaluations + 1);
-    EXPECT_LE(best, last);
-    evaluations = done;
-    last = best;
-  });
+  calibrate::Calibrate(calibrate::Objective(ShortProblem()), 10, Always,
+                       [&](int done, double best) {
+                         EXPECT_EQ(done, evaluations + 1);
+                         EXPECT_LE(best, last);
+                         evaluations = done;
+                         last = best;
+                       });
   EXPECT_EQ(evaluations, 10);
 }
 
 TEST(CalibrateTest, KeepsTheBestWhenStopped) {
   int evaluations = 0;
-  const auto found = Calibrate(
-      Objective(ShortProblem()), 1000, [&] { return evaluations < 3; },
+  const auto found = calibrate::Calibrate(
+      calibrate::Objective(ShortProblem()), 1000, [&] { return evaluations < 3; },
       [&](int done, double) { evaluations = done; });
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->interrupted);
@@ -159,16 +161,16 @@ TEST(CalibrateTest, KeepsTheBestWhenStopped) {
 }
 
 TEST(CalibrateTest, HasNothingWhenStoppedBeforeTheFirstTable) {
-  EXPECT_FALSE(Calibrate(
-      Objective(ShortProblem()), 10, [] { return false; }, [](int, double) {}));
+  EXPECT_FALSE(calibrate::Calibrate(
+      calibrate::Objective(ShortProblem()), 10, [] { return false; }, [](int, double) {}));
 }
 
 TEST(SensitivityTest, IsTheSlopeOfTheTable) {
   // GIVEN the tables at half a percent of the range (0.002 m) on either side
-  const CalibrationProblem problem = ShortProblem();
-  const Evaluation below = Evaluate(problem, 0.398);
-  const Evaluation above = Evaluate(problem, 0.402);
-  const auto changes = Sensitivities(Objective(problem), {0.4}, Always);
+  const calibrate::CalibrationProblem problem = ShortProblem();
+  const calibrate::Evaluation below = Evaluate(problem, 0.398);
+  const calibrate::Evaluation above = Evaluate(problem, 0.402);
+  const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
     // THEN the change for 1 % is the difference of the tables; values are rounded to 1e-6 m of the
@@ -180,11 +182,11 @@ TEST(SensitivityTest, IsTheSlopeOfTheTable) {
 }
 
 TEST(SensitivityTest, LooksToOneSideAtABoundAndAWholeStepForAnInteger) {
-  CalibrationProblem problem = ShortProblem();
-  problem.fields = ParseFreeFields({"/arbitrator/window_steps=8:16"});
-  const Evaluation here = Evaluate(problem, 8);
-  const Evaluation next = Evaluate(problem, 9);
-  const auto changes = Sensitivities(Objective(problem), {8}, Always);
+  calibrate::CalibrationProblem problem = ShortProblem();
+  problem.fields = calibrate::ParseFreeFields({"/arbitrator/window_steps=8:16"});
+  const calibrate::Evaluation here = Evaluate(problem, 8);
+  const calibrate::Evaluation next = Evaluate(problem, 9);
+  const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {8}, Always);
   ASSERT_TRUE(changes);
   // One step of eight is 12.5 % of the range.
   EXPECT_NEAR(*(*changes)[0][0].si_pct,

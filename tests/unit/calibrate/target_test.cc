@@ -14,9 +14,9 @@ namespace {
 
 class TargetTest : public testing::Test {
  protected:
-  std::vector<TargetRow> Read(const std::string& text) const {
+  std::vector<calibrate::TargetRow> Read(const std::string& text) const {
     std::ofstream(file_) << text;
-    return ReadTarget(file_);
+    return calibrate::ReadTarget(file_);
   }
   // The error text for a file, without the file's name at its beginning.
   std::string ErrorOf(const std::string& text) const {
@@ -76,7 +76,7 @@ TEST_F(TargetTest, NeedsRows) {
 
 TEST_F(TargetTest, NeedsAFile) {
   try {
-    ReadTarget("/nowhere/table.json");
+    calibrate::ReadTarget("/nowhere/table.json");
     FAIL() << "read";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
@@ -87,7 +87,7 @@ TEST_F(TargetTest, NeedsAFile) {
 TEST_F(TargetTest, CanBeThePublishedRows) {
   Scenario scenario;
   scenario.published = {{.threshold = 0.8, .si_pct = 10.23, .rhe_pct = 0}};
-  const auto target = PublishedTarget(scenario);
+  const auto target = calibrate::PublishedTarget(scenario);
   ASSERT_EQ(target.size(), 1U);
   EXPECT_EQ(target[0].threshold, 0.8);
   EXPECT_EQ(target[0].si_pct, 10.23);

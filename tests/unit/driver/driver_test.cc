@@ -24,7 +24,7 @@ truth_t Truth() {
 }
 
 TEST(DriverTest, CopiesTheHeader) {
-  Driver driver{Scenario()};
+  driver::Driver driver{Scenario()};
   const driver_command_t& command = driver.Step(Truth());
   EXPECT_EQ(command.header.run_id, 9);
   EXPECT_EQ(command.header.step, 4);
@@ -33,19 +33,20 @@ TEST(DriverTest, CopiesTheHeader) {
 
 TEST(DriverTest, DrivesByTheTrueGapAndSpeeds) {
   Scenario scenario;
-  Driver driver(scenario);
-  EXPECT_EQ(driver.Step(Truth()).acceleration_mps2, Idm(scenario.driver).Acceleration(20, 18, 40));
+  driver::Driver driver(scenario);
+  EXPECT_EQ(driver.Step(Truth()).acceleration_mps2,
+            models::Idm(scenario.driver).Acceleration(20, 18, 40));
 }
 
 TEST(DriverTest, IsAsReadyAsTheScenarioSays) {
   Scenario scenario;
-  EXPECT_EQ(Driver(scenario).Step(Truth()).readiness, 1.0);
+  EXPECT_EQ(driver::Driver(scenario).Step(Truth()).readiness, 1.0);
   scenario.driver.readiness = 0.25;
-  EXPECT_EQ(Driver(scenario).Step(Truth()).readiness, 0.25);
+  EXPECT_EQ(driver::Driver(scenario).Step(Truth()).readiness, 0.25);
 }
 
 TEST(DriverTest, SeesInFogAsInClearAir) {
-  Driver driver{Scenario()};
+  driver::Driver driver{Scenario()};
   const double clear = driver.Step(Truth()).acceleration_mps2;
   truth_t fog = Truth();
   fog.fog_present = 1;
@@ -55,7 +56,7 @@ TEST(DriverTest, SeesInFogAsInClearAir) {
 }
 
 TEST(DriverTest, HasNoMemory) {
-  Driver driver{Scenario()};
+  driver::Driver driver{Scenario()};
   const double first = driver.Step(Truth()).acceleration_mps2;
   truth_t emergency = Truth();
   emergency.host_gap_m = 1;
@@ -78,12 +79,12 @@ truth_t TruthOf(std::int64_t step) {
   return truth;
 }
 
-Situation SituationOf(const truth_t& truth) {
+models::Situation SituationOf(const truth_t& truth) {
   return {.speed_mps = truth.host_speed_mps,
           .acceleration_mps2 = truth.host_acceleration_mps2,
-          .ahead = CarAhead{.gap_m = truth.host_gap_m,
-                            .speed_mps = truth.preceding_speed_mps,
-                            .acceleration_mps2 = truth.preceding_acceleration_mps2}};
+          .ahead = models::CarAhead{.gap_m = truth.host_gap_m,
+                                    .speed_mps = truth.preceding_speed_mps,
+                                    .acceleration_mps2 = truth.preceding_acceleration_mps2}};
 }
 
 constexpr std::int64_t kSteps = 60;
@@ -91,7 +92,7 @@ constexpr std::int64_t kSteps = 60;
 /// Expects that he does in every step what this model computes.
 void ExpectDrives(const Scenario& scenario,
                   const std::function<double(const truth_t& truth)>& model) {
-  Driver driver(scenario);
+  driver::Driver driver(scenario);
   for (std::int64_t step = 0; step < kSteps; ++step) {
     const truth_t truth = TruthOf(step);
     EXPECT_EQ(driver.Step(truth).acceleration_mps2, model(truth)) << step;
@@ -103,7 +104,7 @@ TEST(DriverTest, FollowsByTheModelOfTheScenario) {
     Scenario scenario;
     scenario.human.following = kind;
     scenario.human.coolness = 0.7;
-    const Following model(kind, scenario.driver, 0.7);
+    const models::Following model(kind, scenario.driver, 0.7);
     ExpectDrives(scenario,
                  [&](const truth_t& truth) { return model.Acceleration(SituationOf(truth)); });
   }
@@ -112,8 +113,8 @@ TEST(DriverTest, FollowsByTheModelOfTheScenario) {
 TEST(DriverTest, SeesWhatFogLeavesOfTheTruth) {
   Scenario scenario;
   scenario.human.sight = Sight::kFog;
-  const FogSight sight(scenario.human.fog_sight);
-  const Following model(FollowingModel::kIdm, scenario.driver);
+  const models::FogSight sight(scenario.human.fog_sight);
+  const models::Following model(FollowingModel::kIdm, scenario.driver);
   ExpectDrives(scenario, [&](const truth_t& truth) {
     return model.Acceleration(sight.Perceive(SituationOf(truth), truth.fog_visibility_m));
   });
@@ -124,17 +125,18 @@ TEST(DriverTest, DrivesOnAsOnAFreeRoadWhereFogHidesTheCarAhead) {
   scenario.human.sight = Sight::kFog;
   truth_t truth = Truth();
   truth.fog_visibility_m = 10;
-  const double free = Following(FollowingModel::kIdm, scenario.driver)
+  const double free = models::Following(FollowingModel::kIdm, scenario.driver)
                           .Acceleration({.speed_mps = truth.host_speed_mps});
-  EXPECT_EQ(Driver(scenario).Step(truth).acceleration_mps2, free);
+  EXPECT_EQ(driver::Driver(scenario).Step(truth).acceleration_mps2, free);
 }
 
 TEST(DriverTest, ErrsIsLateAndAnticipatesLikeTheHumanDriverModel) {
   Scenario scenario;
   scenario.seed = 11;
   scenario.human.misjudges = true;
-  HumanDriver human(scenario.human.errors, Following(FollowingModel::kIdm, scenario.driver),
-                    Random(11, Stream::kHumanErrors), scenario.step_s);
+  models::HumanDriver human(scenario.human.errors,
+                            models::Following(FollowingModel::kIdm, scenario.driver),
+                            Random(11, Stream::kHumanErrors), scenario.step_s);
   ExpectDrives(scenario, [&](const truth_t& truth) {
     return human.Step(truth.header.step, SituationOf(truth));
   });
@@ -144,9 +146,10 @@ TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
   Scenario scenario;
   scenario.human.misjudges = true;
   scenario.human.sight = Sight::kFog;
-  const FogSight sight(scenario.human.fog_sight);
-  HumanDriver human(scenario.human.errors, Following(FollowingModel::kIdm, scenario.driver),
-                    Random(scenario.seed, Stream::kHumanErrors), scenario.step_s);
+  const models::FogSight sight(scenario.human.fog_sight);
+  models::HumanDriver human(scenario.human.errors,
+                            models::Following(FollowingModel::kIdm, scenario.driver),
+                            Random(scenario.seed, Stream::kHumanErrors), scenario.step_s);
   ExpectDrives(scenario, [&](const truth_t& truth) {
     return human.Step(truth.header.step,
                       sight.Perceive(SituationOf(truth), truth.fog_visibility_m));
@@ -156,11 +159,11 @@ TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
 TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
   Scenario scenario;
   scenario.step_s = 0.003;  // 0.8 s are 266 steps
-  EXPECT_NO_THROW(Driver{scenario}) << "he has none";
+  EXPECT_NO_THROW(driver::Driver{scenario}) << "he has none";
   scenario.human.misjudges = true;
   const auto error = [&] {
     try {
-      const Driver driver(scenario);
+      const driver::Driver driver(scenario);
     } catch (const InputError& refused) {
       return std::string(refused.what());
     }
@@ -206,8 +209,8 @@ class AwarenessOfTheDriverTest : public testing::Test {
   }
 
   Scenario scenario_ = Losing();
-  Driver driver_{scenario_};
-  Awareness awareness_{scenario_.human.awareness};
+  driver::Driver driver_{scenario_};
+  models::Awareness awareness_{scenario_.human.awareness};
   std::int64_t step_ = 0;
 };
 
@@ -215,13 +218,13 @@ TEST_F(AwarenessOfTheDriverTest, IsTheReadinessThatHeReports) {
   EXPECT_EQ(ReadinessAfter(arbitration_t{}), 1) << "no time has passed";
   for (int k = 0; k < 50; ++k) {
     EXPECT_EQ(ReadinessAfter(Host(arbitration_t::AUTOMATION)),
-              awareness_.Step(DriverTask::kMonitors, 0.1));
+              awareness_.Step(models::DriverTask::kMonitors, 0.1));
   }
   const double faded = awareness_.awareness();
   EXPECT_LT(faded, 0.97);
   for (int k = 0; k < 2; ++k) {
     EXPECT_EQ(ReadinessAfter(Host(arbitration_t::HUMAN)),
-              awareness_.Step(DriverTask::kDrives, 0.1));
+              awareness_.Step(models::DriverTask::kDrives, 0.1));
   }
   EXPECT_GT(awareness_.awareness(), faded);
 }
@@ -260,7 +263,7 @@ TEST_F(AwarenessOfTheDriverTest, ReturnsWhileTheCarStopsBecauseHeIsLate) {
 
 TEST_F(AwarenessOfTheDriverTest, BeginsWithTheReadinessOfTheScenario) {
   scenario_.driver.readiness = 0.7;
-  Driver driver(scenario_);
+  driver::Driver driver(scenario_);
   EXPECT_EQ(driver.Step(TruthOf(0)).readiness, 0.7);
 }
 
@@ -268,24 +271,24 @@ TEST_F(AwarenessOfTheDriverTest, FadesAsMuchOverStepsThatAreLeftOut) {
   ReadinessAfter(arbitration_t{});
   step_ += 9;
   EXPECT_NEAR(ReadinessAfter(Host(arbitration_t::AUTOMATION)),
-              awareness_.Step(DriverTask::kMonitors, 1.0), 1e-15);
+              awareness_.Step(models::DriverTask::kMonitors, 1.0), 1e-15);
 }
 
 TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
   scenario_.human.misjudges = true;
   HumanParameters errors = scenario_.human.errors;
   errors.reaction_time_s = awareness_.LongestReactionTime_s();
-  HumanDriver human(errors, Following(FollowingModel::kIdm, scenario_.driver),
-                    Random(scenario_.seed, Stream::kHumanErrors), scenario_.step_s);
-  Driver driver(scenario_);
+  models::HumanDriver human(errors, models::Following(FollowingModel::kIdm, scenario_.driver),
+                            Random(scenario_.seed, Stream::kHumanErrors), scenario_.step_s);
+  driver::Driver driver(scenario_);
   for (std::int64_t step = 0; step < 200; ++step) {
     const truth_t truth = TruthOf(step);
-    if (step > 0) awareness_.Step(DriverTask::kMonitors, scenario_.step_s);
+    if (step > 0) awareness_.Step(models::DriverTask::kMonitors, scenario_.step_s);
     const double faded = 1 - awareness_.awareness();
     // V_s and r_c grow by the values of SUMO's driver state without awareness, T_r by 0.7 s.
-    const Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
-                              .gap_error = 0.05 + 0.75 * 0.2 * faded,
-                              .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};
+    const models::Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
+                                      .gap_error = 0.05 + 0.75 * 0.2 * faded,
+                                      .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};
     EXPECT_NEAR(driver.Step(truth).acceleration_mps2,
                 human.Step(step, SituationOf(truth), attention), 1e-9)
         << step;
@@ -294,12 +297,12 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
 
 TEST(DriverTest, DemandsToKnowWhoDrivesOnlyIfHisAwarenessDependsOnIt) {
   Scenario scenario;
-  EXPECT_FALSE(Driver::UsesOptionalInput(scenario));
+  EXPECT_FALSE(driver::Driver::UsesOptionalInput(scenario));
   scenario.human.misjudges = true;
   scenario.human.sight = Sight::kFog;
-  EXPECT_FALSE(Driver::UsesOptionalInput(scenario));
+  EXPECT_FALSE(driver::Driver::UsesOptionalInput(scenario));
   scenario.human.loses_awareness = true;
-  EXPECT_TRUE(Driver::UsesOptionalInput(scenario));
+  EXPECT_TRUE(driver::Driver::UsesOptionalInput(scenario));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ truth_t Truth(double gap_m, double host_speed_mps, double speed_mps) {
 }
 
 TEST(FollowerTest, CopiesTheHeaderOfItsInput) {
-  Follower follower(Scenario{});
+  follower::Follower follower(Scenario{});
   const follower_command_t& command = follower.Step(Truth(33, 20, 20));
   EXPECT_EQ(command.header.run_id, 7);
   EXPECT_EQ(command.header.step, 42);
@@ -29,7 +29,7 @@ TEST(FollowerTest, HoldsTheSafeDistanceOfItsOwnSection) {
   Scenario scenario;
   scenario.follower.headway_s = 2;
   scenario.follower.standstill_m = 4;
-  const follower_command_t command = Follower(scenario).Step(Truth(44, 20, 20));
+  const follower_command_t command = follower::Follower(scenario).Step(Truth(44, 20, 20));
   ASSERT_EQ(command.num_followers, 1);
   ASSERT_EQ(command.acceleration_mps2.size(), 1U);
   ASSERT_EQ(command.safe_distance_m.size(), 1U);
@@ -38,17 +38,17 @@ TEST(FollowerTest, HoldsTheSafeDistanceOfItsOwnSection) {
 }
 
 TEST(FollowerTest, BrakesWhenTheHostSlowsDown) {
-  Follower follower(Scenario{});
+  follower::Follower follower(Scenario{});
   EXPECT_LT(follower.Step(Truth(33, 18, 20)).acceleration_mps2[0], 0);
 }
 
 TEST(FollowerTest, ClosesUpWhenTheGapIsTooLarge) {
-  Follower follower(Scenario{});
+  follower::Follower follower(Scenario{});
   EXPECT_GT(follower.Step(Truth(40, 20, 20)).acceleration_mps2[0], 0);
 }
 
 TEST(FollowerTest, AnswersWithoutACommandWhenThereIsNoFollowingCar) {
-  Follower follower(Scenario{});
+  follower::Follower follower(Scenario{});
   const follower_command_t& command = follower.Step(truth_t{});
   EXPECT_EQ(command.num_followers, 0);
   EXPECT_TRUE(command.acceleration_mps2.empty());
@@ -56,7 +56,7 @@ TEST(FollowerTest, AnswersWithoutACommandWhenThereIsNoFollowingCar) {
 }
 
 TEST(FollowerTest, KeepsItsMessagesMemory) {
-  Follower follower(Scenario{});
+  follower::Follower follower(Scenario{});
   const follower_command_t& command = follower.Step(Truth(33, 20, 20));
   const double* const data = command.acceleration_mps2.data();
   for (int k = 0; k < 10; ++k) follower.Step(Truth(33, 20 - k, 20));

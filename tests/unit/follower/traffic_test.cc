@@ -34,7 +34,7 @@ Scenario WithFollowers(std::int64_t count, FollowerDriver driver) {
 }
 
 TEST(TrafficTest, GivesEachCarACommand) {
-  Follower follower(WithFollowers(5, FollowerDriver::kAcc));
+  follower::Follower follower(WithFollowers(5, FollowerDriver::kAcc));
   const follower_command_t& command = follower.Step(Platoon(5));
   EXPECT_EQ(command.num_followers, 5);
   ASSERT_EQ(command.acceleration_mps2.size(), 5U);
@@ -45,8 +45,8 @@ TEST(TrafficTest, GivesEachCarACommand) {
 TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
   for (const FollowerDriver driver : {FollowerDriver::kAcc, FollowerDriver::kHuman}) {
     // GIVEN three cars, of which the second is slower than the others
-    Follower follower(WithFollowers(3, driver));
-    Follower undisturbed(WithFollowers(3, driver));
+    follower::Follower follower(WithFollowers(3, driver));
+    follower::Follower undisturbed(WithFollowers(3, driver));
     truth_t truth = Platoon(3);
     truth.follower_speed_mps[1] = 17;
     // WHEN the other cars have had time to see this
@@ -66,7 +66,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
 }
 
 TEST(TrafficTest, KeepsItsMessagesMemoryHoweverManyCars) {
-  Follower follower(WithFollowers(kMaxFollowers, FollowerDriver::kHuman));
+  follower::Follower follower(WithFollowers(kMaxFollowers, FollowerDriver::kHuman));
   const truth_t truth = Platoon(static_cast<std::size_t>(kMaxFollowers));
   const double* const data = follower.Step(truth).acceleration_mps2.data();
   for (int k = 0; k < 10; ++k) EXPECT_EQ(follower.Step(truth).acceleration_mps2.data(), data);
@@ -77,7 +77,7 @@ TEST(PersonTest, HoldsSafeWhatHisStyleHoldsSafe) {
   scenario.followers.cars = {{FollowerDriver::kHuman, FollowerStyle::kAggressive},
                              {FollowerDriver::kHuman, FollowerStyle::kNormal},
                              {FollowerDriver::kHuman, FollowerStyle::kCautious}};
-  const follower_command_t command = Follower(scenario).Step(Platoon(3));
+  const follower_command_t command = follower::Follower(scenario).Step(Platoon(3));
   // T v + s_0 of each style at 20 m/s.
   EXPECT_DOUBLE_EQ(command.safe_distance_m[0], 1.25 * 20 + 1);
   EXPECT_DOUBLE_EQ(command.safe_distance_m[1], 1.45 * 20 + 2);
@@ -85,7 +85,7 @@ TEST(PersonTest, HoldsSafeWhatHisStyleHoldsSafe) {
 }
 
 TEST(PersonTest, ErrsForHimself) {
-  Follower follower(WithFollowers(2, FollowerDriver::kHuman));
+  follower::Follower follower(WithFollowers(2, FollowerDriver::kHuman));
   const follower_command_t& command = follower.Step(Platoon(2));
   EXPECT_NE(command.acceleration_mps2[0], command.acceleration_mps2[1])
       << "the same style in the same place";
@@ -93,7 +93,9 @@ TEST(PersonTest, ErrsForHimself) {
 
 TEST(PersonTest, ErrsInTheSameWayUnderTheSameSeed) {
   Scenario scenario = WithFollowers(2, FollowerDriver::kHuman);
-  const auto first = [&] { return Follower(scenario).Step(Platoon(2)).acceleration_mps2; };
+  const auto first = [&] {
+    return follower::Follower(scenario).Step(Platoon(2)).acceleration_mps2;
+  };
   const std::vector<double> one = first();
   EXPECT_EQ(first(), one);
   scenario.seed = 2;
@@ -108,7 +110,7 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
   const auto hardest = [&](SafetyModelChoice choice) {
     Scenario scenario = WithFollowers(1, FollowerDriver::kHuman);
     scenario.followers.safety_model = choice;
-    Follower follower(scenario);
+    follower::Follower follower(scenario);
     double least = 0;
     for (int k = 0; k < 30; ++k) {
       truth.header.step = k;
@@ -128,7 +130,7 @@ TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
   scenario.step_s = 0.004;  // 1.1 s are 275 steps
   scenario.follower.horizon_steps = 5;
   try {
-    Follower follower(scenario);
+    follower::Follower follower(scenario);
     FAIL() << "was taken";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),
@@ -138,7 +140,7 @@ TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
 }
 
 TEST(CastTest, IsThePapersWithoutASection) {
-  const DriverAssignment part = AssignmentOf(Scenario(), 0);
+  const follower::DriverAssignment part = follower::AssignmentOf(Scenario(), 0);
   EXPECT_TRUE(part.has_acc);
 }
 
@@ -147,10 +149,10 @@ TEST(CastTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
   scenario.followers.style = FollowerStyle::kCautious;
   scenario.followers.cars = {{FollowerDriver::kAcc, FollowerStyle::kNormal},
                              {FollowerDriver::kHuman, FollowerStyle::kAggressive}};
-  EXPECT_TRUE(AssignmentOf(scenario, 0).has_acc);
-  EXPECT_FALSE(AssignmentOf(scenario, 1).has_acc);
-  EXPECT_EQ(AssignmentOf(scenario, 1).style, Style::kAggressive);
-  EXPECT_EQ(AssignmentOf(scenario, 3).style, Style::kCautious);
+  EXPECT_TRUE(follower::AssignmentOf(scenario, 0).has_acc);
+  EXPECT_FALSE(follower::AssignmentOf(scenario, 1).has_acc);
+  EXPECT_EQ(follower::AssignmentOf(scenario, 1).style, models::Style::kAggressive);
+  EXPECT_EQ(follower::AssignmentOf(scenario, 3).style, models::Style::kCautious);
 }
 
 TEST(CastTest, DrawsInProportionToTheShares) {
@@ -163,9 +165,9 @@ TEST(CastTest, DrawsInProportionToTheShares) {
   int aggressive = 0;
   for (scenario.seed = 1; scenario.seed <= kSeeds; ++scenario.seed) {
     for (std::size_t car = 0; car < kMaxFollowers; ++car) {
-      const DriverAssignment part = AssignmentOf(scenario, car);
+      const follower::DriverAssignment part = follower::AssignmentOf(scenario, car);
       acc += part.has_acc ? 1 : 0;
-      aggressive += part.style == Style::kAggressive ? 1 : 0;
+      aggressive += part.style == models::Style::kAggressive ? 1 : 0;
     }
   }
   // Of 6,400 cars a quarter and three fifths. Four standard deviations are 139 and 157.
@@ -178,7 +180,7 @@ TEST(CastTest, DrawsNobodyWithoutAShare) {
   for (const double share : {0.0, 1.0}) {
     scenario.followers.acc_share = share;
     for (std::size_t car = 0; car < kMaxFollowers; ++car) {
-      EXPECT_EQ(AssignmentOf(scenario, car).has_acc, share == 1.0);
+      EXPECT_EQ(follower::AssignmentOf(scenario, car).has_acc, share == 1.0);
     }
   }
 }
@@ -190,7 +192,7 @@ class FogSightOfPeopleTest : public testing::Test {
   /// Accelerations of a column of two cars in fog, over 30 steps behind a host that is 5 m/s
   /// slower.
   static std::vector<double> Drive(Scenario scenario, double visibility_m) {
-    Follower follower(scenario);
+    follower::Follower follower(scenario);
     truth_t truth = Platoon(2);
     truth.host_speed_mps = 15;
     truth.fog_visibility_m = visibility_m;
@@ -218,16 +220,17 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
   // GIVEN the sight of section human, and a person with a driver model of his own
   Scenario scenario = Seeing(Sight::kFog);
   scenario.human.fog_sight.contrast = 0.4;
-  const FogSight sight(scenario.human.fog_sight);
-  Person seeing(Style::kNormal, std::nullopt, SafetyModelChoice::kNone,
-                Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
+  const models::FogSight sight(scenario.human.fog_sight);
+  follower::Person seeing(models::Style::kNormal, std::nullopt, SafetyModelChoice::kNone,
+                          Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
   // THEN its driver reacts to what the sight shows him
   for (std::int64_t k = 0; k < 30; ++k) {
-    const Situation truth{.speed_mps = 20,
-                          .acceleration_mps2 = 0,
-                          .ahead = CarAhead{.gap_m = 33, .speed_mps = 15, .acceleration_mps2 = 0}};
+    const models::Situation truth{
+        .speed_mps = 20,
+        .acceleration_mps2 = 0,
+        .ahead = models::CarAhead{.gap_m = 33, .speed_mps = 15, .acceleration_mps2 = 0}};
     EXPECT_EQ(driven[static_cast<std::size_t>(2 * k)],
               seeing.Step(k, sight.Perceive(truth, 40), 40).acceleration_mps2);
   }

@@ -30,7 +30,7 @@ Messages At(std::int64_t step, double distance_m = 30, double relative_speed_mps
   return m;
 }
 
-const track_t& Step(Fusion& fusion, const Messages& m) {
+const track_t& Step(fusion::Fusion& fusion, const Messages& m) {
   return fusion.Step(m.ego, m.radar, m.lidar);
 }
 
@@ -49,7 +49,7 @@ void ExpectSameEstimate(const track_t& a, const track_t& b) {
 }
 
 TEST(FusionTest, CopiesTheHeader) {
-  Fusion fusion{Scenario()};
+  fusion::Fusion fusion{Scenario()};
   const track_t& track = Step(fusion, At(3));
   EXPECT_EQ(track.header.run_id, 7);
   EXPECT_EQ(track.header.step, 3);
@@ -57,7 +57,7 @@ TEST(FusionTest, CopiesTheHeader) {
 }
 
 TEST(FusionTest, HasNoTrackBeforeTheFirstMeasurement) {
-  Fusion fusion{Scenario()};
+  fusion::Fusion fusion{Scenario()};
   Messages m = At(0);
   m.radar.valid = m.lidar.valid = 0;
   const track_t& track = Step(fusion, m);
@@ -74,7 +74,7 @@ TEST(FusionTest, StartsWithTheRadarsValuesAndTheirNoise) {
   scenario.fusion.radar_range_std_m = 0.3;
   scenario.fusion.radar_range_rate_std_mps = 0.2;
   scenario.fusion.initial_acceleration_std_mps2 = 0.7;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   Messages m = At(0, 40, -2);
   m.lidar.valid = 0;
   const track_t& track = Step(fusion, m);
@@ -95,7 +95,7 @@ TEST(FusionTest, StartsWithTheLidarWhereTheRadarIsBlind) {
   Scenario scenario;
   scenario.fusion.lidar_range_std_m = 0.1;
   scenario.fusion.initial_speed_std_mps = 3;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   Messages m = At(0, 40, -2);
   m.radar.valid = 0;
   const track_t& track = Step(fusion, m);
@@ -112,7 +112,7 @@ TEST(FusionTest, FirstLidarValueCorrectsTheRadarsStart) {
   Scenario scenario;
   scenario.fusion.radar_range_std_m = 0.3;
   scenario.fusion.lidar_range_std_m = 0.1;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   Messages m = At(0, 40);
   m.lidar.range_m = 39;
   const track_t& track = Step(fusion, m);
@@ -127,7 +127,7 @@ TEST(FusionTest, StartsBesideTheLaneWithWhatTheTwoValuesSayOfTheDistance) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 2.5;
   scenario.fusion.radar_range_std_m = 0.12;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   Messages m = At(0, 6.5, -1.2);
   m.lidar.valid = 0;
   const track_t& track = Step(fusion, m);
@@ -142,7 +142,7 @@ TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 3;
   scenario.lidar.lateral_offset_m = -3;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   const track_t& track = Step(fusion, At(0, 5.9));
   EXPECT_FALSE(track.valid);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(track.usage[i], track_t::GATED);
@@ -150,7 +150,7 @@ TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
 }
 
 TEST(FusionTest, ReportsTheAccelerationRelativeToTheHosts) {
-  Fusion fusion{Scenario()};
+  fusion::Fusion fusion{Scenario()};
   Step(fusion, At(0));
   Messages m = At(1, 30 + 0.5 * 2 * 0.01, 0.2);
   m.ego.acceleration_mps2 = -2;  // the preceding car's is 0: no innovation, no correction
@@ -162,7 +162,7 @@ TEST(FusionTest, ReportsTheAccelerationRelativeToTheHosts) {
 }
 
 TEST(FusionTest, GrowsUncertainWhileBothSensorsAreSilent) {
-  Fusion fusion{Scenario()};
+  fusion::Fusion fusion{Scenario()};
   double last = Step(fusion, At(0, 30, -1)).covariance[0][0];
   for (int k = 1; k <= 50; ++k) {
     Messages m = At(k);
@@ -176,8 +176,8 @@ TEST(FusionTest, GrowsUncertainWhileBothSensorsAreSilent) {
 }
 
 TEST(FusionTest, IgnoresWhatTheSensorsSayOfTheirOwnPrecision) {
-  Fusion one{Scenario()};
-  Fusion other{Scenario()};
+  fusion::Fusion one{Scenario()};
+  fusion::Fusion other{Scenario()};
   for (int k = 0; k < 20; ++k) {
     Messages m = At(k, 30 + std::sin(k), std::cos(k));
     const track_t& a = Step(one, m);
@@ -190,7 +190,7 @@ TEST(FusionTest, IgnoresWhatTheSensorsSayOfTheirOwnPrecision) {
 }
 
 TEST(FusionTest, BelievesADeceivedLidarWhenNotGated) {
-  Fusion fusion{Scenario()};
+  fusion::Fusion fusion{Scenario()};
   Step(fusion, At(0));
   Messages m = At(1);
   m.lidar.range_m = 4;
@@ -200,8 +200,8 @@ TEST(FusionTest, BelievesADeceivedLidarWhenNotGated) {
 }
 
 TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
-  Fusion gated(Gated());
-  Fusion blind(Gated());
+  fusion::Fusion gated(Gated());
+  fusion::Fusion blind(Gated());
   for (int k = 0; k < 30; ++k) {
     Step(gated, At(k));
     Step(blind, At(k));
@@ -223,7 +223,7 @@ TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
 
 TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
   const Scenario scenario = Gated();
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   int k = 0;
   for (; k < 30; ++k) Step(fusion, At(k, 40));
   // GIVEN a car that cuts in, 15 m nearer and with the same speed
@@ -247,7 +247,7 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 1.0;
   scenario.lidar.lateral_offset_m = -1.0;
-  Fusion fusion(scenario);
+  fusion::Fusion fusion(scenario);
   // GIVEN an approach at 10 m/s, and silent sensors until the estimate has passed the target
   Step(fusion, At(0, 20, -10));
   int k = 1;
@@ -267,13 +267,13 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
-  scenario.arbitrator.policy = FindPolicy(name).value();
+  scenario.arbitrator.policy = policies::FindPolicy(name).value();
   return scenario;
 }
 
 TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
-  Fusion believing(WithPolicy("traded"));
-  Fusion isolating(WithPolicy("isolate"));
+  fusion::Fusion believing(WithPolicy("traded"));
+  fusion::Fusion isolating(WithPolicy("isolate"));
   int k = 0;
   for (; k < 20; ++k) {
     Step(believing, At(k));
@@ -295,7 +295,7 @@ TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
 }
 
 TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
-  Fusion fusion(WithPolicy("isolate"));
+  fusion::Fusion fusion(WithPolicy("isolate"));
   int k = 0;
   for (; k < 20; ++k) Step(fusion, At(k));
   Messages ghost = At(k);
@@ -309,10 +309,11 @@ TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
 }
 
 TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
-  for (const PolicyRow& row : Policies()) {
-    EXPECT_EQ(Fusion::UsesOptionalInput(WithPolicy(row.name)), row.name == "oracle") << row.name;
+  for (const policies::PolicyRow& row : policies::Policies()) {
+    EXPECT_EQ(fusion::Fusion::UsesOptionalInput(WithPolicy(row.name)), row.name == "oracle")
+        << row.name;
   }
-  Fusion fusion(WithPolicy("oracle"));
+  fusion::Fusion fusion(WithPolicy("oracle"));
   truth_t truth{};
   truth.host_gap_m = 30;
   for (int k = 0; k < 20; ++k) {

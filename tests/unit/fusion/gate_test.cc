@@ -10,24 +10,24 @@ constexpr double kOutside = 100.0;
 
 TEST(GateTest, LimitIsTheChiSquareQuantileOfOneDegreeOfFreedom) {
   // Printed tables: 3.841 at 5 %, 10.828 at 0.1 %; half a unit of their last digit.
-  EXPECT_NEAR(Gate(0.95, 5).limit(), 3.841, 5e-4);
-  EXPECT_NEAR(Gate(0.999, 5).limit(), 10.828, 5e-4);
+  EXPECT_NEAR(fusion::Gate(0.95, 5).limit(), 3.841, 5e-4);
+  EXPECT_NEAR(fusion::Gate(0.999, 5).limit(), 10.828, 5e-4);
 }
 
 TEST(GateTest, LimitItselfIsInside) {
-  Gate gate(0.95, 5);
+  fusion::Gate gate(0.95, 5);
   EXPECT_TRUE(gate.Admits(gate.limit()));
   EXPECT_FALSE(gate.Admits(gate.limit() * (1 + 1e-12)));
 }
 
 TEST(GateTest, OpensAfterThatManyRefusalsInARow) {
-  Gate gate(0.95, 3);
+  fusion::Gate gate(0.95, 3);
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(gate.Admits(kOutside)) << i;
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(gate.Admits(kOutside)) << i;
 }
 
 TEST(GateTest, ClosesAgainAtTheFirstValueInside) {
-  Gate gate(0.95, 3);
+  fusion::Gate gate(0.95, 3);
   for (int i = 0; i < 3; ++i) gate.Admits(kOutside);
   EXPECT_TRUE(gate.Admits(kOutside));
   EXPECT_TRUE(gate.Admits(kInside));
@@ -35,7 +35,7 @@ TEST(GateTest, ClosesAgainAtTheFirstValueInside) {
 }
 
 TEST(GateTest, StaysShutWhileOutliersComeOneByOne) {
-  Gate gate(0.95, 2);
+  fusion::Gate gate(0.95, 2);
   for (int i = 0; i < 10; ++i) {
     EXPECT_FALSE(gate.Admits(kOutside)) << i;
     EXPECT_TRUE(gate.Admits(kInside)) << i;

@@ -14,38 +14,39 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kClear_m = 20000.0;
 
-EchoModel Model(const LidarBeamSection& beam, double densest_m) {
-  return {beam, ExtinctionOf(kClear_m), ExtinctionOf(densest_m)};
+lidar::EchoModel Model(const LidarBeamSection& beam, double densest_m) {
+  return {beam, models::ExtinctionOf(kClear_m), models::ExtinctionOf(densest_m)};
 }
 
 TEST(EchoModelTest, TheClearTargetIsAtTheThresholdAtItsClearRange) {
   LidarBeamSection beam;
   beam.target_reflectivity = beam.clear_reflectivity;
-  const EchoModel model = Model(beam, 50.0);
+  const lidar::EchoModel model = Model(beam, 50.0);
   // In clear air of 20 km the attenuation is 2 alpha R = 0.036.
   EXPECT_NEAR(model.At(beam.clear_range_m, kClear_m).target,
-              -2.0 * ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
+              -2.0 * models::ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
 }
 
 TEST(EchoModelTest, AttenuationAloneEndsDetectionAtTheAttenuatedRange) {
   LidarBeamSection beam;
   beam.target_reflectivity = beam.clear_reflectivity;
-  const EchoModel model = Model(beam, 20.0);
+  const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
-    const double range_m = AttenuatedRange_m(beam.clear_range_m, ExtinctionOf(visibility_m));
+    const double range_m =
+        lidar::AttenuatedRange_m(beam.clear_range_m, models::ExtinctionOf(visibility_m));
     EXPECT_NEAR(model.At(range_m, visibility_m).target, 0.0, 1e-12);
   }
 }
 
 TEST(EchoModelTest, EchoesAreEquallyStrongAtTheCrossover) {
   const LidarBeamSection beam;
-  const EchoModel model = Model(beam, 20.0);
+  const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
-    const double extinction_pm = ExtinctionOf(visibility_m);
-    const double range_m = CrossoverRange_m(FindFogPeak(OpticsOf(beam), extinction_pm).strength_pm,
-                                            beam.target_reflectivity,
-                                            beam.backscatter_factor / visibility_m, extinction_pm);
-    const EchoPowers echoes = model.At(range_m, visibility_m);
+    const double extinction_pm = models::ExtinctionOf(visibility_m);
+    const double range_m = lidar::CrossoverRange_m(
+        lidar::FindFogPeak(lidar::OpticsOf(beam), extinction_pm).strength_pm,
+        beam.target_reflectivity, beam.backscatter_factor / visibility_m, extinction_pm);
+    const lidar::EchoPowers echoes = model.At(range_m, visibility_m);
     EXPECT_NEAR(echoes.target, echoes.fog, 1e-3);  // error of the table's interpolation
   }
 }
@@ -53,36 +54,36 @@ TEST(EchoModelTest, EchoesAreEquallyStrongAtTheCrossover) {
 TEST(EchoModelTest, TheTableIsCloseToThePeakItself) {
   // The worst case is the densest fog that a scenario may have.
   const LidarBeamSection beam;
-  const BeamOptics optics = OpticsOf(beam);
-  const EchoModel model = Model(beam, 5.0);
+  const lidar::BeamOptics optics = lidar::OpticsOf(beam);
+  const lidar::EchoModel model = Model(beam, 5.0);
   for (double visibility_m = 5.0; visibility_m < 30000.0; visibility_m *= 1.07) {
-    const FogPeak peak = FindFogPeak(optics, ExtinctionOf(visibility_m));
+    const lidar::FogPeak peak = lidar::FindFogPeak(optics, models::ExtinctionOf(visibility_m));
     const double expected = std::log(std::numbers::pi * beam.backscatter_factor / visibility_m /
                                      beam.clear_reflectivity * beam.clear_range_m *
                                      beam.clear_range_m * peak.strength_pm);
-    const EchoPowers echoes = model.At(100.0, visibility_m);
+    const lidar::EchoPowers echoes = model.At(100.0, visibility_m);
     EXPECT_NEAR(echoes.fog, expected, 2e-3) << visibility_m;
     EXPECT_NEAR(echoes.fog_range_m, peak.range_m, 0.02) << visibility_m;
   }
 }
 
 TEST(EchoModelTest, FogOfOneDensityNeedsNoTable) {
-  const EchoModel model = Model(LidarBeamSection{}, kClear_m);
+  const lidar::EchoModel model = Model(LidarBeamSection{}, kClear_m);
   EXPECT_TRUE(std::isfinite(model.At(33.0, kClear_m).fog));
 }
 
 TEST(EchoModelTest, ATargetBeforeTheFogsPeakHidesTheFogBehindIt) {
   const LidarBeamSection beam;
-  const EchoModel model = Model(beam, 30.0);
+  const lidar::EchoModel model = Model(beam, 30.0);
   const double peak_m = model.At(50.0, 30.0).fog_range_m;
-  const EchoPowers echoes = model.At(peak_m - 1.0, 30.0);
+  const lidar::EchoPowers echoes = model.At(peak_m - 1.0, 30.0);
   EXPECT_EQ(echoes.fog_range_m, peak_m - 1.0);
   EXPECT_LT(echoes.fog, model.At(50.0, 30.0).fog);
   EXPECT_GT(echoes.target, echoes.fog + 2.0) << "so near, even thick fog is no rival";
 }
 
 TEST(EchoModelTest, TheBeamIsBlindBeforeItsOverlap) {
-  const EchoModel model = Model(LidarBeamSection{}, 30.0);
+  const lidar::EchoModel model = Model(LidarBeamSection{}, 30.0);
   for (const double range_m : {0.0, 1.0, 2.0}) {
     EXPECT_EQ(model.At(range_m, 30.0).target, -kInfinity);
     EXPECT_EQ(model.At(range_m, 30.0).fog, -kInfinity);
@@ -90,18 +91,18 @@ TEST(EchoModelTest, TheBeamIsBlindBeforeItsOverlap) {
 }
 
 TEST(EchoModelTest, FogEchoesAreUndetectableInClearAirAndDetectableInThickFog) {
-  const EchoModel model = Model(LidarBeamSection{}, 30.0);
+  const lidar::EchoModel model = Model(LidarBeamSection{}, 30.0);
   EXPECT_LT(model.At(50.0, kClear_m).fog, -3.0);
   EXPECT_GT(model.At(50.0, 30.0).fog, 1.0);
 }
 
 TEST(EchoModelTest, IntensityIsOneForTheTargetInClearAirAndFadesWithTheFog) {
-  const EchoModel model = Model(LidarBeamSection{}, 50.0);
+  const lidar::EchoModel model = Model(LidarBeamSection{}, 50.0);
   for (const double range_m : {3.0, 10.0, 33.0, 100.0}) {
-    const double loss = 2.0 * ExtinctionOf(50.0) * range_m;
+    const double loss = 2.0 * models::ExtinctionOf(50.0) * range_m;
     EXPECT_NEAR(model.Intensity(model.At(range_m, 50.0).target, range_m), std::exp(-loss), 1e-12);
   }
-  const EchoPowers echoes = model.At(33.0, 50.0);
+  const lidar::EchoPowers echoes = model.At(33.0, 50.0);
   EXPECT_LT(model.Intensity(echoes.fog, echoes.fog_range_m), 0.02);
 }
 

@@ -19,20 +19,20 @@ constexpr double kBackscatterFactor = 0.046;  // beta times visibility, Hahner e
 
 // Defaults of Hahner et al. 2021. Their Gamma of 1e-6 contains a factor 2/c. Without it Gamma is
 // 150.
-constexpr BeamOptics kHahner{
+constexpr lidar::BeamOptics kHahner{
     .pulse_length_m = kSpeedOfLight_mps * 20e-9, .overlap_start_m = 0.9, .overlap_end_m = 1.0};
 constexpr double kHahnerReflectivity = 1e-6 * kSpeedOfLight_mps / 2.0;
 
 // A current sensor: 5 ns pulse, overlap from 2 to 5 m.
-constexpr BeamOptics kPhysical{
+constexpr lidar::BeamOptics kPhysical{
     .pulse_length_m = kSpeedOfLight_mps * 5e-9, .overlap_start_m = 2.0, .overlap_end_m = 5.0};
 
 const std::vector<double> kVisibilities_m{600, 300, 150, 100, 75, 50, 40, 30, 20};
 
-double Crossover(const BeamOptics& optics, double reflectivity, double visibility_m) {
-  const double extinction_pm = ExtinctionOf(visibility_m);
-  return CrossoverRange_m(FindFogPeak(optics, extinction_pm).strength_pm, reflectivity,
-                          kBackscatterFactor / visibility_m, extinction_pm);
+double Crossover(const lidar::BeamOptics& optics, double reflectivity, double visibility_m) {
+  const double extinction_pm = models::ExtinctionOf(visibility_m);
+  return lidar::CrossoverRange_m(lidar::FindFogPeak(optics, extinction_pm).strength_pm,
+                                 reflectivity, kBackscatterFactor / visibility_m, extinction_pm);
 }
 
 // The reference gives whole metres: half a metre of rounding, and a little for its integration.
@@ -40,7 +40,7 @@ constexpr double kTableTolerance_m = 0.6;
 
 struct Row {
   const char* what;
-  BeamOptics optics;
+  lidar::BeamOptics optics;
   double reflectivity;
   std::vector<double> crossovers_m;  // in the order of kVisibilities_m
 };
@@ -64,26 +64,27 @@ TEST(FogBeamTest, AttenuationAloneLeavesTheTabulatedRanges) {
   const std::vector<double> of_120_m{80, 64, 47, 38, 33, 26, 22, 19, 14};
   const std::vector<double> of_200_m{113, 85, 60, 48, 40, 31, 27, 22, 17};
   for (std::size_t i = 0; i < kVisibilities_m.size(); ++i) {
-    const double extinction_pm = ExtinctionOf(kVisibilities_m[i]);
-    EXPECT_NEAR(AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
-    EXPECT_NEAR(AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
+    const double extinction_pm = models::ExtinctionOf(kVisibilities_m[i]);
+    EXPECT_NEAR(lidar::AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
+    EXPECT_NEAR(lidar::AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
   }
-  EXPECT_EQ(AttenuatedRange_m(120.0, 0.0), 120.0);
+  EXPECT_EQ(lidar::AttenuatedRange_m(120.0, 0.0), 120.0);
 }
 
 TEST(FogBeamTest, TheFogsPeakLiesInTheNearFieldAndComesNearerInDenserFog) {
-  EXPECT_NEAR(FindFogPeak(kHahner, 0.005).range_m, 1.7, 0.05);
-  EXPECT_NEAR(FindFogPeak(kHahner, 0.15).range_m, 1.55, 0.05);
-  EXPECT_NEAR(FindFogPeak(kPhysical, 0.005).range_m, 4.0, 0.05);
-  EXPECT_NEAR(FindFogPeak(kPhysical, 0.15).range_m, 3.1, 0.05);
+  EXPECT_NEAR(lidar::FindFogPeak(kHahner, 0.005).range_m, 1.7, 0.05);
+  EXPECT_NEAR(lidar::FindFogPeak(kHahner, 0.15).range_m, 1.55, 0.05);
+  EXPECT_NEAR(lidar::FindFogPeak(kPhysical, 0.005).range_m, 4.0, 0.05);
+  EXPECT_NEAR(lidar::FindFogPeak(kPhysical, 0.15).range_m, 3.1, 0.05);
 }
 
 TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
   for (const double visibility_m : kVisibilities_m) {
-    const double extinction_pm = ExtinctionOf(visibility_m);
+    const double extinction_pm = models::ExtinctionOf(visibility_m);
     const double backscatter_pmsr = kBackscatterFactor / visibility_m;
-    const double strength_pm = FindFogPeak(kPhysical, extinction_pm).strength_pm;
-    const double range_m = CrossoverRange_m(strength_pm, 0.5, backscatter_pmsr, extinction_pm);
+    const double strength_pm = lidar::FindFogPeak(kPhysical, extinction_pm).strength_pm;
+    const double range_m =
+        lidar::CrossoverRange_m(strength_pm, 0.5, backscatter_pmsr, extinction_pm);
     const double ratio = std::numbers::pi * backscatter_pmsr / 0.5 * strength_pm * range_m *
                          range_m * std::exp(2.0 * extinction_pm * range_m);
     EXPECT_NEAR(ratio, 1.0, 1e-12);
@@ -91,9 +92,10 @@ TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
 }
 
 // The largest folded pulse over a grid of centres, by the trapezoidal rule.
-FogPeak BruteForce(const BeamOptics& optics, double extinction_pm, double centre_step_m) {
+lidar::FogPeak BruteForce(const lidar::BeamOptics& optics, double extinction_pm,
+                          double centre_step_m) {
   constexpr int kPoints = 4000;
-  FogPeak best{0.0, 0.0};
+  lidar::FogPeak best{0.0, 0.0};
   const double until_m = optics.overlap_end_m + 0.5 * optics.pulse_length_m;
   for (double centre_m = optics.overlap_start_m; centre_m < until_m; centre_m += centre_step_m) {
     double sum = 0.0;
@@ -101,7 +103,7 @@ FogPeak BruteForce(const BeamOptics& optics, double extinction_pm, double centre
       const double r = centre_m + optics.pulse_length_m * (0.5 - static_cast<double>(k) / kPoints);
       if (r <= optics.overlap_start_m) break;
       const double wave = std::sin(std::numbers::pi * k / kPoints);
-      sum += wave * wave * ChannelGain(optics, extinction_pm, r);
+      sum += wave * wave * lidar::ChannelGain(optics, extinction_pm, r);
     }
     sum *= optics.pulse_length_m / kPoints;
     if (sum > best.strength_pm) best = {sum, centre_m};
@@ -110,19 +112,19 @@ FogPeak BruteForce(const BeamOptics& optics, double extinction_pm, double centre
 }
 
 TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
-  const std::vector<BeamOptics> all{
+  const std::vector<lidar::BeamOptics> all{
       kHahner,
       kPhysical,
       {.pulse_length_m = 0.15, .overlap_start_m = 2.0, .overlap_end_m = 3.0},
       {.pulse_length_m = 24.0, .overlap_start_m = 0.1, .overlap_end_m = 0.2},
       {.pulse_length_m = 3.0, .overlap_start_m = 20.0, .overlap_end_m = 40.0},
       {.pulse_length_m = 1.5, .overlap_start_m = 2.0, .overlap_end_m = 2.0}};
-  for (const BeamOptics& optics : all) {
+  for (const lidar::BeamOptics& optics : all) {
     for (const double extinction_pm : {0.0, 1.5e-4, 0.03, 0.6}) {
       const double step_m =
           (optics.overlap_end_m - optics.overlap_start_m + 0.5 * optics.pulse_length_m) / 200.0;
-      const FogPeak expected = BruteForce(optics, extinction_pm, step_m);
-      const FogPeak peak = FindFogPeak(optics, extinction_pm);
+      const lidar::FogPeak expected = BruteForce(optics, extinction_pm, step_m);
+      const lidar::FogPeak peak = lidar::FindFogPeak(optics, extinction_pm);
       // Errors of the grids at the kinks of the overlap: 0.3 % in J, two steps in r*.
       EXPECT_NEAR(peak.strength_pm / expected.strength_pm, 1.0, 3e-3)
           << optics.pulse_length_m << " " << extinction_pm;
@@ -133,40 +135,41 @@ TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
 }
 
 TEST(FogBeamTest, AShortPulseSeesTheGainItself) {
-  const BeamOptics optics{.pulse_length_m = 0.01, .overlap_start_m = 2.0, .overlap_end_m = 6.0};
-  const FogPeak peak = FindFogPeak(optics, 0.0);
+  const lidar::BeamOptics optics{
+      .pulse_length_m = 0.01, .overlap_start_m = 2.0, .overlap_end_m = 6.0};
+  const lidar::FogPeak peak = lidar::FindFogPeak(optics, 0.0);
   EXPECT_NEAR(peak.range_m, 4.0, 0.01) << "(r - 2) / r^2 is largest at 4";
-  EXPECT_NEAR(peak.strength_pm, 0.005 * ChannelGain(optics, 0.0, 4.0), 1e-6);
+  EXPECT_NEAR(peak.strength_pm, 0.005 * lidar::ChannelGain(optics, 0.0, 4.0), 1e-6);
 }
 
 TEST(FogBeamTest, OverlapRisesLinearlyFromStartToEnd) {
-  EXPECT_EQ(Overlap(kPhysical, 1.0), 0.0);
-  EXPECT_EQ(Overlap(kPhysical, 2.0), 0.0);
-  EXPECT_DOUBLE_EQ(Overlap(kPhysical, 3.5), 0.5);
-  EXPECT_EQ(Overlap(kPhysical, 5.0), 1.0);
-  EXPECT_EQ(Overlap(kPhysical, 50.0), 1.0);
+  EXPECT_EQ(lidar::Overlap(kPhysical, 1.0), 0.0);
+  EXPECT_EQ(lidar::Overlap(kPhysical, 2.0), 0.0);
+  EXPECT_DOUBLE_EQ(lidar::Overlap(kPhysical, 3.5), 0.5);
+  EXPECT_EQ(lidar::Overlap(kPhysical, 5.0), 1.0);
+  EXPECT_EQ(lidar::Overlap(kPhysical, 50.0), 1.0);
 }
 
 TEST(FogBeamTest, AnOverlapThatEndsBeforeItStartsIsAStep) {
   LidarBeamSection beam;
   beam.overlap_start_m = 3.0;
   beam.overlap_end_m = 1.0;
-  const BeamOptics optics = OpticsOf(beam);
-  EXPECT_EQ(Overlap(optics, 3.0), 0.0);
-  EXPECT_EQ(Overlap(optics, 3.001), 1.0);
+  const lidar::BeamOptics optics = lidar::OpticsOf(beam);
+  EXPECT_EQ(lidar::Overlap(optics, 3.0), 0.0);
+  EXPECT_EQ(lidar::Overlap(optics, 3.001), 1.0);
 }
 
 TEST(FogBeamTest, PulseLengthIsLightTimesItsDuration) {
   LidarBeamSection beam;
   beam.pulse_half_width_ns = 20.0;
-  EXPECT_DOUBLE_EQ(OpticsOf(beam).pulse_length_m, kHahner.pulse_length_m);
+  EXPECT_DOUBLE_EQ(lidar::OpticsOf(beam).pulse_length_m, kHahner.pulse_length_m);
 }
 
 TEST(FogBeamTest, ScatterIsBetweenZeroAndOneAndGrowsAsItsNumbersShrink) {
-  EXPECT_GT(Beta2And20(1.0 - 1e-15, 1.0 - 1e-15), 0.0);
-  EXPECT_LT(Beta2And20(1e-16, 1e-16), 1.0);
-  EXPECT_GT(Beta2And20(0.4, 0.5), Beta2And20(0.5, 0.5));
-  EXPECT_GT(Beta2And20(0.5, 0.4), Beta2And20(0.5, 0.5));
+  EXPECT_GT(lidar::Beta2And20(1.0 - 1e-15, 1.0 - 1e-15), 0.0);
+  EXPECT_LT(lidar::Beta2And20(1e-16, 1e-16), 1.0);
+  EXPECT_GT(lidar::Beta2And20(0.4, 0.5), lidar::Beta2And20(0.5, 0.5));
+  EXPECT_GT(lidar::Beta2And20(0.5, 0.4), lidar::Beta2And20(0.5, 0.5));
 }
 
 }  // namespace

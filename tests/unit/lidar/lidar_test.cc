@@ -34,7 +34,7 @@ truth_t InFog(double gap_m, double level) {
 
 TEST(LidarTest, MeasuresTheGapInClearAir) {
   for (const FogModel model : {FogModel::kNone, FogModel::kBias, FogModel::kBeam}) {
-    Lidar lidar(Exact(model));
+    lidar::Lidar lidar(Exact(model));
     const lidar_t& out = lidar.Step(Target(33.0));
     EXPECT_TRUE(out.valid);
     EXPECT_DOUBLE_EQ(out.range_m, 33.0);
@@ -42,7 +42,7 @@ TEST(LidarTest, MeasuresTheGapInClearAir) {
 }
 
 TEST(LidarTest, AnswersInTheStepOfTheTruth) {
-  Lidar lidar(Exact(FogModel::kNone));
+  lidar::Lidar lidar(Exact(FogModel::kNone));
   const lidar_t& out = lidar.Step(Target(33.0));
   EXPECT_EQ(out.header.run_id, 5);
   EXPECT_EQ(out.header.step, 17);
@@ -53,13 +53,13 @@ TEST(LidarTest, SeesALateralOffsetAsASlantRangeAndAddsItsBias) {
   Scenario scenario = Exact(FogModel::kNone);
   scenario.lidar.lateral_offset_m = -3.0;
   scenario.lidar.bias_m = 0.5;
-  EXPECT_DOUBLE_EQ(Lidar(scenario).Step(Target(4.0)).range_m, 5.5);
+  EXPECT_DOUBLE_EQ(lidar::Lidar(scenario).Step(Target(4.0)).range_m, 5.5);
 }
 
 TEST(LidarTest, StatesItsStandardDeviation) {
   Scenario scenario;
   scenario.lidar.range_std_m = 0.03;
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   EXPECT_EQ(lidar.Step(Target(33.0)).range_std_m, 0.03);
   EXPECT_EQ(lidar.Step(Target(33.0)).intensity, 1.0);
 }
@@ -67,21 +67,21 @@ TEST(LidarTest, StatesItsStandardDeviation) {
 TEST(LidarTest, IsShortByTheBiasTimesTheLevelOfTheFog) {
   Scenario scenario = Exact(FogModel::kBias);
   scenario.fog.bias_m = 0.34;
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 0.0)).range_m, 33.0);
   EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 0.5)).range_m, 32.83);
   EXPECT_DOUBLE_EQ(lidar.Step(InFog(33.0, 1.0)).range_m, 32.66);
 }
 
 TEST(LidarTest, KnowsNoFogWithoutAFogModel) {
-  EXPECT_EQ(Lidar(Exact(FogModel::kNone)).Step(InFog(33.0, 1.0)).range_m, 33.0);
+  EXPECT_EQ(lidar::Lidar(Exact(FogModel::kNone)).Step(InFog(33.0, 1.0)).range_m, 33.0);
 }
 
 TEST(LidarTest, HasNoEchoFromBeyondItsMaximumRange) {
   for (const FogModel model : {FogModel::kNone, FogModel::kBias, FogModel::kBeam}) {
     Scenario scenario = Exact(model);
     scenario.lidar.max_range_m = 40.0;
-    Lidar lidar(scenario);
+    lidar::Lidar lidar(scenario);
     EXPECT_TRUE(lidar.Step(Target(40.0)).valid);
     const lidar_t& out = lidar.Step(Target(40.001));
     EXPECT_FALSE(out.valid);
@@ -94,7 +94,7 @@ TEST(LidarTest, HasNoEchoFromBeyondItsMaximumRange) {
 
 TEST(LidarTest, TakesThickFogForACar) {
   // GIVEN: fog of 30 m visibility, which is brighter than a car beyond 16 m
-  Lidar lidar(Exact(FogModel::kBeam));
+  lidar::Lidar lidar(Exact(FogModel::kBeam));
   for (std::int64_t step = 0; step < 100; ++step) {
     // WHEN: the car is 33 m away
     const lidar_t& out = lidar.Step(Target(33.0, 30.0, step));
@@ -107,7 +107,7 @@ TEST(LidarTest, TakesThickFogForACar) {
 }
 
 TEST(LidarTest, SeesANearCarThroughThickFog) {
-  Lidar lidar(Exact(FogModel::kBeam));
+  lidar::Lidar lidar(Exact(FogModel::kBeam));
   for (std::int64_t step = 0; step < 100; ++step) {
     EXPECT_DOUBLE_EQ(lidar.Step(Target(8.0, 30.0, step)).range_m, 8.0);
   }
@@ -118,14 +118,14 @@ TEST(LidarTest, HasNoEchoAtAllOfAFarDarkCarInThinFog) {
   // that 8 of 15 beams are above it is 1e-9 in a step.
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.beam.target_reflectivity = 0.02;
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   for (std::int64_t step = 0; step < 100; ++step) {
     EXPECT_FALSE(lidar.Step(Target(110.0, 2500.0, step)).valid);
   }
 }
 
 TEST(LidarTest, IsBlindBeforeItsBeamsOverlap) {
-  Lidar lidar(Exact(FogModel::kBeam));
+  lidar::Lidar lidar(Exact(FogModel::kBeam));
   EXPECT_FALSE(lidar.Step(Target(1.9)).valid);
   EXPECT_FALSE(lidar.Step(Target(-1.0, 30.0)).valid);
 }
@@ -134,7 +134,7 @@ TEST(LidarTest, StatesMoreJitterForAWeakEcho) {
   Scenario scenario;
   scenario.fog.model = FogModel::kBeam;
   scenario.lidar.range_std_m = 0.02;
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   const double near = lidar.Step(Target(10.0)).range_std_m;
   const double far = lidar.Step(Target(115.0)).range_std_m;
   EXPECT_GT(near, 0.02);
@@ -144,25 +144,25 @@ TEST(LidarTest, StatesMoreJitterForAWeakEcho) {
 }
 
 TEST(LidarTest, ReportsATouchForCarsThatOverlap) {
-  const lidar_t out = Lidar(Exact(FogModel::kBias)).Step(InFog(-1.0, 1.0));
+  const lidar_t out = lidar::Lidar(Exact(FogModel::kBias)).Step(InFog(-1.0, 1.0));
   EXPECT_TRUE(out.valid);
   EXPECT_EQ(out.range_m, 0.0);
 }
 
 TEST(LidarTest, NoDrawServesTwoPurposes) {
-  EXPECT_NE(Lidar::kNoiseDraw, Lidar::kDropoutDraw);
+  EXPECT_NE(lidar::Lidar::kNoiseDraw, lidar::Lidar::kDropoutDraw);
   std::set<std::uint32_t> draws;
   constexpr std::uint32_t kMaxBeams = 101;
   for (std::uint32_t n = 0; n < kMaxBeams; ++n) {
-    EXPECT_TRUE(draws.insert(Lidar::PowerDraw(n)).second);
-    EXPECT_TRUE(draws.insert(Lidar::ScatterDraw(n)).second);
+    EXPECT_TRUE(draws.insert(lidar::Lidar::PowerDraw(n)).second);
+    EXPECT_TRUE(draws.insert(lidar::Lidar::ScatterDraw(n)).second);
   }
 }
 
 TEST(LidarTest, DropsOutAlwaysAtProbabilityOne) {
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.dropout_probability = 1.0;
-  Lidar lidar(scenario);
+  lidar::Lidar lidar(scenario);
   for (std::int64_t step = 0; step < 1000; ++step) {
     EXPECT_FALSE(lidar.Step(Target(33.0, 30.0, step)).valid);
   }

@@ -13,7 +13,7 @@ namespace {
 /// Writes a log of three events. @return its bytes
 std::string WriteThreeEvents(const std::string& file) {
   {
-    EventLogWriter writer(file);
+    log::EventLogWriter writer(file);
     for (int i = 0; i < 3; ++i) {
       const std::vector<std::uint8_t> data(static_cast<std::size_t>(5 + i),
                                            static_cast<std::uint8_t>(i));
@@ -27,7 +27,7 @@ std::string WriteThreeEvents(const std::string& file) {
 TEST(EventLogTest, ReadsBackWhatWasWritten) {
   const test::ScratchFolder folder;
   WriteThreeEvents(folder.File("log"));
-  EventLogReader reader(folder.File("log"));
+  log::EventLogReader reader(folder.File("log"));
   for (int i = 0; i < 3; ++i) {
     const auto event = reader.Next();
     ASSERT_TRUE(event);
@@ -48,7 +48,7 @@ TEST(EventLogTest, ReadsEveryCompleteEventOfALogCutAnywhereAndSaysSo) {
   for (std::size_t size = 4; size <= bytes.size(); ++size) {
     std::ofstream(folder.File("cut"), std::ios::binary)
         .write(bytes.data(), static_cast<long>(size));
-    EventLogReader reader(folder.File("cut"));
+    log::EventLogReader reader(folder.File("cut"));
     std::size_t events = 0;
     while (reader.Next()) ++events;
     const std::size_t whole =
@@ -64,7 +64,7 @@ TEST(EventLogTest, StopsAtLengthsThatCannotBe) {
   std::string bytes = WriteThreeEvents(folder.File("log"));
   bytes[24] = '\x7f';  // data length of the first event: 2 GB
   std::ofstream(folder.File("bad"), std::ios::binary) << bytes;
-  EventLogReader reader(folder.File("bad"));
+  log::EventLogReader reader(folder.File("bad"));
   EXPECT_FALSE(reader.Next());
   EXPECT_NE(reader.torn(), "");
 }
@@ -72,10 +72,10 @@ TEST(EventLogTest, StopsAtLengthsThatCannotBe) {
 TEST(EventLogTest, RefusesFilesThatAreNoEventLog) {
   const test::ScratchFolder folder;
   std::ofstream(folder.File("text")) << "hello, world";
-  EXPECT_THROW(EventLogReader(folder.File("text")), InputError);
-  EXPECT_THROW(EventLogReader(folder.File("missing")), InputError);
-  EXPECT_THROW(EventLogReader(folder.path()), InputError);
-  EXPECT_THROW(EventLogWriter(folder.File("no/such/folder/log")), InputError);
+  EXPECT_THROW(log::EventLogReader(folder.File("text")), InputError);
+  EXPECT_THROW(log::EventLogReader(folder.File("missing")), InputError);
+  EXPECT_THROW(log::EventLogReader(folder.path()), InputError);
+  EXPECT_THROW(log::EventLogWriter(folder.File("no/such/folder/log")), InputError);
 }
 
 }  // namespace

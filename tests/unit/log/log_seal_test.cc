@@ -34,14 +34,14 @@ void Write(const std::string& file, const std::string& content) {
 /// The result of reading a log.
 struct Reading {
   bool readable = true;
-  RunLog run;
+  log::RunLog run;
 };
 
 Reading Read(const std::string& file,
-             RunLogReader::Compared compared = RunLogReader::Compared::kFile) {
+             log::RunLogReader::Compared compared = log::RunLogReader::Compared::kFile) {
   Reading reading;
   try {
-    RunLogReader reader(file, compared);
+    log::RunLogReader reader(file, compared);
     while (reader.Next() != nullptr) {
     }
     reading.run = reader.run();
@@ -54,11 +54,13 @@ Reading Read(const std::string& file,
 class LogSealTest : public testing::Test {
  protected:
   LogSealTest() {
-    EventLogWriter writer(log_);
+    log::EventLogWriter writer(log_);
     std::vector<std::uint8_t> bytes;
-    const std::vector<std::string> parts = SplitScenario(std::string(kScenario));
+    const std::vector<std::string> parts = runtime::SplitScenario(std::string(kScenario));
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      Encode(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenario), parts, i), bytes);
+      runtime::Encode(
+          runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario), parts, i),
+          bytes);
       writer.Write(ChannelOf<run_t>().name, 0, bytes);
     }
     for (std::int64_t step = 0; step < kSteps; ++step) {
@@ -66,7 +68,7 @@ class LogSealTest : public testing::Test {
         M message{};
         message.header = {.run_id = kRunId, .step = step, .utime = step * kStep_us};
         if constexpr (std::is_same_v<M, truth_t>) message.last = step == kSteps - 1;
-        Encode(message, bytes);
+        runtime::Encode(message, bytes);
         writer.Write(ChannelOf<M>().name, message.header.utime, bytes);
       });
     }
@@ -75,31 +77,34 @@ class LogSealTest : public testing::Test {
   }
 
   log_seal_t SealOfLog() const {
-    const RunLog run = Read(log_).run;
+    const log::RunLog run = Read(log_).run;
     log_seal_t seal{};
     seal.header = {.run_id = kRunId, .step = kSteps - 1, .utime = (kSteps - 1) * kStep_us};
     seal.digest = run.digest;
     seal.steps = run.steps;
     seal.complete = run.complete;
     seal.scenario_hash = run.scenario_hash;
-    seal.file_hash = HashOf(Content(log_).substr(0, static_cast<std::size_t>(head_.bytes)));
+    seal.file_hash =
+        runtime::HashOf(Content(log_).substr(0, static_cast<std::size_t>(head_.bytes)));
     seal.num_roles = 1;
     seal.role = {"world"};
     seal.build_id = {4711};
     return seal;
   }
-  void SealIt(const SigningKey* key = nullptr) const { SealLog(log_, head_, SealOfLog(), key); }
+  void SealIt(const runtime::SigningKey* key = nullptr) const {
+    log::SealLog(log_, head_, SealOfLog(), key);
+  }
 
   test::ScratchFolder folder_;
   const std::string log_ = folder_.File("log");
-  LogHead head_;
+  log::LogHead head_;
 };
 
 TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
   const std::string before = Read(log_).run.digest;
   EXPECT_FALSE(Read(log_).run.seal);
   SealIt();
-  const RunLog run = Read(log_).run;
+  const log::RunLog run = Read(log_).run;
   ASSERT_TRUE(run.seal);
   EXPECT_TRUE(run.seal->whole);
   EXPECT_TRUE(run.complete);
@@ -127,9 +132,9 @@ TEST_F(LogSealTest, ShowsStepsThatWereChangedToAReaderOfTheRunAlone) {
   SealIt();
   std::string altered = Content(log_);
   const std::size_t radar = altered.find("RADAR");
-  altered[radar + 5 + kHeaderEnd + 8] ^= 1;
+  altered[radar + 5 + runtime::kHeaderEnd + 8] ^= 1;
   Write(log_, altered);
-  const RunLog run = Read(log_, RunLogReader::Compared::kRun).run;
+  const log::RunLog run = Read(log_, log::RunLogReader::Compared::kRun).run;
   EXPECT_TRUE(run.altered);
   EXPECT_FALSE(run.complete);
   EXPECT_THAT(run.note, HasSubstr("altered: sealed with digest "));
@@ -166,14 +171,14 @@ TEST_F(LogSealTest, HoldsInACopyWhoseEventsHaveOtherTimes) {
   // GIVEN the log as lcm-logger records it while lcm-logplayer plays it
   const std::string copy = folder_.File("copy");
   {
-    EventLogReader reader(log_);
-    EventLogWriter writer(copy);
+    log::EventLogReader reader(log_);
+    log::EventLogWriter writer(copy);
     std::int64_t now_us = 1'700'000'000'000'000;
     while (const auto event = reader.Next()) {
       writer.Write(event->channel, ++now_us, event->data);
     }
   }
-  const RunLog run = Read(copy).run;
+  const log::RunLog run = Read(copy).run;
   ASSERT_TRUE(run.seal);
   EXPECT_TRUE(run.seal->copied);
   EXPECT_TRUE(run.complete) << run.note;
@@ -184,51 +189,53 @@ TEST_F(LogSealTest, OfAnotherRunSaysNothingOfThisOne) {
   SealIt();
   log_seal_t others = SealOfLog();
   others.header.run_id = kRunId + 1;
-  others.digest = HashOf("another run");
+  others.digest = runtime::HashOf("another run");
   Write(folder_.File("others"), "");
-  SealLog(folder_.File("others"), {}, others, nullptr);
+  log::SealLog(folder_.File("others"), {}, others, nullptr);
   // GIVEN a log of lcm-logger that contains both seals
   const std::string copy = folder_.File("copy");
   {
-    EventLogReader others_reader(folder_.File("others"));
-    EventLogReader reader(log_);
-    EventLogWriter writer(copy);
+    log::EventLogReader others_reader(folder_.File("others"));
+    log::EventLogReader reader(log_);
+    log::EventLogWriter writer(copy);
     constexpr std::int64_t kNow_us = 1'700'000'000'000'000;
     while (const auto event = reader.Next()) {
-      if (IsLogSeal(*event)) writer.Write(kLogSealChannel, kNow_us, others_reader.Next()->data);
+      if (log::IsLogSeal(*event))
+        writer.Write(log::kLogSealChannel, kNow_us, others_reader.Next()->data);
       writer.Write(event->channel, kNow_us, event->data);
     }
   }
-  const RunLog run = Read(copy).run;
+  const log::RunLog run = Read(copy).run;
   EXPECT_TRUE(run.complete);
   EXPECT_EQ(run.note, "1 messages of other runs ignored");
 }
 
 TEST_F(LogSealTest, IsSignedWithAKeyAndWithNoOther) {
-  SigningKey::Create(folder_.File("key"));
-  SigningKey::Create(folder_.File("other"));
-  const SigningKey key = SigningKey::Load(folder_.File("key"));
+  runtime::SigningKey::Create(folder_.File("key"));
+  runtime::SigningKey::Create(folder_.File("other"));
+  const runtime::SigningKey key = runtime::SigningKey::Load(folder_.File("key"));
   SealIt(&key);
-  const RunLog run = Read(log_).run;
+  const log::RunLog run = Read(log_).run;
   ASSERT_TRUE(run.seal && run.seal->whole);
   EXPECT_FALSE(run.altered) << run.note;
-  EXPECT_EQ(VerifySeal(*run.seal, key), SealSignature::kHolds);
-  EXPECT_EQ(VerifySeal(*run.seal, SigningKey::Load(folder_.File("other"))), SealSignature::kWrong);
+  EXPECT_EQ(log::VerifySeal(*run.seal, key), log::SealSignature::kHolds);
+  EXPECT_EQ(log::VerifySeal(*run.seal, runtime::SigningKey::Load(folder_.File("other"))),
+            log::SealSignature::kWrong);
 }
 
 TEST_F(LogSealTest, MadeAnewWithoutTheKeyIsNotSigned) {
-  SigningKey::Create(folder_.File("key"));
-  const SigningKey key = SigningKey::Load(folder_.File("key"));
+  runtime::SigningKey::Create(folder_.File("key"));
+  const runtime::SigningKey key = runtime::SigningKey::Load(folder_.File("key"));
   SealIt();
-  EXPECT_EQ(VerifySeal(*Read(log_).run.seal, key), SealSignature::kNone);
+  EXPECT_EQ(log::VerifySeal(*Read(log_).run.seal, key), log::SealSignature::kNone);
 }
 
 TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   const test::ScratchFolder folder;
-  WrittenLog first;
-  WrittenLog last;
+  log::WrittenLog first;
+  log::WrittenLog last;
   {
-    EventLogWriter writer(folder.File("log"));
+    log::EventLogWriter writer(folder.File("log"));
     writer.Write("FIRST", 0, std::vector<std::uint8_t>(100, 1));
     writer.Flush();
     first = writer.written();
@@ -237,9 +244,9 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
     last = writer.written();
   }
   std::string content = Content(folder.File("log"));
-  const auto why = [&](const std::vector<WrittenLog>& written) {
+  const auto why = [&](const std::vector<log::WrittenLog>& written) {
     std::ofstream(folder.File("log"), std::ios::binary) << content;
-    return WhyNotWritten(EventLogReader(folder.File("log")), written);
+    return log::WhyNotWritten(log::EventLogReader(folder.File("log")), written);
   };
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({first, last}), "");

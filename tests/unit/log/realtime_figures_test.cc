@@ -18,7 +18,7 @@ status_t Said(const std::string& role, std::int64_t instance, std::int64_t seque
 }
 
 TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
-  RealtimeAccumulator figures(1, kStep_us, 1000);
+  log::RealtimeAccumulator figures(1, kStep_us, 1000);
   for (const std::int64_t sequence : {1, 3, 2}) {  // the second message has overtaken the last one
     status_t world = Said("world", 1, sequence);
     world.ticks = 10 * sequence;
@@ -33,11 +33,11 @@ TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
 /// A log of ten steps. Some of them lack messages that the radar or the world has published.
 class UnloggedMessagesTest : public testing::Test {
  protected:
-  void AddSteps(int steps, const ChannelSet& there) {
+  void AddSteps(int steps, const runtime::ChannelSet& there) {
     for (int i = 0; i < steps; ++i) figures_.AddStep(there);
   }
-  static ChannelSet AllBut(std::initializer_list<std::size_t> channels) {
-    ChannelSet there;
+  static runtime::ChannelSet AllBut(std::initializer_list<std::size_t> channels) {
+    runtime::ChannelSet there;
     there.set();
     for (const std::size_t channel : channels) there.reset(channel);
     return there;
@@ -47,7 +47,7 @@ class UnloggedMessagesTest : public testing::Test {
     radar.ticks = ticks;
     figures_.Add(radar);
   }
-  RealtimeAccumulator figures_{1, kStep_us, 10};
+  log::RealtimeAccumulator figures_{1, kStep_us, 10};
 };
 
 TEST_F(UnloggedMessagesTest, AreThoseThatTheirProducerHasCountedAndTheLogHasNot) {
@@ -83,7 +83,7 @@ TEST_F(UnloggedMessagesTest, CannotBeCountedOfARoleThatWasStartedAgainUnlessItIs
 
 TEST(RealtimeFiguresTest, IgnoresNumbersThatNoProcessCanHaveCounted) {
   constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
-  RealtimeAccumulator figures(1, kStep_us, 1000);
+  log::RealtimeAccumulator figures(1, kStep_us, 1000);
   status_t world = Said("world", 1, 1);
   world.ticks = 5;
   world.deadline_misses = 2;

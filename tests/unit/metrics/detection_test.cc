@@ -13,8 +13,8 @@ namespace {
 constexpr double kStep_s = 0.5;
 
 // A run in clear air. The LiDAR is right, and the automation drives.
-std::vector<Sample> QuietRun(std::size_t steps) {
-  std::vector<Sample> run(steps);
+std::vector<metrics::Sample> QuietRun(std::size_t steps) {
+  std::vector<metrics::Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {
     run[k].time_s = kStep_s * static_cast<double>(k);
     run[k].host_gap_m = run[k].lidar_range_m = run[k].fused_distance_m = 30;
@@ -23,19 +23,20 @@ std::vector<Sample> QuietRun(std::size_t steps) {
   return run;
 }
 
-void Deceive(Sample& sample) {
+void Deceive(metrics::Sample& sample) {
   sample.fog_present = true;
   sample.lidar_range_m = sample.fused_distance_m = 29;
 }
 
-void GiveToHuman(Sample& sample) {
+void GiveToHuman(metrics::Sample& sample) {
   sample.lambda_human = 1;
   sample.lambda_automation = 0;
 }
 
-DetectionMeasures Collect(const std::vector<Sample>& run, const Scenario& scenario = {}) {
-  DetectionAccumulator accumulator(scenario);
-  for (const Sample& sample : run) accumulator.Add(sample);
+metrics::DetectionMeasures Collect(const std::vector<metrics::Sample>& run,
+                                   const Scenario& scenario = {}) {
+  metrics::DetectionAccumulator accumulator(scenario);
+  for (const metrics::Sample& sample : run) accumulator.Add(sample);
   return accumulator.Result();
 }
 
@@ -43,7 +44,7 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileItIs
   auto run = QuietRun(8);
   for (const std::size_t k : {2, 3, 4}) Deceive(run[k]);
   for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
-  const DetectionMeasures m = Collect(run);
+  const metrics::DetectionMeasures m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 2 * kStep_s);  // steps 2 and 3
   EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; the last step, 7, has no duration
 }
@@ -51,18 +52,18 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileItIs
 TEST(DetectionTest, AuthorityWeighsTheTime) {
   auto run = QuietRun(3);
   Deceive(run[0]);
-  for (Sample& sample : run) {
+  for (metrics::Sample& sample : run) {
     sample.lambda_human = 0.25;
     sample.lambda_automation = 0.75;
   }
-  const DetectionMeasures m = Collect(run);
+  const metrics::DetectionMeasures m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 0.75 * kStep_s);
   EXPECT_EQ(m.wrong_human_s, 0.25 * kStep_s);
 }
 
 TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
   auto run = QuietRun(3);
-  for (Sample& sample : run) {
+  for (metrics::Sample& sample : run) {
     Deceive(sample);
     sample.fused_distance_m = 30.05;
   }
@@ -78,11 +79,11 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
   run[1].lidar_range_m = 30.5166620396 - 0.09;
   run[2].lidar_range_m = std::numeric_limits<double>::quiet_NaN();
   run[3].lidar_range_m = 30.5166620396;
-  for (Sample& sample : run) {
+  for (metrics::Sample& sample : run) {
     GiveToHuman(sample);
     sample.doc = 0.9;
   }
-  const DetectionMeasures m = Collect(run, scenario);
+  const metrics::DetectionMeasures m = Collect(run, scenario);
   EXPECT_EQ(m.wrong_human_s, 3 * kStep_s);
   EXPECT_EQ(m.deception_to_alarm_s, std::nullopt);
 }
@@ -109,7 +110,7 @@ TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
 
 TEST(DetectionTest, WithoutClearAirThereIsNoRateOfFalseAlarms) {
   auto run = QuietRun(3);
-  for (Sample& sample : run) sample.fog_present = true;
+  for (metrics::Sample& sample : run) sample.fog_present = true;
   EXPECT_EQ(Collect(run).false_alarms_ph, std::nullopt);
 }
 

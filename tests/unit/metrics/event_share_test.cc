@@ -11,23 +11,23 @@ namespace {
 
 TEST(ClopperPearsonTest, MeetsTheClosedFormsAtTheEnds) {
   // Without an event the tail is P(0 of n) = (1 - p)^n. With n of n events it is p^n.
-  const EventShare none = ClopperPearson(0, 10);
+  const metrics::EventShare none = metrics::ClopperPearson(0, 10);
   EXPECT_EQ(none.lower, 0);
   EXPECT_NEAR(none.upper, 1 - std::pow(0.025, 0.1), 1e-12);
-  const EventShare all = ClopperPearson(10, 10);
+  const metrics::EventShare all = metrics::ClopperPearson(10, 10);
   EXPECT_NEAR(all.lower, std::pow(0.025, 0.1), 1e-12);
   EXPECT_EQ(all.upper, 1);
 }
 
 TEST(ClopperPearsonTest, MeetsTheTables) {
-  const EventShare few = ClopperPearson(3, 10);
+  const metrics::EventShare few = metrics::ClopperPearson(3, 10);
   EXPECT_EQ(few.share, 0.3);
   EXPECT_NEAR(few.lower, 0.06674, 1e-5);
   EXPECT_NEAR(few.upper, 0.65245, 1e-5);
 }
 
 TEST(ClopperPearsonTest, BoundsAreWhereTheBinomialTailsAreHalfOfWhatIsLeftOut) {
-  const EventShare share = ClopperPearson(1, 3);
+  const metrics::EventShare share = metrics::ClopperPearson(1, 3);
   // P(at least 1 of 3) at the lower bound, P(at most 1 of 3) at the upper one.
   const double lower_tail = 1 - std::pow(1 - share.lower, 3);
   const double q = 1 - share.upper;
@@ -37,17 +37,17 @@ TEST(ClopperPearsonTest, BoundsAreWhereTheBinomialTailsAreHalfOfWhatIsLeftOut) {
 }
 
 TEST(ClopperPearsonTest, MoreConfidenceIsWider) {
-  const EventShare narrow = ClopperPearson(5, 50, 0.9);
-  const EventShare wide = ClopperPearson(5, 50, 0.99);
+  const metrics::EventShare narrow = metrics::ClopperPearson(5, 50, 0.9);
+  const metrics::EventShare wide = metrics::ClopperPearson(5, 50, 0.99);
   EXPECT_LT(wide.lower, narrow.lower);
   EXPECT_GT(wide.upper, narrow.upper);
 }
 
 TEST(ClopperPearsonTest, RefusesWhatIsNoShare) {
-  EXPECT_THROW(ClopperPearson(-1, 3), std::invalid_argument);
-  EXPECT_THROW(ClopperPearson(4, 3), std::invalid_argument);
-  EXPECT_THROW(ClopperPearson(0, 0), std::invalid_argument);
-  EXPECT_THROW(ClopperPearson(0, 3, 1), std::invalid_argument);
+  EXPECT_THROW(metrics::ClopperPearson(-1, 3), std::invalid_argument);
+  EXPECT_THROW(metrics::ClopperPearson(4, 3), std::invalid_argument);
+  EXPECT_THROW(metrics::ClopperPearson(0, 0), std::invalid_argument);
+  EXPECT_THROW(metrics::ClopperPearson(0, 3, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -29,13 +29,13 @@ follower_command_t SafeDistances(double first_m, double second_m) {
 }
 
 TEST(FollowerMeasuresTest, AreNoneWithoutAFollower) {
-  FollowerAccumulator accumulator;
+  metrics::FollowerAccumulator accumulator;
   accumulator.Add(truth_t{}, follower_command_t{});
   EXPECT_TRUE(accumulator.Result().empty());
 }
 
 TEST(FollowerMeasuresTest, HaveTheSmallestGapOfEachCar) {
-  FollowerAccumulator accumulator;
+  metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   for (const double less_m : {0.0, 3.0, 1.0}) {
     truth.follower_gap_m = {30 - less_m, 20 - 2 * less_m};
@@ -48,7 +48,7 @@ TEST(FollowerMeasuresTest, HaveTheSmallestGapOfEachCar) {
 }
 
 TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
-  FollowerAccumulator accumulator;
+  metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "nobody closes in";
@@ -65,7 +65,7 @@ TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
 }
 
 TEST(FollowerMeasuresTest, HaveTheShortfallOfEachDriversOwnSafeDistance) {
-  FollowerAccumulator accumulator;
+  metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(32, 20));
   EXPECT_EQ(accumulator.Result()[0].mean_compromised_safety_fog_m, std::nullopt) << "no fog yet";
@@ -80,7 +80,7 @@ TEST(FollowerMeasuresTest, HaveTheShortfallOfEachDriversOwnSafeDistance) {
 }
 
 TEST(FollowerMeasuresTest, GoWithoutTheCommandsOfAStepThatHasNone) {
-  FollowerAccumulator accumulator;
+  metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   truth.follower_gap_m = {10, 10};
   accumulator.Add(truth, follower_command_t{});
@@ -92,11 +92,12 @@ TEST(FollowerMeasuresTest, GoWithoutTheCommandsOfAStepThatHasNone) {
 
 TEST(FollowerMeasuresTest, AreNamedWithTheirUnits) {
   std::map<std::string, std::string> units;
-  VisitFollowerMeasures(FollowerMeasures(), [&](std::string_view name, const auto&,
-                                                std::string_view unit, std::string_view what) {
-    EXPECT_FALSE(what.empty()) << name;
-    units.emplace(name, unit);
-  });
+  metrics::VisitFollowerMeasures(
+      metrics::FollowerMeasures(),
+      [&](std::string_view name, const auto&, std::string_view unit, std::string_view what) {
+        EXPECT_FALSE(what.empty()) << name;
+        units.emplace(name, unit);
+      });
   EXPECT_EQ(units.size(), 4U);
   for (const auto& [name, unit] : units) EXPECT_TRUE(name.ends_with("_" + unit)) << name;
 }

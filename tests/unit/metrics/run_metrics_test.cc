@@ -24,8 +24,8 @@ constexpr double kStep_s = 0.5;  // a power of two: all times and jerks below ar
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A run without events of so many steps. The following car is exactly at its safe distance.
-std::vector<Sample> QuietRun(std::size_t steps) {
-  std::vector<Sample> run(steps);
+std::vector<metrics::Sample> QuietRun(std::size_t steps) {
+  std::vector<metrics::Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {
     run[k].step = static_cast<std::int64_t>(k);
     run[k].time_s = kStep_s * static_cast<double>(k);
@@ -36,8 +36,8 @@ std::vector<Sample> QuietRun(std::size_t steps) {
 }
 
 // The same run with fog in every step. The following car is too near by shortfalls_m[k].
-std::vector<Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
-  std::vector<Sample> run = QuietRun(shortfalls_m.size());
+std::vector<metrics::Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
+  std::vector<metrics::Sample> run = QuietRun(shortfalls_m.size());
   for (std::size_t k = 0; k < run.size(); ++k) {
     run[k].fog_present = true;
     run[k].follower_gap_m -= shortfalls_m[k];
@@ -46,38 +46,38 @@ std::vector<Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
 }
 
 TEST(CompromisedSafetyTest, IsTheShortfallOfTheSafeDistance) {
-  Sample sample;
+  metrics::Sample sample;
   sample.follower_safe_distance_m = 32;
   sample.follower_gap_m = 31.5;
-  EXPECT_EQ(CompromisedSafety(sample), 0.5);
+  EXPECT_EQ(metrics::CompromisedSafety(sample), 0.5);
 }
 
 TEST(CompromisedSafetyTest, IsNeverNegative) {
-  Sample sample;
+  metrics::Sample sample;
   sample.follower_safe_distance_m = 32;
   for (const double gap : {32.0, 32.5, 100.0}) {
     sample.follower_gap_m = gap;
-    EXPECT_EQ(CompromisedSafety(sample), 0) << gap;
+    EXPECT_EQ(metrics::CompromisedSafety(sample), 0) << gap;
   }
 }
 
 TEST(CompromisedSafetyTest, HasNoValueWithoutAFollowingCar) {
-  Sample sample;
+  metrics::Sample sample;
   sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
-  EXPECT_TRUE(std::isnan(CompromisedSafety(sample)));
+  EXPECT_TRUE(std::isnan(metrics::CompromisedSafety(sample)));
 }
 
 TEST(SafetyImprovementTest, IsFiftyPercentWhereEveryShortfallIsHalved) {
   const auto baseline = FoggyRun({1, 2, 4});
   const auto traded = FoggyRun({0.5, 1, 2});
-  EXPECT_EQ(SafetyImprovementPct(baseline, traded, 0), 50);
+  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0), 50);
 }
 
 TEST(SafetyImprovementTest, IsTheMeanOfTheStepsRatios) {
   // 1 - 0/1 = 1, 1 - 3/2 = -1/2, 1 - 1/4 = 3/4: the mean is 5/12.
   const auto baseline = FoggyRun({1, 2, 4});
   const auto traded = FoggyRun({0, 3, 1});
-  EXPECT_NEAR(*SafetyImprovementPct(baseline, traded, 0), 100 * 5.0 / 12, 1e-12);
+  EXPECT_NEAR(*metrics::SafetyImprovementPct(baseline, traded, 0), 100 * 5.0 / 12, 1e-12);
 }
 
 TEST(SafetyImprovementTest, LooksOnlyAtFogAndAboveTheFloor) {
@@ -85,22 +85,22 @@ TEST(SafetyImprovementTest, LooksOnlyAtFogAndAboveTheFloor) {
   const auto traded = FoggyRun({0.25, 9, 9, 9});
   baseline[2].fog_present = false;
   // Step 1 is at the floor, step 2 is in clear air, step 3 has nothing to improve.
-  EXPECT_EQ(SafetyImprovementPct(baseline, traded, 0.25), 75);
+  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0.25), 75);
 }
 
 TEST(SafetyImprovementTest, HasNoValueWithoutARelevantStep) {
   const auto clear = QuietRun(3);
   const auto safe = FoggyRun({0, 0, 0});
-  EXPECT_EQ(SafetyImprovementPct(clear, clear, 0), std::nullopt);
-  EXPECT_EQ(SafetyImprovementPct(safe, FoggyRun({1, 1, 1}), 0), std::nullopt);
-  EXPECT_EQ(SafetyImprovementPct({}, {}, 0), std::nullopt);
+  EXPECT_EQ(metrics::SafetyImprovementPct(clear, clear, 0), std::nullopt);
+  EXPECT_EQ(metrics::SafetyImprovementPct(safe, FoggyRun({1, 1, 1}), 0), std::nullopt);
+  EXPECT_EQ(metrics::SafetyImprovementPct({}, {}, 0), std::nullopt);
 }
 
 TEST(SafetyImprovementTest, ComparesTheStepsThatBothRunsReached) {
   const auto baseline = FoggyRun({1, 1});
   const auto traded = FoggyRun({0, 0.5, 1, 1});
-  EXPECT_EQ(SafetyImprovementPct(baseline, traded, 0), 75);
-  EXPECT_EQ(SafetyImprovementPct(traded, baseline, 0), -100);  // only step 1 is relevant
+  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0), 75);
+  EXPECT_EQ(metrics::SafetyImprovementPct(traded, baseline, 0), -100);  // only step 1 is relevant
 }
 
 TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
@@ -108,7 +108,7 @@ TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
   auto traded = baseline;
   traded[1].step = 7;
   try {
-    SafetyImprovementPct(baseline, traded, 0);
+    metrics::SafetyImprovementPct(baseline, traded, 0);
     FAIL() << "paired step 1 with step 7";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
@@ -117,7 +117,7 @@ TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
 }
 
 TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
-  const RunMeasures m = Measure({});
+  const metrics::RunMeasures m = metrics::Measure({});
   EXPECT_EQ(m.steps, 0);
   EXPECT_EQ(m.duration_s, 0);
   EXPECT_EQ(m.min_host_gap_m, std::nullopt);
@@ -126,7 +126,7 @@ TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
 }
 
 TEST(MeasureTest, CountsStepsAndTheTimeBetweenTheFirstAndTheLast) {
-  const RunMeasures m = Measure(QuietRun(5));
+  const metrics::RunMeasures m = metrics::Measure(QuietRun(5));
   EXPECT_EQ(m.steps, 5);
   EXPECT_EQ(m.duration_s, 2.0);
 }
@@ -135,7 +135,7 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
   auto run = QuietRun(3);
   run[1].host_gap_m = 12;
   run[2].follower_gap_m = 7;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.min_host_gap_m, 12);
   EXPECT_EQ(m.min_follower_gap_m, 7);
 }
@@ -143,15 +143,16 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
 TEST(MeasureTest, MeasuresCompromisedSafetyEverywhereAndItsMeanInFog) {
   auto run = FoggyRun({0, 1, 3, 8});
   run[3].fog_present = false;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.max_compromised_safety_m, 8);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 4.0 / 3);
 }
 
 TEST(MeasureTest, WithoutAFollowingCarItsMeasuresHaveNoValue) {
   auto run = FoggyRun({0, 0});
-  for (Sample& sample : run) sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
-  const RunMeasures m = Measure(run);
+  for (metrics::Sample& sample : run)
+    sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.min_follower_gap_m, std::nullopt);
   EXPECT_EQ(m.max_compromised_safety_m, std::nullopt);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, std::nullopt);
@@ -160,33 +161,33 @@ TEST(MeasureTest, WithoutAFollowingCarItsMeasuresHaveNoValue) {
 
 TEST(MeasureTest, KeepsTheFirstCollision) {
   auto run = QuietRun(4);
-  EXPECT_EQ(Measure(run).collision, truth_t::COLLISION_NONE);
-  EXPECT_EQ(Measure(run).collision_time_s, std::nullopt);
+  EXPECT_EQ(metrics::Measure(run).collision, truth_t::COLLISION_NONE);
+  EXPECT_EQ(metrics::Measure(run).collision_time_s, std::nullopt);
   for (std::size_t k : {2, 3}) {
     run[k].collision = truth_t::COLLISION_FOLLOWER;
     run[k].collision_time_s = 0.75;
   }
-  EXPECT_EQ(Measure(run).collision, truth_t::COLLISION_FOLLOWER);
-  EXPECT_EQ(Measure(run).collision_time_s, 0.75);
+  EXPECT_EQ(metrics::Measure(run).collision, truth_t::COLLISION_FOLLOWER);
+  EXPECT_EQ(metrics::Measure(run).collision_time_s, 0.75);
 }
 
 TEST(MeasureTest, RedundantEngagementIsTheHumansShareOfClearAir) {
   auto run = QuietRun(10);
   run[4].fog_present = run[5].fog_present = true;
   for (std::size_t k : {3, 4, 5, 6}) run[k].lambda_human = 1;
-  EXPECT_EQ(Measure(run).rhe_pct, 25);  // steps 3 and 6 of 8
-  for (Sample& sample : run) sample.lambda_human = 1;
-  EXPECT_EQ(Measure(run).rhe_pct, 100);
-  for (Sample& sample : run) sample.lambda_human = 0;
-  EXPECT_EQ(Measure(run).rhe_pct, 0);
-  for (Sample& sample : run) sample.fog_present = true;
-  EXPECT_EQ(Measure(run).rhe_pct, std::nullopt);
+  EXPECT_EQ(metrics::Measure(run).rhe_pct, 25);  // steps 3 and 6 of 8
+  for (metrics::Sample& sample : run) sample.lambda_human = 1;
+  EXPECT_EQ(metrics::Measure(run).rhe_pct, 100);
+  for (metrics::Sample& sample : run) sample.lambda_human = 0;
+  EXPECT_EQ(metrics::Measure(run).rhe_pct, 0);
+  for (metrics::Sample& sample : run) sample.fog_present = true;
+  EXPECT_EQ(metrics::Measure(run).rhe_pct, std::nullopt);
 }
 
 TEST(MeasureTest, CountsHandOversInBothDirectionsAndTheHumansTime) {
   auto run = QuietRun(10);
   for (std::size_t k : {2, 3, 4, 8, 9}) run[k].lambda_human = 1;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.transfers, 3);
   EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // no car carries out the command of the last step
 }
@@ -196,21 +197,21 @@ TEST(MeasureTest, JumpOfTheCommandCountsOnlyAtHandOvers) {
   run[3].lambda_human = run[4].lambda_human = 1;
   const std::array<double, 6> command{0, 5, 5, 4.5, -2, -1};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].command_mps2 = command[k];
-  EXPECT_EQ(Measure(run).max_handover_jump_mps2, 1);  // 0.5 at step 3, 1 at step 5
-  for (Sample& sample : run) sample.lambda_human = 0;
-  EXPECT_EQ(Measure(run).max_handover_jump_mps2, 0);
+  EXPECT_EQ(metrics::Measure(run).max_handover_jump_mps2, 1);  // 0.5 at step 3, 1 at step 5
+  for (metrics::Sample& sample : run) sample.lambda_human = 0;
+  EXPECT_EQ(metrics::Measure(run).max_handover_jump_mps2, 0);
 }
 
 TEST(MeasureTest, CountsHandOversPerMinuteAndTheLeastTimeBetweenTwo) {
   auto run = QuietRun(13);  // 6 s
-  EXPECT_EQ(Measure(run).transfers_pmin, 0);
+  EXPECT_EQ(metrics::Measure(run).transfers_pmin, 0);
   for (std::size_t k : {2, 3, 4, 5, 10, 11, 12}) run[k].lambda_human = 1;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.transfers_pmin, 30);        // 3 in 6 s
   EXPECT_EQ(m.min_dwell_s, 4 * kStep_s);  // steps 2 to 6
   for (std::size_t k = 0; k < 10; ++k) run[k].lambda_human = 0;
-  EXPECT_EQ(Measure(run).min_dwell_s, std::nullopt);
-  EXPECT_EQ(Measure(QuietRun(1)).transfers_pmin, std::nullopt);
+  EXPECT_EQ(metrics::Measure(run).min_dwell_s, std::nullopt);
+  EXPECT_EQ(metrics::Measure(QuietRun(1)).transfers_pmin, std::nullopt);
 }
 
 TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
@@ -219,26 +220,26 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   auto run = QuietRun(10);
   const std::array<double, 10> acceleration{0, 0, 3, 3, 2, 2, 4, 4, 4, 4};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
-  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
+  EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
   // The command of step 3 takes effect at step 4. The two steps from there on belong to the
   // hand-over. The jump at step 2 comes before it, the jump at step 6 after it.
   for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_human = 1;
-  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 2);
+  EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 2);
   // A ramp takes time: authority still changes at step 4, so step 6 belongs to the hand-over, too.
   run[3].lambda_human = 0.5;
-  EXPECT_EQ(Measure(run, scenario).max_handover_jerk_mps3, 4);
+  EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 4);
 }
 
 TEST(MeasureTest, MeasuresBothPairsOfCars) {
   auto run = QuietRun(3);
-  for (Sample& sample : run) {
+  for (metrics::Sample& sample : run) {
     sample.preceding_speed_mps = 20;
     sample.host_speed_mps = 20;
     sample.follower_speed_mps = 20;
   }
   run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind it
   run[2].preceding_speed_mps = 10;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
   EXPECT_EQ(m.host.min_ttc_s, 3);
   EXPECT_EQ(m.host.min_headway_s, 1.5);
@@ -250,7 +251,7 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   auto run = QuietRun(5);
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 do not follow an applied
   // acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
@@ -262,8 +263,8 @@ TEST(MeasureTest, BrakingCountsAsAcceleration) {
   auto run = QuietRun(3);
   run[1].host_acceleration_mps2 = 1;
   run[2].host_acceleration_mps2 = -3;
-  EXPECT_EQ(Measure(run).max_abs_acceleration_mps2, 3);
-  EXPECT_EQ(Measure(run).max_abs_jerk_mps3, 8);
+  EXPECT_EQ(metrics::Measure(run).max_abs_acceleration_mps2, 3);
+  EXPECT_EQ(metrics::Measure(run).max_abs_jerk_mps3, 8);
 }
 
 TEST(MeasureTest, ConflictInClearAirLeavesTheFogOut) {
@@ -274,7 +275,7 @@ TEST(MeasureTest, ConflictInClearAirLeavesTheFogOut) {
     run[k].doc = conflict[k] / 2;
   }
   run[1].fog_present = true;
-  const RunMeasures m = Measure(run);
+  const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.min_conflict_clear_m, 0.9);
   EXPECT_EQ(m.max_conflict_clear_m, 0.95);
   EXPECT_EQ(m.max_doc, 0.7);
@@ -285,16 +286,16 @@ TEST(MeasureTest, FusionErrorCountsTheStepsWithATrack) {
   run[0].fused_distance_m = kNone;
   run[1].fused_distance_m = 33;
   run[2].fused_distance_m = 26;
-  EXPECT_EQ(Measure(run).rms_fusion_error_m, std::sqrt((9.0 + 16.0) / 2));
+  EXPECT_EQ(metrics::Measure(run).rms_fusion_error_m, std::sqrt((9.0 + 16.0) / 2));
 }
 
 TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
   auto run = FoggyRun({1, 2, 3});
-  MeasureAccumulator accumulator;
+  metrics::MeasureAccumulator accumulator;
   for (std::size_t k = 0; k < run.size(); ++k) {
     accumulator.Add(run[k]);
-    const RunMeasures so_far = accumulator.Result();
-    const RunMeasures whole = Measure(std::span(run).first(k + 1));
+    const metrics::RunMeasures so_far = accumulator.Result();
+    const metrics::RunMeasures whole = metrics::Measure(std::span(run).first(k + 1));
     EXPECT_EQ(so_far.steps, whole.steps);
     EXPECT_EQ(so_far.mean_compromised_safety_fog_m, whole.mean_compromised_safety_fog_m);
   }
@@ -316,7 +317,7 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
       EXPECT_TRUE(name.ends_with(suffixes.at(unit))) << name << " in " << unit;
     }
   };
-  VisitMeasures(RunMeasures(), check);
+  metrics::VisitMeasures(metrics::RunMeasures(), check);
   EXPECT_EQ(names.size(), 42U);
 }
 
@@ -329,15 +330,16 @@ TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
     const std::size_t at = name.find(car);
     return std::string(name.substr(0, at)) + std::string(name.substr(at + car.size()));
   };
-  VisitMeasures(RunMeasures(), [&](std::string_view name, const auto&, std::string_view,
-                                   std::string_view description) {
-    if (description.starts_with(kHost)) {
-      host[without(name, "host")] = description.substr(kHost.size());
-    } else if (name.find("follower") != name.npos) {
-      ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
-      follower[without(name, "follower")] = description.substr(kFollower.size());
-    }
-  });
+  metrics::VisitMeasures(
+      metrics::RunMeasures(),
+      [&](std::string_view name, const auto&, std::string_view, std::string_view description) {
+        if (description.starts_with(kHost)) {
+          host[without(name, "host")] = description.substr(kHost.size());
+        } else if (name.find("follower") != name.npos) {
+          ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
+          follower[without(name, "follower")] = description.substr(kFollower.size());
+        }
+      });
   EXPECT_EQ(host.size(), 9U);
   EXPECT_EQ(host, follower);
 }

@@ -13,13 +13,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 
 // A gap of 30 m to a car of 20 m/s, 5 m/s faster.
-constexpr CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
-constexpr CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
+constexpr metrics::CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
+constexpr metrics::CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
 
-PairMeasures Collect(std::initializer_list<CarPair> pairs, const MeasuresSection& section = {}) {
-  PairAccumulator accumulator(section);
+metrics::PairMeasures Collect(std::initializer_list<metrics::CarPair> pairs,
+                              const MeasuresSection& section = {}) {
+  metrics::PairAccumulator accumulator(section);
   double since_s = 0;
-  for (const CarPair& pair : pairs) {
+  for (const metrics::CarPair& pair : pairs) {
     accumulator.Add(pair, since_s);
     since_s = kStep_s;
   }
@@ -27,26 +28,26 @@ PairMeasures Collect(std::initializer_list<CarPair> pairs, const MeasuresSection
 }
 
 // A pair that collides after so many seconds: 10 m/s faster.
-CarPair CollidingWithin(double ttc_s) { return {10 * ttc_s, 30, 20}; }
+metrics::CarPair CollidingWithin(double ttc_s) { return {10 * ttc_s, 30, 20}; }
 
 TEST(SurrogateTest, TimeToCollisionIsGapOverClosingSpeed) {
-  EXPECT_EQ(TimeToCollision(kClosing), 6);
-  EXPECT_TRUE(std::isinf(TimeToCollision(kFollowing)));
-  EXPECT_TRUE(std::isinf(TimeToCollision({30, 15, 20})));
-  EXPECT_EQ(TimeToCollision({-0.1, 25, 20}), 0);
+  EXPECT_EQ(metrics::TimeToCollision(kClosing), 6);
+  EXPECT_TRUE(std::isinf(metrics::TimeToCollision(kFollowing)));
+  EXPECT_TRUE(std::isinf(metrics::TimeToCollision({30, 15, 20})));
+  EXPECT_EQ(metrics::TimeToCollision({-0.1, 25, 20}), 0);
 }
 
 TEST(SurrogateTest, DecelerationToAvoidACrashStopsTheClosingWithinTheGap) {
-  EXPECT_DOUBLE_EQ(DecelerationToAvoidCrash(kClosing), 25.0 / 60);
-  EXPECT_EQ(DecelerationToAvoidCrash(kFollowing), 0);
-  EXPECT_EQ(DecelerationToAvoidCrash({30, 15, 20}), 0);
-  EXPECT_TRUE(std::isinf(DecelerationToAvoidCrash({0, 25, 20})));
+  EXPECT_DOUBLE_EQ(metrics::DecelerationToAvoidCrash(kClosing), 25.0 / 60);
+  EXPECT_EQ(metrics::DecelerationToAvoidCrash(kFollowing), 0);
+  EXPECT_EQ(metrics::DecelerationToAvoidCrash({30, 15, 20}), 0);
+  EXPECT_TRUE(std::isinf(metrics::DecelerationToAvoidCrash({0, 25, 20})));
 }
 
 TEST(SurrogateTest, UrgentDecelerationGapIsWhatBothBrakingsLeave) {
   // 20^2/6.6 = 60.61 m ahead, 25 m of reaction and 25^2/6.6 = 94.70 m behind.
-  EXPECT_NEAR(UrgentDecelerationGap({}, kClosing), 30 + 60.6061 - 94.6970 - 25, 1e-4);
-  EXPECT_EQ(UrgentDecelerationGap({}, kFollowing), 10);
+  EXPECT_NEAR(metrics::UrgentDecelerationGap({}, kClosing), 30 + 60.6061 - 94.6970 - 25, 1e-4);
+  EXPECT_EQ(metrics::UrgentDecelerationGap({}, kFollowing), 10);
 }
 
 TEST(SurrogateTest, CrashProbabilityIsThatOfATruncatedNormalDistribution) {
@@ -55,12 +56,12 @@ TEST(SurrogateTest, CrashProbabilityIsThatOfATruncatedNormalDistribution) {
   section.madr_std_mps2 = 1;
   section.madr_least_mps2 = 7;
   section.madr_most_mps2 = 9;
-  EXPECT_EQ(CrashProbability(section, 7), 0);
-  EXPECT_NEAR(CrashProbability(section, 8), 0.5, 1e-12);
+  EXPECT_EQ(metrics::CrashProbability(section, 7), 0);
+  EXPECT_NEAR(metrics::CrashProbability(section, 8), 0.5, 1e-12);
   // (0.691462 - 0.158655)/0.682689, from tables of the normal distribution.
-  EXPECT_NEAR(CrashProbability(section, 8.5), 0.780453, 2e-6);
-  EXPECT_EQ(CrashProbability(section, 9), 1);
-  EXPECT_EQ(CrashProbability(section, std::numeric_limits<double>::infinity()), 1);
+  EXPECT_NEAR(metrics::CrashProbability(section, 8.5), 0.780453, 2e-6);
+  EXPECT_EQ(metrics::CrashProbability(section, 9), 1);
+  EXPECT_EQ(metrics::CrashProbability(section, std::numeric_limits<double>::infinity()), 1);
 }
 
 TEST(SurrogateTest, CrashProbabilityHoldsWhereTheLimitsLeaveNothingOfTheDistribution) {
@@ -68,16 +69,16 @@ TEST(SurrogateTest, CrashProbabilityHoldsWhereTheLimitsLeaveNothingOfTheDistribu
   section.madr_mean_mps2 = 0.1;
   section.madr_std_mps2 = 0.01;
   section.madr_least_mps2 = 5;
-  EXPECT_EQ(CrashProbability(section, 4), 0);
-  EXPECT_EQ(CrashProbability(section, 6), 1);
+  EXPECT_EQ(metrics::CrashProbability(section, 4), 0);
+  EXPECT_EQ(metrics::CrashProbability(section, 6), 1);
 }
 
 TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
-  const PairMeasures m = Collect({kFollowing, kClosing, {40, 20, 20}});
+  const metrics::PairMeasures m = Collect({kFollowing, kClosing, {40, 20, 20}});
   EXPECT_EQ(m.min_ttc_s, 6);
   EXPECT_EQ(m.min_headway_s, 30.0 / 25);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
-  EXPECT_EQ(m.min_picud_m, UrgentDecelerationGap({}, kClosing));
+  EXPECT_EQ(m.min_picud_m, metrics::UrgentDecelerationGap({}, kClosing));
 }
 
 TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
@@ -87,8 +88,9 @@ TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
 
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
   // TTC* is 2 s. The last step has no duration.
-  const PairMeasures m = Collect({CollidingWithin(3), CollidingWithin(2), CollidingWithin(1),
-                                  CollidingWithin(1.5), kFollowing, CollidingWithin(1)});
+  const metrics::PairMeasures m =
+      Collect({CollidingWithin(3), CollidingWithin(2), CollidingWithin(1), CollidingWithin(1.5),
+               kFollowing, CollidingWithin(1)});
   EXPECT_EQ(m.tet_s, 3 * kStep_s);
   EXPECT_EQ(m.tit_s2, (0 + 1 + 0.5) * kStep_s);
 }
@@ -101,13 +103,13 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
   section.madr_most_mps2 = 9;
   // 100/(2 * 6.25) = 8 m/s2 has probability 1/2. It occurs in one of the four steps with a
   // duration.
-  const CarPair hard{.gap_m = 6.25, .speed_mps = 30, .lead_speed_mps = 20};
+  const metrics::CarPair hard{.gap_m = 6.25, .speed_mps = 30, .lead_speed_mps = 20};
   EXPECT_NEAR(*Collect({kFollowing, hard, kFollowing, kFollowing, hard}, section).cpi, 0.125,
               1e-12);
 }
 
 TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
-  const PairMeasures m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
+  const metrics::PairMeasures m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
   EXPECT_EQ(m.min_ttc_s, 0);
   EXPECT_EQ(m.min_headway_s, 0);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
@@ -116,7 +118,7 @@ TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
 }
 
 TEST(PairAccumulatorTest, HasNoValuesWithoutACarAhead) {
-  const PairMeasures m = Collect({{kNone, 20, 20}, {30, kNone, 20}});
+  const metrics::PairMeasures m = Collect({{kNone, 20, 20}, {30, kNone, 20}});
   EXPECT_EQ(m.min_ttc_s, std::nullopt);
   EXPECT_EQ(m.tet_s, std::nullopt);
   EXPECT_EQ(m.max_drac_mps2, std::nullopt);

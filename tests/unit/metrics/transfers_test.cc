@@ -26,14 +26,15 @@ struct Counted {
 
 Counted CountTransfers(const Scenario& scenario) {
   Counted counted;
-  MeasureAccumulator measures(scenario);
-  TakeOverLog log;
-  ClosedLoop(scenario).Run(0, [&](const StepView& step) {
+  metrics::MeasureAccumulator measures(scenario);
+  take_over::TakeOverLog log;
+  metrics::ClosedLoop(scenario).Run(0, [&](const metrics::StepView& step) {
     measures.Add(step.ToSample());
     log.Add(step.host, step.driver.acceleration_mps2);
-    counted.shared |= HumanDrives(step.host.mode) && !HumanDrives(step.host.lambda_human);
+    counted.shared |=
+        models::HumanDrives(step.host.mode) && !models::HumanDrives(step.host.lambda_human);
   });
-  for (const TakeOverEntry& entry : log.entries()) {
+  for (const take_over::TakeOverEntry& entry : log.entries()) {
     if (entry.transfer) counted.by_events.push_back(entry.step);
   }
   counted.by_measures = measures.Result().transfers;
@@ -55,7 +56,7 @@ std::optional<double> MinDwell_s(const Counted& counted, double step_s) {
 TEST(TransfersTest, AreCountedAlikeByMeasuresAndEventsUnderEveryPolicyProfileAndModeOfTakeOver) {
   std::size_t transfers = 0;
   int shared = 0;
-  for (const PolicyRow& row : Policies()) {
+  for (const policies::PolicyRow& row : policies::Policies()) {
     for (const std::string_view profile : ChoiceNames<TransferProfile>::kNames) {
       for (const std::string mode : {"instant", "requested"}) {
         for (const std::string file : {"paper", "dense_fog"}) {

@@ -27,7 +27,7 @@ truth_t Target(double gap_m, double relative_speed_mps = 0.0) {
 }
 
 TEST(RadarTest, MeasuresTheGapAndItsRate) {
-  Radar radar(Exact());
+  radar::Radar radar(Exact());
   const radar_t& out = radar.Step(Target(33.0, -2.0));
   EXPECT_TRUE(out.valid);
   EXPECT_EQ(out.range_m, 33.0);
@@ -35,7 +35,7 @@ TEST(RadarTest, MeasuresTheGapAndItsRate) {
 }
 
 TEST(RadarTest, AnswersInTheStepOfTheTruth) {
-  Radar radar(Exact());
+  radar::Radar radar(Exact());
   const radar_t& out = radar.Step(Target(33.0));
   EXPECT_EQ(out.header.run_id, 5);
   EXPECT_EQ(out.header.step, 17);
@@ -45,7 +45,7 @@ TEST(RadarTest, AnswersInTheStepOfTheTruth) {
 TEST(RadarTest, SeesALateralOffsetAsASlantRange) {
   Scenario scenario = Exact();
   scenario.radar.lateral_offset_m = 3.0;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   const radar_t& out = radar.Step(Target(4.0, -2.0));
   EXPECT_DOUBLE_EQ(out.range_m, 5.0);
   EXPECT_DOUBLE_EQ(out.range_rate_mps, -2.0 * 4.0 / 5.0);
@@ -54,14 +54,14 @@ TEST(RadarTest, SeesALateralOffsetAsASlantRange) {
 TEST(RadarTest, AddsItsBias) {
   Scenario scenario = Exact();
   scenario.radar.bias_m = 0.954;
-  EXPECT_DOUBLE_EQ(Radar(scenario).Step(Target(33.0)).range_m, 33.954);
+  EXPECT_DOUBLE_EQ(radar::Radar(scenario).Step(Target(33.0)).range_m, 33.954);
 }
 
 TEST(RadarTest, StatesItsStandardDeviations) {
   Scenario scenario;
   scenario.radar.range_std_m = 0.3;
   scenario.radar.range_rate_std_mps = 0.07;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   const radar_t& out = radar.Step(Target(33.0));
   EXPECT_EQ(out.range_std_m, 0.3);
   EXPECT_EQ(out.range_rate_std_mps, 0.07);
@@ -70,7 +70,7 @@ TEST(RadarTest, StatesItsStandardDeviations) {
 TEST(RadarTest, DropsTheTargetBeyondMaximumRange) {
   Scenario scenario = Exact();
   scenario.radar.max_range_m = 100.0;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   EXPECT_TRUE(radar.Step(Target(100.0)).valid);
   const radar_t& out = radar.Step(Target(100.001, -2.0));
   EXPECT_FALSE(out.valid);
@@ -86,7 +86,7 @@ TEST(RadarTest, LosesRangeInHeavyRain) {
   // 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m.
   Scenario scenario = Exact();
   scenario.fog.rain_mmph = 50.0;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   EXPECT_TRUE(radar.Step(Target(172.0)).valid);
   EXPECT_FALSE(radar.Step(Target(173.0)).valid);
 }
@@ -99,7 +99,7 @@ TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
   near.fog_visibility_m = 50.0;
   truth_t far = Target(241.0);
   far.fog_visibility_m = 50.0;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   // THEN: the fog has no other effect
   EXPECT_TRUE(radar.Step(near).valid);
   EXPECT_FALSE(radar.Step(far).valid);
@@ -112,7 +112,7 @@ TEST(RadarTest, AddsTheLossesOfRainAndFog) {
   Scenario scenario = Exact();
   scenario.fog.model = FogModel::kBeam;
   scenario.fog.rain_mmph = 50.0;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   truth_t truth = Target(170.0);
   EXPECT_TRUE(radar.Step(truth).valid);
   truth.fog_visibility_m = 50.0;
@@ -124,7 +124,7 @@ TEST(RadarTest, AddsTheLossesOfRainAndFog) {
 TEST(RadarTest, IsBlindToFogUnderModelBias) {
   Scenario scenario;
   scenario.fog.model = FogModel::kBias;
-  Radar radar(scenario);
+  radar::Radar radar(scenario);
   truth_t truth = Target(33.0);
   const radar_t clear = radar.Step(truth);
   truth.fog_present = true;
@@ -133,7 +133,7 @@ TEST(RadarTest, IsBlindToFogUnderModelBias) {
 }
 
 TEST(RadarTest, ReportsATouchForCarsThatOverlap) {
-  Radar radar(Exact());
+  radar::Radar radar(Exact());
   const radar_t& out = radar.Step(Target(-1.5, -2.0));
   EXPECT_TRUE(out.valid);
   EXPECT_EQ(out.range_m, 0.0);
@@ -143,15 +143,15 @@ TEST(RadarTest, ReportsATouchForCarsThatOverlap) {
 TEST(RadarTest, NeverReportsANegativeRange) {
   Scenario scenario = Exact();
   scenario.radar.bias_m = -5.0;
-  EXPECT_EQ(Radar(scenario).Step(Target(3.0)).range_m, 0.0);
+  EXPECT_EQ(radar::Radar(scenario).Step(Target(3.0)).range_m, 0.0);
 }
 
 TEST(RadarTest, DropsOutAlwaysOrNeverAtTheEndsOfTheProbability) {
   Scenario never = Exact();
   Scenario always = Exact();
   always.radar.dropout_probability = 1.0;
-  Radar reliable(never);
-  Radar dead(always);
+  radar::Radar reliable(never);
+  radar::Radar dead(always);
   for (std::int64_t step = 0; step < 1000; ++step) {
     truth_t truth = Target(33.0);
     truth.header.step = step;

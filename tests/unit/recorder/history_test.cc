@@ -31,20 +31,21 @@ std::vector<std::uint8_t> Encoded(std::int64_t step, bool last = false) {
     message.safe_distance_m.assign(static_cast<std::size_t>(step % 7), 40);
   }
   std::vector<std::uint8_t> bytes;
-  Encode(message, bytes);
+  runtime::Encode(message, bytes);
   return bytes;
 }
 
-void WriteStep(EventLogWriter& log, std::int64_t step, bool last = false) {
+void WriteStep(log::EventLogWriter& log, std::int64_t step, bool last = false) {
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     log.Write(kChannels[channel].name, step * 100'000, Encoded<M>(step, last));
   });
 }
 
-void WriteFront(EventLogWriter& log) {
+void WriteFront(log::EventLogWriter& log) {
   std::vector<std::uint8_t> bytes;
-  Encode(MakeRunPart(kRunId, run_t::PREPARE, 0, HashOf(kScenario), {std::string(kScenario)}, 0),
-         bytes);
+  runtime::Encode(runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario),
+                                       {std::string(kScenario)}, 0),
+                  bytes);
   log.Write(ChannelOf<run_t>().name, 0, bytes);
 }
 
@@ -52,23 +53,23 @@ class HistoryTest : public testing::Test {
  protected:
   /// Writes a log of so many steps.
   void Write(std::int64_t steps) const {
-    EventLogWriter log(file_);
+    log::EventLogWriter log(file_);
     WriteFront(log);
     for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
   }
   /// The contents of the log, found from its end or, for comparison, read from front to back.
-  Remains ReadFromEnd(std::int64_t tail = kTailBytes) const {
-    return ReadRemains(file_, ReadFront(file_), {}, tail);
+  log::Remains ReadFromEnd(std::int64_t tail = log::kTailBytes) const {
+    return log::ReadRemains(file_, log::ReadFront(file_), {}, tail);
   }
-  Remains ReadFromFront() const {
+  log::Remains ReadFromFront() const {
     return ReadFromEnd(static_cast<std::int64_t>(std::filesystem::file_size(file_)));
   }
-  void ExpectStep(History& history, std::int64_t step) const {
+  void ExpectStep(recorder::History& history, std::int64_t step) const {
     std::map<std::string_view, std::vector<std::uint8_t>> messages;
-    history.ForEachMessage(step, [&](std::string_view channel, Bytes bytes) {
+    history.ForEachMessage(step, [&](std::string_view channel, runtime::Bytes bytes) {
       messages[channel].assign(bytes.begin(), bytes.end());
     });
-    EXPECT_EQ(messages.size(), kStepChannels);
+    EXPECT_EQ(messages.size(), log::kStepChannels);
     ForEachStepChannel([&]<class M>(std::size_t channel) {
       EXPECT_EQ(messages[kChannels[channel].name], Encoded<M>(step)) << step;
     });
@@ -78,7 +79,7 @@ class HistoryTest : public testing::Test {
   const std::string file_ = folder_.File("log");
 };
 
-void ExpectSame(const Remains& a, const Remains& b) {
+void ExpectSame(const log::Remains& a, const log::Remains& b) {
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.head.bytes, b.head.bytes);
   EXPECT_EQ(a.head.events, b.head.events);
@@ -96,9 +97,9 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
   for (auto size = static_cast<std::int64_t>(std::filesystem::file_size(file_)); size > 60'000;
        size -= 37) {
     std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(size));
-    const Remains remains = ReadFromEnd(kTail);
+    const log::Remains remains = ReadFromEnd(kTail);
     ExpectSame(remains, ReadFromFront());
-    EXPECT_EQ(OddEnd(file_, ReadFront(file_), remains), "");
+    EXPECT_EQ(log::OddEnd(file_, log::ReadFront(file_), remains), "");
   }
 }
 
@@ -108,23 +109,23 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
   constexpr std::int64_t kPeriod = 7;  // the period of the steps' sizes
   constexpr std::int64_t kSteps = 14'000'000 * kPeriod;
   Write(kPeriod);
-  const LogFront front = ReadFront(file_);
+  const log::LogFront front = log::ReadFront(file_);
   const std::int64_t period_bytes =
       static_cast<std::int64_t>(std::filesystem::file_size(file_)) - front.head.bytes;
-  LogHead head{.bytes = front.head.bytes + kSteps / kPeriod * period_bytes,
-               .events = front.head.events};
+  log::LogHead head{.bytes = front.head.bytes + kSteps / kPeriod * period_bytes,
+                    .events = front.head.events};
   ASSERT_GT(head.bytes, 100'000'000'000);
-  head.events += kSteps * static_cast<std::int64_t>(kStepChannels);
+  head.events += kSteps * static_cast<std::int64_t>(log::kStepChannels);
   std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(front.head.bytes));
   {
-    EventLogWriter log(file_, head);
+    log::EventLogWriter log(file_, head);
     for (std::int64_t step = kSteps; step < kSteps + 500; ++step) WriteStep(log, step);
   }
   // WHEN a recorder continues this log, THEN it finds the last step and all steps near it
-  const Remains remains = ReadFromEnd();
+  const log::Remains remains = ReadFromEnd();
   EXPECT_EQ(remains.steps, kSteps + 500);
-  EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(kStepChannels));
-  History history(file_, front, remains);
+  EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(log::kStepChannels));
+  recorder::History history(file_, front, remains);
   for (std::int64_t step = kSteps + 499; step >= kSteps + 100; --step) ExpectStep(history, step);
 }
 
@@ -133,25 +134,25 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
   // it
   constexpr std::int64_t kSteps = 20'000;
   Write(kSteps);
-  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * kTailBytes);
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * log::kTailBytes);
   // WHEN it is read
   std::vector<std::int64_t> heard;
-  const Remains remains = ReadRemains(file_, ReadFront(file_),
-                                      [&heard](std::int64_t steps) { heard.push_back(steps); });
+  const log::Remains remains = log::ReadRemains(
+      file_, log::ReadFront(file_), [&heard](std::int64_t steps) { heard.push_back(steps); });
   // THEN it finds all steps, and has given signs of life that show its progress
   EXPECT_EQ(remains.steps, kSteps);
   ASSERT_GE(heard.size(), 2U);
   EXPECT_TRUE(std::ranges::is_sorted(heard));
   EXPECT_GT(heard.front(), 0);
   EXPECT_LT(heard.front(), heard.back());
-  EXPECT_THAT(OddEnd(file_, ReadFront(file_), remains),
+  EXPECT_THAT(log::OddEnd(file_, log::ReadFront(file_), remains),
               testing::EndsWith(" 2097152 bytes do not continue step 19999"));
 }
 
 TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
   constexpr std::int64_t kSteps = 2000;
   Write(kSteps + 1);  // the last one is marked as the last step
-  History history(file_, ReadFront(file_), ReadFromEnd());
+  recorder::History history(file_, log::ReadFront(file_), ReadFromEnd());
   std::mt19937 random(7);
   for (int i = 0; i < 500; ++i) {
     ExpectStep(history, std::uniform_int_distribution<std::int64_t>(0, kSteps - 1)(random));
@@ -161,12 +162,12 @@ TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
 
 TEST_F(HistoryTest, NamesTheStepThatIsDamaged) {
   Write(1000);
-  const LogFront front = ReadFront(file_);
-  const Remains remains = ReadFromEnd();
+  const log::LogFront front = log::ReadFront(file_);
+  const log::Remains remains = ReadFromEnd();
   std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
       .seekp(remains.head.bytes / 2)
       .write(std::string(100'000, 'x').c_str(), 100'000);
-  History history(file_, front, remains);
+  recorder::History history(file_, front, remains);
   EXPECT_THROW(ExpectStep(history, 505), std::runtime_error);
   ExpectStep(history, 10);
   ExpectStep(history, 990);
@@ -174,7 +175,7 @@ TEST_F(HistoryTest, NamesTheStepThatIsDamaged) {
 
 TEST_F(HistoryTest, TakesNoMoreMemoryTheLongerTheRunIs) {
   Write(1);
-  History history(file_, ReadFront(file_), ReadFromEnd());
+  recorder::History history(file_, log::ReadFront(file_), ReadFromEnd());
   constexpr std::int64_t kSteps = 20'000'000;
   const std::int64_t before = MeasureThisProcess().rss_bytes;
   for (std::int64_t step = 1; step < kSteps; ++step) history.Add(step * 3000);

@@ -34,15 +34,16 @@ class RecorderTest : public testing::Test {
     });
   }
   /// Makes a recorder for a run with this progress.
-  std::unique_ptr<Recorder> Record(Script& script, const std::string& name,
-                                   Recorder::Existing existing, std::int64_t progress = -1) {
-    auto recorder =
-        std::make_unique<Recorder>(script.bus(), Script::kRunId, folder_.File(name), existing);
+  std::unique_ptr<recorder::Recorder> Record(Script& script, const std::string& name,
+                                             recorder::Recorder::Existing existing,
+                                             std::int64_t progress = -1) {
+    auto recorder = std::make_unique<recorder::Recorder>(script.bus(), Script::kRunId,
+                                                         folder_.File(name), existing);
     script.SayRun(run_t::GO, progress);
     return recorder;
   }
   /// Records the whole run, or the rest of it.
-  void RecordAll(const std::string& name, Recorder::Existing existing) {
+  void RecordAll(const std::string& name, recorder::Recorder::Existing existing) {
     Script script;
     const auto recorder = Record(script, name, existing);
     EXPECT_EQ(recorder->error(), "");
@@ -50,7 +51,7 @@ class RecorderTest : public testing::Test {
     recorder->Leave();
   }
   /// Lets it answer all requests, a part of them in each turn.
-  void AnswerAll(Recorder& recorder) {
+  void AnswerAll(recorder::Recorder& recorder) {
     constexpr int kTurns = 100;
     for (int i = 0; i < kTurns; ++i) {
       recorder.Poll(Clock::now());
@@ -59,7 +60,7 @@ class RecorderTest : public testing::Test {
   }
   /// Records the whole run. @return the bytes of its log
   std::string WholeLog() {
-    RecordAll("whole", Recorder::Existing::kReplace);
+    RecordAll("whole", recorder::Recorder::Existing::kReplace);
     return Content(folder_.File("whole"));
   }
 
@@ -79,13 +80,13 @@ TEST_F(RecorderTest, GoesOnWithALogThatIsCutAnywhereAndCompletesItByteByByte) {
         whole.size()}) {
     std::ofstream(folder_.File("cut"), std::ios::binary)
         .write(whole.data(), static_cast<long>(size));
-    RecordAll("cut", Recorder::Existing::kResume);
+    RecordAll("cut", recorder::Recorder::Existing::kResume);
     EXPECT_TRUE(Content(folder_.File("cut")) == whole) << size << " bytes";
   }
 }
 
 TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
-  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  const auto recorder = Record(script_, "log", recorder::Recorder::Existing::kReplace);
   for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
   truths_.clear();
   script_.AskFor("TRUTH", 10, 63);
@@ -106,7 +107,7 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
 }
 
 TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
-  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  const auto recorder = Record(script_, "log", recorder::Recorder::Existing::kReplace);
   for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
   truths_.clear();
   constexpr int kRequests = 500;
@@ -115,13 +116,13 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
   // Of the 32,000 requested messages it sends each step once, and again after 2 ms.
-  EXPECT_GE(truths_.size(), static_cast<std::size_t>(kRingSteps));
-  EXPECT_LE(static_cast<double>(truths_.size()), kRingSteps * (1 + 500 * took.count()));
+  EXPECT_GE(truths_.size(), static_cast<std::size_t>(runtime::kRingSteps));
+  EXPECT_LE(static_cast<double>(truths_.size()), runtime::kRingSteps * (1 + 500 * took.count()));
 }
 
 TEST_F(RecorderTest, AnswersForWhatItsPredecessorHasWritten) {
   WholeLog();
-  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, kSteps - 1);
   EXPECT_EQ(status_.back().header.step, kSteps - 1);
   truths_.clear();
   script_.AskFor("TRUTH", 0, 2);
@@ -133,11 +134,12 @@ TEST_F(RecorderTest, AnswersForWhatItsPredecessorHasWritten) {
 TEST_F(RecorderTest, LeavesTheLogOfAnotherRunAlone) {
   const std::string whole = WholeLog();
   Script others;
-  Recorder recorder(others.bus(), Script::kRunId + 1, folder_.File("whole"),
-                    Recorder::Existing::kResume);
-  const std::vector<std::string> parts = SplitScenario(others.text());
+  recorder::Recorder recorder(others.bus(), Script::kRunId + 1, folder_.File("whole"),
+                              recorder::Recorder::Existing::kResume);
+  const std::vector<std::string> parts = runtime::SplitScenario(others.text());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    others.Say(MakeRunPart(Script::kRunId + 1, run_t::GO, 0, HashOf(others.text()), parts, i));
+    others.Say(runtime::MakeRunPart(Script::kRunId + 1, run_t::GO, 0,
+                                    runtime::HashOf(others.text()), parts, i));
   }
   EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of run 7, not of 8"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
@@ -146,14 +148,14 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherRunAlone) {
 TEST_F(RecorderTest, LeavesTheLogOfAnotherScenarioAlone) {
   const std::string whole = WholeLog();
   Script others;
-  Recorder recorder(others.bus(), Script::kRunId, folder_.File("whole"),
-                    Recorder::Existing::kResume);
+  recorder::Recorder recorder(others.bus(), Script::kRunId, folder_.File("whole"),
+                              recorder::Recorder::Existing::kResume);
   Scenario scenario;
   scenario.seed += 1;
   const std::string text = PrintScenario(scenario);
-  const std::vector<std::string> parts = SplitScenario(text);
+  const std::vector<std::string> parts = runtime::SplitScenario(text);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    others.Say(MakeRunPart(Script::kRunId, run_t::GO, 0, HashOf(text), parts, i));
+    others.Say(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0, runtime::HashOf(text), parts, i));
   }
   EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of another scenario"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
@@ -161,7 +163,7 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherScenarioAlone) {
 
 TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
   std::ofstream(folder_.File("text")) << "hello, world";
-  const auto recorder = Record(script_, "text", Recorder::Existing::kResume);
+  const auto recorder = Record(script_, "text", recorder::Recorder::Existing::kResume);
   EXPECT_THAT(recorder->error(), HasSubstr("not an LCM event log"));
   EXPECT_EQ(Content(folder_.File("text")), "hello, world");
 }
@@ -169,7 +171,7 @@ TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
 TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
   // The world has begun step 400, so step 368 must be on disk.
-  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, 400);
+  const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, 400);
   EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 369 were in it"));
 }
 
@@ -178,23 +180,25 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
   constexpr std::int64_t kMany = 20'000;
   const std::string file = folder_.File("long");
   {
-    EventLogWriter log(file);
-    const std::vector<std::string> parts = SplitScenario(script_.text());
+    log::EventLogWriter log(file);
+    const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      Encode(MakeRunPart(Script::kRunId, run_t::GO, 0, HashOf(script_.text()), parts, i), bytes);
+      runtime::Encode(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0,
+                                           runtime::HashOf(script_.text()), parts, i),
+                      bytes);
       log.Write(ChannelOf<run_t>().name, 0, bytes);
     }
     for (std::int64_t step = 0; step < kMany; ++step) {
       ForEachStepChannel([&]<class M>(std::size_t channel) {
-        Encode(Script::Of<M>(step), bytes);
+        runtime::Encode(Script::Of<M>(step), bytes);
         log.Write(kChannels[channel].name, step * 100'000, bytes);
       });
     }
   }
-  std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * kTailBytes);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * log::kTailBytes);
   // WHEN a recorder continues it
-  const auto recorder = Record(script_, "long", Recorder::Existing::kResume);
+  const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
   EXPECT_EQ(recorder->error(), "");
   // THEN the recorder has reported its progress during that time, and then that it is ready
   std::vector<std::int64_t> steps;
@@ -210,7 +214,7 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
 
 TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
   WholeLog();
-  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, kSteps - 1);
   SayStep(script_, kSteps - 2);
   EXPECT_EQ(recorder->error(), "");
   auto command = Script::Of<driver_command_t>(kSteps - 2);
@@ -222,7 +226,7 @@ TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
 }
 
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
-  Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
+  recorder::Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
   script_.SayRun(run_t::GO, -1);
   EXPECT_THAT(recorder.error(), HasSubstr("cannot write to /dev/full: No space left on device"));
   EXPECT_EQ(status_.back().state, status_t::FAILED);
@@ -235,7 +239,7 @@ std::int64_t ChecksumOf(const std::string& text, std::int64_t bytes) {
 }
 
 TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
-  const auto recorder = Record(script_, "log", Recorder::Existing::kReplace);
+  const auto recorder = Record(script_, "log", recorder::Recorder::Existing::kReplace);
   for (std::int64_t step = 0; step < 100; ++step) SayStep(script_, step);
   const status_t acknowledged = status_.back();
   EXPECT_EQ(acknowledged.header.step, 95);
@@ -255,7 +259,7 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
 
 TEST_F(RecorderTest, TellsOfALogThatItGoesOnWithWhatItHasFound) {
   const std::string whole = WholeLog();
-  const auto recorder = Record(script_, "whole", Recorder::Existing::kResume, kSteps - 1);
+  const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, kSteps - 1);
   EXPECT_EQ(status_.back().log_bytes, std::ssize(whole));
   EXPECT_EQ(status_.back().log_checksum, ChecksumOf(whole, std::ssize(whole)));
 }

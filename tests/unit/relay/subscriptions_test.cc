@@ -12,12 +12,12 @@ namespace {
 constexpr std::size_t kLimit = 10;
 
 /// Matches at a time at which no budget is filled again.
-bool Match(Subscriptions& subscriptions, std::string_view channel) {
+bool Match(relay::Subscriptions& subscriptions, std::string_view channel) {
   return subscriptions.Match(channel, TimePoint{});
 }
 
 TEST(SubscriptionsTest, MatchWholeChannelNamesOnly) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   EXPECT_FALSE(Match(wanted, "TRUTH"));
   EXPECT_EQ(wanted.Add("TRUTH"), "");
   EXPECT_TRUE(Match(wanted, "TRUTH"));
@@ -26,7 +26,7 @@ TEST(SubscriptionsTest, MatchWholeChannelNamesOnly) {
 }
 
 TEST(SubscriptionsTest, AreRegularExpressionsAsLcms) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   for (const char* pattern : {"HOST_.*", "^(RADAR|LIDAR)$", R"(A\.B)", "CAM[0-9]"}) {
     EXPECT_EQ(wanted.Add(pattern), "") << pattern;
   }
@@ -39,7 +39,7 @@ TEST(SubscriptionsTest, AreRegularExpressionsAsLcms) {
 }
 
 TEST(SubscriptionsTest, EndOneByOne) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   wanted.Add("A");
   wanted.Add("A");
   wanted.Remove("A");
@@ -50,14 +50,14 @@ TEST(SubscriptionsTest, EndOneByOne) {
 }
 
 TEST(SubscriptionsTest, ForgetAnswersWhenTheyChange) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   EXPECT_FALSE(Match(wanted, "A"));
   wanted.Add("A");
   EXPECT_TRUE(Match(wanted, "A"));
 }
 
 TEST(SubscriptionsTest, AreLimitedInNumber) {
-  Subscriptions wanted(2);
+  relay::Subscriptions wanted(2);
   EXPECT_EQ(wanted.Add("A"), "");
   EXPECT_EQ(wanted.Add("B"), "");
   EXPECT_EQ(wanted.Add("C"), "more than 2 subscriptions");
@@ -66,7 +66,7 @@ TEST(SubscriptionsTest, AreLimitedInNumber) {
 
 TEST(SubscriptionsTest, AreLimitedInLengthTogether) {
   // A compiled expression takes up to a few hundred times its length in memory.
-  Subscriptions wanted(1000);
+  relay::Subscriptions wanted(1000);
   const std::string longest(250, 'A');
   int added = 0;
   while (added < 1000 && wanted.Add(longest).empty()) ++added;
@@ -78,7 +78,7 @@ TEST(SubscriptionsTest, AreLimitedInLengthTogether) {
 }
 
 TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   for (const char* pattern : {"(", "[a", "*"}) {
     EXPECT_EQ(wanted.Add(pattern), "a subscription that is no regular expression") << pattern;
     EXPECT_FALSE(Match(wanted, "a"));
@@ -94,7 +94,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
   for (int i = 0; i < kPatterns; ++i) {
     std::string pattern;
     for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
-    Subscriptions wanted(1);
+    relay::Subscriptions wanted(1);
     // The pattern in a block of its own, as if it were part of a socket's buffer: a read beyond it
     // is an error.
     const std::vector<char> exact(pattern.begin(), pattern.end());
@@ -114,7 +114,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
 
 TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
   // GIVEN an expression that backtracks over every way to divide the longest name
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add("(a|aa|a?)*(a|aa|a?)*(a|aa|a?)*b"), "");
   const std::string longest(63, 'a');
   // WHEN this name is matched
@@ -130,7 +130,7 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
   // GIVEN slow expressions, none of them slow enough that Boost gives it up (long ones may visit
   // more)
-  Subscriptions wanted(1000);
+  relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
@@ -142,7 +142,7 @@ const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
 /// The number of new names, up to a thousand, until such an expression exceeds its budget.
-int NamesUntilTheEnd(Subscriptions& wanted, int first, TimePoint now) {
+int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
   for (int i = 0; i < 1000; ++i) {
     try {
       wanted.Match(SlowName(first + i), now);
@@ -154,7 +154,7 @@ int NamesUntilTheEnd(Subscriptions& wanted, int first, TimePoint now) {
 }
 
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
   // GIVEN more and more new names, none of them slow enough that Boost gives up
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
@@ -168,7 +168,7 @@ TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
 }
 
 TEST(SubscriptionsTest, StandAFloodOfNamesIfTheyAreSimple) {
-  Subscriptions wanted(kLimit);
+  relay::Subscriptions wanted(kLimit);
   for (const char* pattern : {"TRUTH", "HOST_.*", "RADAR|LIDAR"})
     ASSERT_EQ(wanted.Add(pattern), "");
   for (int i = 0; i < 20'000; ++i) {

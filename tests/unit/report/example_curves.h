@@ -9,7 +9,7 @@
 
 namespace fogline {
 
-inline Summary ExampleSummary(double mean, double deviation) {
+inline stats::Summary ExampleSummary(double mean, double deviation) {
   return {.count = 200,
           .mean = mean,
           .deviation = deviation,

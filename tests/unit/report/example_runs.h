@@ -51,9 +51,9 @@ class ExampleRoad {
  public:
   explicit ExampleRoad(std::optional<double> threshold) : threshold_(threshold) {}
 
-  Sample Step(std::int64_t step) {
+  metrics::Sample Step(std::int64_t step) {
     constexpr double kStep = 0.1;
-    Sample sample = Observe(step, static_cast<double>(step) * kStep);
+    metrics::Sample sample = Observe(step, static_cast<double>(step) * kStep);
     Decide(sample);
     const double follower = 0.05 * (follower_.gap_m - follower_.SafeDistance()) +
                             0.45 * (host_.speed_mps - follower_.speed_mps);
@@ -65,7 +65,7 @@ class ExampleRoad {
  private:
   static constexpr double kLeadSpeed = 20.0;
 
-  Sample Observe(std::int64_t step, double time_s) const {
+  metrics::Sample Observe(std::int64_t step, double time_s) const {
     const double phase = (time_s - 19.0) / 11.0;
     const bool fog = phase >= 0 && phase < 1;
     const double level = fog ? std::sin(std::numbers::pi * phase) : 0.0;
@@ -91,7 +91,7 @@ class ExampleRoad {
             .fog_visibility_m = fog ? 60.0 : 20000.0};
   }
 
-  void Decide(Sample& sample) {
+  void Decide(metrics::Sample& sample) {
     constexpr std::size_t kWindow = 8;
     if (std::isfinite(sample.lidar_range_m)) {
       differences_.push_back(sample.radar_range_m - sample.lidar_range_m);

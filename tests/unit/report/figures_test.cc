@@ -14,8 +14,8 @@
 namespace fogline {
 namespace {
 
-Sample At(double time_s, double lambda_human, bool fog) {
-  Sample sample;
+metrics::Sample At(double time_s, double lambda_human, bool fog) {
+  metrics::Sample sample;
   sample.time_s = time_s;
   sample.lambda_human = lambda_human;
   sample.fog_present = fog;
@@ -83,7 +83,7 @@ TEST(ColumnNamedTest, RefusesAnUnknownName) {
 }
 
 TEST(HostJerkTest, IsTheChangeOfAccelerationPerSecond) {
-  std::vector<Sample> samples{At(0.0, 0, false), At(0.1, 0, false), At(0.2, 0, false)};
+  std::vector<metrics::Sample> samples{At(0.0, 0, false), At(0.1, 0, false), At(0.2, 0, false)};
   samples[1].host_acceleration_mps2 = 0.5;
   samples[2].host_acceleration_mps2 = 0.25;
   EXPECT_TRUE(std::isnan(report::HostJerk(samples, 0)));
@@ -100,8 +100,8 @@ TEST(FogWindowsTest, LastUntilTheStepWithoutFog) {
 }
 
 TEST(HumanWindowsTest, LastWhileTheHumanHasAnyAuthorityOrUntilTheEnd) {
-  const std::vector<Sample> samples{At(0.0, 1.0, false), At(0.1, 0.0, false), At(0.2, 0.01, false),
-                                    At(0.3, 0.6, false)};
+  const std::vector<metrics::Sample> samples{At(0.0, 1.0, false), At(0.1, 0.0, false),
+                                             At(0.2, 0.01, false), At(0.3, 0.6, false)};
   const std::vector<report::Window> windows = report::HumanWindows(samples);
   ASSERT_EQ(windows.size(), 2U);
   EXPECT_EQ(windows[0].begin_s, 0.0);

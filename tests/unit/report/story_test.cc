@@ -29,7 +29,7 @@ report::ReportRun CalmRun(Policy policy, double threshold = 0.5) {
   run.scenario.arbitrator.threshold = threshold;
   run.samples.resize(101);
   for (std::size_t i = 0; i < run.samples.size(); ++i) {
-    Sample& sample = run.samples[i];
+    metrics::Sample& sample = run.samples[i];
     sample.step = static_cast<std::int64_t>(i);
     sample.time_s = 0.1 * static_cast<double>(i);
     sample.host_gap_m = sample.lidar_range_m = sample.fused_distance_m = 30;
@@ -86,7 +86,7 @@ TEST(StoryTest, TellsOfARunWithoutAPairByItself) {
   EXPECT_EQ(report::StoryOf({&run, 1}),
             "In fog from 2 s to 5 s the LiDAR was never more than 0.10 m wrong; at threshold 0.8 "
             "the human never drove and the following car never came too close.");
-  for (Sample& sample : run.samples) sample.lambda_human = 1;
+  for (metrics::Sample& sample : run.samples) sample.lambda_human = 1;
   run.samples[30].follower_gap_m = 25 - 0.004;
   EXPECT_THAT(report::StoryOf({&run, 1}),
               HasSubstr("the human drove all the time and the following car "
@@ -98,7 +98,7 @@ TEST(StoryTest, TellsOfClearAirAndOfNoFollowingCar) {
   EXPECT_EQ(report::StoryOf({&run, 1}),
             "There was no fog; without traded control the following car never came too close.");
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  for (Sample& sample : run.samples)
+  for (metrics::Sample& sample : run.samples)
     sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
   EXPECT_EQ(report::StoryOf({&run, 1}),
             "There was no fog; without traded control no car collided.");

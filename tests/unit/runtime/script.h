@@ -20,16 +20,16 @@ class Script {
 
   explicit Script(const Scenario& scenario = {}) : text_(PrintScenario(scenario)) {}
 
-  Bus& bus() { return bus_; }
+  runtime::Bus& bus() { return bus_; }
   const std::string& text() const { return text_; }
 
   /// Keeps all messages on the channel of M from now on.
   template <class M>
   std::vector<M>& Listen() {
     auto& heard = std::get<std::vector<M>>(heard_);
-    bus_.Subscribe(ChannelOf<M>().name, [&heard](Bytes bytes) {
+    bus_.Subscribe(ChannelOf<M>().name, [&heard](runtime::Bytes bytes) {
       M message{};
-      if (Decode(bytes, message)) heard.push_back(message);
+      if (runtime::Decode(bytes, message)) heard.push_back(message);
     });
     return heard;
   }
@@ -40,7 +40,7 @@ class Script {
       if (message.sequence == 0) message.sequence = ++sequence_;
     }
     std::vector<std::uint8_t> bytes;
-    Encode(message, bytes);
+    runtime::Encode(message, bytes);
     bus_.Publish(ChannelOf<M>().name, bytes);
     if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() looks at the clock
   }
@@ -56,9 +56,9 @@ class Script {
   /// The runner announces the run with all parts of the scenario.
   /// @param speed of a run in real time, 0 for a run in lockstep
   void SayRun(std::int8_t phase, std::int64_t progress, double speed = 0) {
-    const std::vector<std::string> parts = SplitScenario(text_);
+    const std::vector<std::string> parts = runtime::SplitScenario(text_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      run_t run = MakeRunPart(kRunId, phase, 0, HashOf(text_), parts, i);
+      run_t run = runtime::MakeRunPart(kRunId, phase, 0, runtime::HashOf(text_), parts, i);
       run.progress = progress;
       run.realtime = speed > 0 ? 1 : 0;
       run.pace = speed;
@@ -86,25 +86,25 @@ class Script {
 
   /// Lets the node do once what is due at this time, however much time has passed since the last
   /// call.
-  void Poll(Node& node, TimePoint now = Clock::now()) {
+  void Poll(runtime::Node& node, TimePoint now = Clock::now()) {
     wakes_[&node] = std::max(node.Poll(now), now + milliseconds(1));
     bus_.Drain();
   }
   /// Calls the node up to this time, each time that it has asked for, as its process would.
-  void PollUpTo(Node& node, TimePoint now = Clock::now()) {
+  void PollUpTo(runtime::Node& node, TimePoint now = Clock::now()) {
     TimePoint& wake = wakes_.try_emplace(&node, TimePoint::max()).first->second;
     while (wake < now) Poll(node, wake);
     Poll(node, now);
   }
 
  private:
-  std::map<Node*, TimePoint> wakes_;  // when each node wants the next call
+  std::map<runtime::Node*, TimePoint> wakes_;  // when each node wants the next call
   std::string text_;
   std::int64_t sequence_ = 0;  // of the runner's messages
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,
              std::vector<driver_command_t>, std::vector<track_t>, std::vector<arbitration_t>>
       heard_;
-  Bus bus_{"memq://"};
+  runtime::Bus bus_{"memq://"};
 };
 
 }  // namespace fogline::test

@@ -14,8 +14,8 @@ using ::testing::IsEmpty;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::size_t> FrontOf(const std::vector<TradeOff>& points) {
-  return ParetoFront(points);
+std::vector<std::size_t> FrontOf(const std::vector<stats::TradeOff>& points) {
+  return stats::ParetoFront(points);
 }
 
 TEST(ParetoFrontTest, IsEmptyWithoutPoints) { EXPECT_THAT(FrontOf({}), IsEmpty()); }

@@ -8,21 +8,21 @@
 namespace fogline {
 namespace {
 
-Summary SummaryOf(const std::vector<double>& values) {
-  Statistics statistics;
+stats::Summary SummaryOf(const std::vector<double>& values) {
+  stats::Statistics statistics;
   for (const double value : values) statistics.Add(value);
   return statistics.Result();
 }
 
 TEST(StatisticsTest, SaysNothingOfNoValue) {
-  const Summary summary = SummaryOf({});
+  const stats::Summary summary = SummaryOf({});
   EXPECT_EQ(summary.count, 0);
   EXPECT_FALSE(summary.mean.has_value());
   EXPECT_FALSE(summary.deviation.has_value());
 }
 
 TEST(StatisticsTest, KnowsTheMeanOfOneValueButNoSpread) {
-  const Summary summary = SummaryOf({80.79});
+  const stats::Summary summary = SummaryOf({80.79});
   EXPECT_EQ(summary.count, 1);
   EXPECT_EQ(summary.mean, 80.79);
   EXPECT_FALSE(summary.deviation.has_value());
@@ -32,7 +32,7 @@ TEST(StatisticsTest, KnowsTheMeanOfOneValueButNoSpread) {
 }
 
 TEST(StatisticsTest, HasNoSpreadWhereAllValuesAreEqual) {
-  const Summary summary = SummaryOf(std::vector<double>(200, 0.1));
+  const stats::Summary summary = SummaryOf(std::vector<double>(200, 0.1));
   EXPECT_EQ(summary.mean, 0.1);
   EXPECT_EQ(summary.deviation, 0.0);
   EXPECT_EQ(summary.ci95, 0.0);
@@ -42,7 +42,7 @@ TEST(StatisticsTest, HasNoSpreadWhereAllValuesAreEqual) {
 
 TEST(StatisticsTest, GivesTheDeviationOfASample) {
   // The squared distances from 5 have the sum 32; n - 1 = 7.
-  const Summary summary = SummaryOf({2, 4, 4, 4, 5, 5, 7, 9});
+  const stats::Summary summary = SummaryOf({2, 4, 4, 4, 5, 5, 7, 9});
   EXPECT_DOUBLE_EQ(*summary.mean, 5.0);
   EXPECT_DOUBLE_EQ(*summary.deviation, std::sqrt(32.0 / 7.0));
 }
@@ -50,7 +50,7 @@ TEST(StatisticsTest, GivesTheDeviationOfASample) {
 TEST(StatisticsTest, TakesTheIntervalOfTheMeanFromStudentsT) {
   // Printed tables of t, two-sided 95 %: 12.706 for 1 degree of freedom, 2.262 for 9.
   EXPECT_NEAR(*SummaryOf({0, 2}).ci95, 12.706 * std::sqrt(2.0) / std::sqrt(2.0), 5e-4);
-  const Summary ten = SummaryOf({1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+  const stats::Summary ten = SummaryOf({1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
   EXPECT_NEAR(*ten.ci95, 2.262 * *ten.deviation / std::sqrt(10.0), 1e-3);
 }
 
@@ -58,7 +58,7 @@ TEST(StatisticsTest, InterpolatesPercentilesWhateverTheOrderOfValues) {
   // 0, 1, ... 100: the 5th percentile is 5. GIVEN them in a mixed order (37 and 101 are coprime)
   std::vector<double> values;
   for (int i = 0; i < 101; ++i) values.push_back(37 * i % 101);
-  const Summary summary = SummaryOf(values);
+  const stats::Summary summary = SummaryOf(values);
   EXPECT_DOUBLE_EQ(*summary.p5, 5.0);
   EXPECT_DOUBLE_EQ(*summary.p95, 95.0);
   // Of two values, the percentiles lie on the line between them.

@@ -24,34 +24,35 @@ std::string ErrorOf(Parse parse) {
 }
 
 TEST(AxisValuesTest, AreAListAsItStands) {
-  EXPECT_THAT(ParseAxis("/fog/bias_m=0.2,0.30").values, ElementsAre("0.2", "0.30"));
-  EXPECT_THAT(ParseThresholds("0.8,0.2"), ElementsAre(0.8, 0.2));
+  EXPECT_THAT(sweep::ParseAxis("/fog/bias_m=0.2,0.30").values, ElementsAre("0.2", "0.30"));
+  EXPECT_THAT(sweep::ParseThresholds("0.8,0.2"), ElementsAre(0.8, 0.2));
 }
 
 TEST(AxisValuesTest, AreEvenlySpacedFromFirstToLast) {
-  EXPECT_THAT(ParseAxis("/fog/bias_m=0.2:0.4:3").values, ElementsAre("0.2", "0.3", "0.4"));
-  EXPECT_THAT(ParseThresholds("1:0:5"), ElementsAre(1.0, 0.75, 0.5, 0.25, 0.0));
+  EXPECT_THAT(sweep::ParseAxis("/fog/bias_m=0.2:0.4:3").values, ElementsAre("0.2", "0.3", "0.4"));
+  EXPECT_THAT(sweep::ParseThresholds("1:0:5"), ElementsAre(1.0, 0.75, 0.5, 0.25, 0.0));
 }
 
 TEST(AxisValuesTest, MeetTheDecimalNumbersThatAPersonMeans) {
   // The threshold identifies a published row, so 0.2 must equal the 0.2 of a scenario file exactly.
-  const std::vector<double> thresholds = ParseThresholds("0.01:0.99:99");
+  const std::vector<double> thresholds = sweep::ParseThresholds("0.01:0.99:99");
   for (int percent = 1; percent <= 99; ++percent) {
     EXPECT_EQ(thresholds[static_cast<std::size_t>(percent - 1)], percent / 100.0) << percent;
   }
 }
 
 TEST(AxisValuesTest, AreRefusedWithTheWholeArgument) {
-  EXPECT_THAT(ErrorOf([] { ParseAxis("/fog/bias_m=0:1"); }),
+  EXPECT_THAT(ErrorOf([] { sweep::ParseAxis("/fog/bias_m=0:1"); }),
               StartsWith("error: --grid /fog/bias_m=0:1: not first:last:count"));
-  EXPECT_THAT(ErrorOf([] { ParseAxis("/fog/bias_m=1,,2"); }), HasSubstr("an empty value"));
-  EXPECT_THAT(ErrorOf([] { ParseThresholds("0:1:1"); }),
+  EXPECT_THAT(ErrorOf([] { sweep::ParseAxis("/fog/bias_m=1,,2"); }), HasSubstr("an empty value"));
+  EXPECT_THAT(ErrorOf([] { sweep::ParseThresholds("0:1:1"); }),
               StartsWith("error: --thresholds 0:1:1: not first:last:count"));
 }
 
 TEST(AxisValuesTest, OfThresholdsAreNumbersFromZeroToOne) {
   for (const char* text : {"0.5,1.1", "-0.1", "0.5,half", "nan", "0.9:1.1:3"}) {
-    EXPECT_THAT(ErrorOf([&] { ParseThresholds(text); }), HasSubstr("is no number from 0 to 1"));
+    EXPECT_THAT(ErrorOf([&] { sweep::ParseThresholds(text); }),
+                HasSubstr("is no number from 0 to 1"));
   }
 }
 

@@ -8,18 +8,18 @@
 namespace fogline {
 namespace {
 
-SweepPlan ShortPlan() {
+sweep::SweepPlan ShortPlan() {
   Scenario scenario;
   scenario.steps = 20;
-  return {scenario, {ParseAxis("/arbitrator/threshold=0.2,0.8")}, {.first = 1, .last = 50}};
+  return {scenario, {sweep::ParseAxis("/arbitrator/threshold=0.2,0.8")}, {.first = 1, .last = 50}};
 }
 
 TEST(SweepEngineTest, HandsUnitsOnInOrderWithWhatAWorkerAloneComputes) {
-  const SweepPlan plan = ShortPlan();
-  SweepWorker worker(plan);
-  std::vector<SweepRow> expected;
+  const sweep::SweepPlan plan = ShortPlan();
+  sweep::SweepWorker worker(plan);
+  std::vector<sweep::SweepRow> expected;
   std::int64_t next = 7;
-  RunSweep(plan, 7, 41, 3, [&](std::int64_t unit, const std::vector<SweepRow>& rows) {
+  sweep::RunSweep(plan, 7, 41, 3, [&](std::int64_t unit, const std::vector<sweep::SweepRow>& rows) {
     EXPECT_EQ(unit, next++);
     worker.Compute(unit, expected);
     EXPECT_EQ(rows.size(), 2U);
@@ -33,28 +33,29 @@ TEST(SweepEngineTest, HandsUnitsOnInOrderWithWhatAWorkerAloneComputes) {
 }
 
 TEST(SweepEngineTest, StopsWhenItsConsumerHasEnough) {
-  const SweepPlan plan = ShortPlan();
+  const sweep::SweepPlan plan = ShortPlan();
   std::int64_t consumed = 0;
-  RunSweep(plan, 0, plan.units(), 2,
-           [&](std::int64_t, const std::vector<SweepRow>&) { return ++consumed < 5; });
+  sweep::RunSweep(plan, 0, plan.units(), 2, [&](std::int64_t, const std::vector<sweep::SweepRow>&) {
+    return ++consumed < 5;
+  });
   EXPECT_EQ(consumed, 5);
 }
 
 TEST(SweepEngineTest, LetsAnExceptionOfItsConsumerOut) {
-  const SweepPlan plan = ShortPlan();
+  const sweep::SweepPlan plan = ShortPlan();
   std::int64_t consumed = 0;
-  EXPECT_THROW(RunSweep(plan, 0, plan.units(), 2,
-                        [&](std::int64_t, const std::vector<SweepRow>&) -> bool {
-                          if (++consumed == 5) throw std::runtime_error("the disk is full");
-                          return true;
-                        }),
+  EXPECT_THROW(sweep::RunSweep(plan, 0, plan.units(), 2,
+                               [&](std::int64_t, const std::vector<sweep::SweepRow>&) -> bool {
+                                 if (++consumed == 5) throw std::runtime_error("the disk is full");
+                                 return true;
+                               }),
                std::runtime_error);
   EXPECT_EQ(consumed, 5);
 }
 
 TEST(SweepEngineTest, HasNothingToDoForAnEmptyRange) {
-  const SweepPlan plan = ShortPlan();
-  RunSweep(plan, 3, 3, 2, [](std::int64_t, const std::vector<SweepRow>&) {
+  const sweep::SweepPlan plan = ShortPlan();
+  sweep::RunSweep(plan, 3, 3, 2, [](std::int64_t, const std::vector<sweep::SweepRow>&) {
     ADD_FAILURE();
     return true;
   });

@@ -14,15 +14,17 @@ namespace {
 
 using ::testing::ElementsAre;
 
-SweepPlan MakePlan() {
-  return {Scenario(),
-          {ParseAxis("/arbitrator/threshold=0.2,0.5"), ParseAxis("/fog/bias_m=0.1,0.2,0.3"),
-           ParseAxis("/arbitrator/window_steps=4,8"), ParseAxis("/fog/model=bias,beam")},
-          {.first = 3, .last = 7}};
+sweep::SweepPlan MakePlan() {
+  return {
+      Scenario(),
+      {sweep::ParseAxis("/arbitrator/threshold=0.2,0.5"),
+       sweep::ParseAxis("/fog/bias_m=0.1,0.2,0.3"),
+       sweep::ParseAxis("/arbitrator/window_steps=4,8"), sweep::ParseAxis("/fog/model=bias,beam")},
+      {.first = 3, .last = 7}};
 }
 
 TEST(SweepPlanTest, HasEveryCombinationOnce) {
-  const SweepPlan plan = MakePlan();
+  const sweep::SweepPlan plan = MakePlan();
   EXPECT_EQ(plan.units(), 3 * 2 * 5);
   EXPECT_EQ(plan.rows_per_unit(), 2 * 2);
   std::set<std::string> names;
@@ -35,7 +37,7 @@ TEST(SweepPlanTest, HasEveryCombinationOnce) {
 }
 
 TEST(SweepPlanTest, ConfiguresARowWhateverTheScenarioWasBefore) {
-  const SweepPlan plan = MakePlan();
+  const sweep::SweepPlan plan = MakePlan();
   // GIVEN a scenario that holds the last row
   Scenario scenario = plan.base();
   plan.Configure(plan.units() - 1, plan.rows_per_unit() - 1, scenario);
@@ -56,7 +58,7 @@ TEST(SweepPlanTest, ConfiguresARowWhateverTheScenarioWasBefore) {
 }
 
 TEST(SweepPlanTest, RowsOfAUnitDifferInTheArbitratorAlone) {
-  const SweepPlan plan = MakePlan();
+  const sweep::SweepPlan plan = MakePlan();
   Scenario scenario = plan.base();
   for (std::int64_t unit = 0; unit < plan.units(); ++unit) {
     std::set<std::string> rest;
@@ -71,13 +73,13 @@ TEST(SweepPlanTest, RowsOfAUnitDifferInTheArbitratorAlone) {
 }
 
 TEST(SweepPlanTest, ItsShardsAreAPartitionIntoPartsThatDifferByOneAtMost) {
-  const SweepPlan plan = MakePlan();
+  const sweep::SweepPlan plan = MakePlan();
   for (std::int64_t count = 1; count <= 2 * plan.units(); ++count) {
     std::int64_t next = 0;
     std::int64_t least = plan.units();
     std::int64_t most = 0;
     for (std::int64_t index = 1; index <= count; ++index) {
-      const Shard shard{.index = index, .count = count};
+      const sweep::Shard shard{.index = index, .count = count};
       EXPECT_EQ(plan.ShardBegin(shard), next);
       next = plan.ShardEnd(shard);
       least = std::min(least, next - plan.ShardBegin(shard));
@@ -90,8 +92,8 @@ TEST(SweepPlanTest, ItsShardsAreAPartitionIntoPartsThatDifferByOneAtMost) {
 
 TEST(SweepPlanTest, SplitsTheLargestSweepIntoTheMostShards) {
   // 10^11 units times a million shards is close to the limit of 64 bits.
-  const SweepPlan plan(Scenario(), {}, {.first = 1, .last = 100'000'000'000});
-  const Shard last = ParseShard("1000000/1000000");
+  const sweep::SweepPlan plan(Scenario(), {}, {.first = 1, .last = 100'000'000'000});
+  const sweep::Shard last = sweep::ParseShard("1000000/1000000");
   EXPECT_EQ(plan.ShardBegin(last), 99'999'900'000);
   EXPECT_EQ(plan.ShardEnd(last), plan.units());
 }

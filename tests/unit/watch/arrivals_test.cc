@@ -14,9 +14,9 @@ constexpr double kRounding = 1e-12;
 
 TEST(ArrivalsTest, MeasuresRateBandwidthAndAgeOfAnInterval) {
   // GIVEN 5 messages of 100 bytes in 2 s, the last one 0.5 s before the end
-  Arrivals arrivals;
+  watch::Arrivals arrivals;
   for (int i = 0; i < 5; ++i) arrivals.Add(100, kBegin + milliseconds(500 + 250 * i));
-  const ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, 2 * kSecond);
+  const watch::ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, 2 * kSecond);
   EXPECT_EQ(view.messages, 5);
   EXPECT_DOUBLE_EQ(view.rate_hz, 2.5);
   EXPECT_DOUBLE_EQ(view.bandwidth_bytes_per_s, 250);
@@ -25,37 +25,37 @@ TEST(ArrivalsTest, MeasuresRateBandwidthAndAgeOfAnInterval) {
 
 TEST(ArrivalsTest, CallsTheStandardDeviationOfTheGapsJitter) {
   // GIVEN gaps of 100, 120, 80 and 100 ms: mean 100, squared deviations 0 + 400 + 400 + 0
-  Arrivals arrivals;
+  watch::Arrivals arrivals;
   for (const int at_ms : {0, 100, 220, 300, 400}) arrivals.Add(1, kBegin + milliseconds(at_ms));
-  const ArrivalView view = arrivals.Observe(kBegin + kSecond, kSecond);
+  const watch::ArrivalView view = arrivals.Observe(kBegin + kSecond, kSecond);
   ASSERT_TRUE(view.jitter_s);
   EXPECT_NEAR(*view.jitter_s, 1e-3 * std::sqrt(800.0 / 3), kRounding);
   EXPECT_NEAR(view.longest_gap_s.value(), 0.120, kRounding);
 }
 
 TEST(ArrivalsTest, HasNoJitterOfEvenGaps) {
-  Arrivals arrivals;
+  watch::Arrivals arrivals;
   for (int i = 0; i < 100; ++i) arrivals.Add(1, kBegin + milliseconds(10 * i));
   EXPECT_NEAR(arrivals.Observe(kBegin + kSecond, kSecond).jitter_s.value(), 0, kRounding);
 }
 
 TEST(ArrivalsTest, SaysNothingOfGapsThatItHasNotSeen) {
-  Arrivals arrivals;
+  watch::Arrivals arrivals;
   arrivals.Add(1, kBegin);
   EXPECT_FALSE(arrivals.Observe(kBegin + kSecond, kSecond).longest_gap_s);
   // One gap, which began in the interval before. It suffices for the longest gap, but not for a
   // deviation.
   arrivals.Add(1, kBegin + milliseconds(1300));
-  const ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
+  const watch::ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
   EXPECT_NEAR(view.longest_gap_s.value(), 1.3, kRounding);
   EXPECT_FALSE(view.jitter_s);
 }
 
 TEST(ArrivalsTest, BeginsEveryIntervalAnewButTheCount) {
-  Arrivals arrivals;
+  watch::Arrivals arrivals;
   for (int i = 0; i < 10; ++i) arrivals.Add(50, kBegin + milliseconds(i));
   arrivals.Observe(kBegin + kSecond, kSecond);
-  const ArrivalView quiet = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
+  const watch::ArrivalView quiet = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
   EXPECT_EQ(quiet.messages, 10);
   EXPECT_EQ(quiet.rate_hz, 0);
   EXPECT_EQ(quiet.bandwidth_bytes_per_s, 0);

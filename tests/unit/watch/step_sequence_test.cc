@@ -10,19 +10,20 @@ namespace {
 
 const TimePoint kNow = TimePoint{} + std::chrono::hours(1);
 
-StepSequence Seen(std::initializer_list<std::int64_t> steps) {
-  StepSequence sequence;
+watch::StepSequence Seen(std::initializer_list<std::int64_t> steps) {
+  watch::StepSequence sequence;
   for (const std::int64_t step : steps) sequence.Add(step, kNow);
   return sequence;
 }
 
 /// Adds the steps from `first` to `last`.
-void AddRange(StepSequence& sequence, std::int64_t first, std::int64_t last, TimePoint now = kNow) {
+void AddRange(watch::StepSequence& sequence, std::int64_t first, std::int64_t last,
+              TimePoint now = kNow) {
   for (std::int64_t step = first; step <= last; ++step) sequence.Add(step, now);
 }
 
 TEST(StepSequenceTest, LosesNothingOfACompleteSequenceWhereverItBegins) {
-  StepSequence sequence;
+  watch::StepSequence sequence;
   AddRange(sequence, 300, 800);
   const auto counts = sequence.counts();
   EXPECT_EQ(counts.newest, 800);
@@ -30,23 +31,23 @@ TEST(StepSequenceTest, LosesNothingOfACompleteSequenceWhereverItBegins) {
 }
 
 TEST(StepSequenceTest, CallsAGapMissingUntilItLeavesTheWindowAndLostThen) {
-  StepSequence sequence = Seen({0, 1, 2, 5});
+  watch::StepSequence sequence = Seen({0, 1, 2, 5});
   EXPECT_EQ(sequence.counts().missing, 2);
   EXPECT_EQ(sequence.counts().lost, 0);
   // Step 3 is in the window as long as the newest step is below 3 + kWindow.
-  AddRange(sequence, 6, 3 + StepSequence::kWindow - 1);
+  AddRange(sequence, 6, 3 + watch::StepSequence::kWindow - 1);
   EXPECT_EQ(sequence.counts().missing, 2);
   EXPECT_EQ(sequence.counts().lost, 0);
-  sequence.Add(3 + StepSequence::kWindow, kNow);
+  sequence.Add(3 + watch::StepSequence::kWindow, kNow);
   EXPECT_EQ(sequence.counts().missing, 1);
   EXPECT_EQ(sequence.counts().lost, 1);
-  sequence.Add(4 + StepSequence::kWindow, kNow);
+  sequence.Add(4 + watch::StepSequence::kWindow, kNow);
   EXPECT_EQ(sequence.counts().missing, 0);
   EXPECT_EQ(sequence.counts().lost, 2);
 }
 
 TEST(StepSequenceTest, LosesNothingThatIsRepairedInTheWindow) {
-  StepSequence sequence = Seen({0, 1, 3, 4, 2});
+  watch::StepSequence sequence = Seen({0, 1, 3, 4, 2});
   EXPECT_EQ(sequence.counts().missing, 0);
   EXPECT_EQ(sequence.counts().late, 1);
   AddRange(sequence, 5, 500);
@@ -65,12 +66,12 @@ TEST(StepSequenceTest, CountsAGapWiderThanTheWindowStepByStep) {
   // 0 and 200 were seen, 1 to 199 were not. Those up to 200 - kWindow are lost, the rest is
   // missing.
   const auto counts = Seen({0, 200}).counts();
-  EXPECT_EQ(counts.lost, 200 - StepSequence::kWindow);
-  EXPECT_EQ(counts.missing, StepSequence::kWindow - 1);
+  EXPECT_EQ(counts.lost, 200 - watch::StepSequence::kWindow);
+  EXPECT_EQ(counts.missing, watch::StepSequence::kWindow - 1);
 }
 
 TEST(StepSequenceTest, DoesNotCountWhatCameBeforeTheFirstStepSeenAsLost) {
-  StepSequence sequence = Seen({100, 98, 101});
+  watch::StepSequence sequence = Seen({100, 98, 101});
   EXPECT_EQ(sequence.counts().late, 1);
   AddRange(sequence, 102, 400);
   EXPECT_EQ(sequence.counts().lost, 0);
@@ -78,14 +79,14 @@ TEST(StepSequenceTest, DoesNotCountWhatCameBeforeTheFirstStepSeenAsLost) {
 
 TEST(StepSequenceTest, IgnoresOneForgedStepFarAhead) {
   constexpr std::int64_t kForged = std::int64_t{1} << 62;
-  StepSequence sequence = Seen({0, 1, kForged, 2, -7, 3});
+  watch::StepSequence sequence = Seen({0, 1, kForged, 2, -7, 3});
   EXPECT_EQ(sequence.counts().newest, 3);
   EXPECT_EQ(sequence.counts().stray, 2);
   EXPECT_EQ(sequence.counts().lost + sequence.counts().missing, 0);
 }
 
 TEST(StepSequenceTest, FollowsASequenceThatGoesOnFarAhead) {
-  StepSequence sequence = Seen({0, 1, 50'000, 50'001, 50'002});
+  watch::StepSequence sequence = Seen({0, 1, 50'000, 50'001, 50'002});
   EXPECT_EQ(sequence.counts().newest, 50'002);
   EXPECT_EQ(sequence.counts().stray, 1);
   EXPECT_EQ(sequence.counts().lost, 0);
@@ -102,7 +103,7 @@ TEST(StepSequenceTest, SurvivesTheLargestSteps) {
 
 TEST(StepSequenceTest, TakesOldStepsForCopiesWhileTheRunGoesOn) {
   // The recorder repeats these steps for a role that was restarted.
-  StepSequence sequence;
+  watch::StepSequence sequence;
   AddRange(sequence, 0, 300);
   AddRange(sequence, 0, 100);
   EXPECT_EQ(sequence.counts().newest, 300);
@@ -110,9 +111,9 @@ TEST(StepSequenceTest, TakesOldStepsForCopiesWhileTheRunGoesOn) {
 }
 
 TEST(StepSequenceTest, BeginsAgainWithALogThatIsPlayedTwice) {
-  StepSequence sequence;
+  watch::StepSequence sequence;
   AddRange(sequence, 0, 300);
-  AddRange(sequence, 0, 200, kNow + StepSequence::kBeginsAgain);
+  AddRange(sequence, 0, 200, kNow + watch::StepSequence::kBeginsAgain);
   EXPECT_EQ(sequence.counts().newest, 200);
   EXPECT_EQ(sequence.counts().lost + sequence.counts().missing + sequence.counts().duplicate, 0);
 }

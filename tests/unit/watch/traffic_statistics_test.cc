@@ -20,7 +20,7 @@ constexpr std::int64_t kRun = 4711;
 template <class M>
 std::vector<std::uint8_t> Encoded(const M& message) {
   std::vector<std::uint8_t> bytes;
-  Encode(message, bytes);
+  runtime::Encode(message, bytes);
   return bytes;
 }
 
@@ -46,15 +46,17 @@ class TrafficStatisticsTest : public testing::Test {
   void Add(std::string_view channel, const std::vector<std::uint8_t>& bytes, int at_ms = 0) {
     statistics_.Add(channel, bytes, kBegin + milliseconds(at_ms));
   }
-  TrafficView Observe(int at_ms) { return statistics_.Observe(kBegin + milliseconds(at_ms)); }
+  watch::TrafficView Observe(int at_ms) {
+    return statistics_.Observe(kBegin + milliseconds(at_ms));
+  }
 
-  TrafficStatistics statistics_{kBegin};
+  watch::TrafficStatistics statistics_{kBegin};
 };
 
 TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
   for (int step = 0; step < 10; ++step) Add("RADAR", Radar(kRun, step), 100 * step);
   for (int step = 0; step < 5; ++step) Add("RADAR", Radar(kRun + 1, 2 * step), 900);
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 2U);
   EXPECT_EQ(view.runs[0].run_id, kRun);
   EXPECT_EQ(view.runs[0].step, 9);
@@ -77,7 +79,7 @@ TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatSomebodyMaySend) {
   status.sequence = 2;
   status.cpu_ms = std::numeric_limits<std::int64_t>::max();
   Add("STATUS", Encoded(status), 500);
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs[0].roles.size(), 1U);
   EXPECT_GT(view.runs[0].roles[0].cpu_percent.value_or(0), 1e18);
 }
@@ -86,14 +88,14 @@ TEST_F(TrafficStatisticsTest, CountsNamesThatItDoesNotKnow) {
   for (int i = 0; i < 100; ++i) Add(fmt::format("NAME{}", i), {1});
   Add("NAME99", {1});
   EXPECT_EQ(statistics_.unknown_names(), 100);
-  EXPECT_EQ(Observe(1000).others.size(), TrafficStatistics::kMaxOthers);
+  EXPECT_EQ(Observe(1000).others.size(), watch::TrafficStatistics::kMaxOthers);
 }
 
 TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
-  MessageSigner seal(SigningKey(SigningKey::Secret{}), std::nullopt);
-  const Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
+  runtime::MessageSigner seal(runtime::SigningKey(runtime::SigningKey::Secret{}), std::nullopt);
+  const runtime::Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
   Add("RADAR", {radar.begin(), radar.end()});
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);
   EXPECT_EQ(view.runs[0].step, 3);
   EXPECT_EQ(view.runs[0].channels[0].NumUndecodable(), 0);
@@ -108,9 +110,9 @@ TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
   Add("RADAR", Encoded(lidar));  // its header says that it is of this run
   Add("RADAR", cut);
   Add("RADAR", {1, 2, 3});  // it belongs to no run
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);
-  const ChannelView& radar = view.runs[0].channels[0];
+  const watch::ChannelView& radar = view.runs[0].channels[0];
   EXPECT_EQ(radar.arrivals.messages, 3);
   EXPECT_EQ(radar.NumUndecodable(), 2);
   EXPECT_THAT(radar.undecodable, ElementsAre(Pair("lidar_t", 1), Pair("radar_t", 1)));
@@ -124,7 +126,7 @@ TEST_F(TrafficStatisticsTest, ListsChannelsThatItDoesNotKnow) {
   Add("CAMERA", {1, 2, 3}, 100);
   Add("CAMERA", {}, 300);
   Add("RADAR_AGAIN", Radar(kRun, 0), 500);
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   EXPECT_TRUE(view.runs.empty());
   ASSERT_EQ(view.others.size(), 2U);
   EXPECT_EQ(view.others[0].channel, "CAMERA");
@@ -142,7 +144,7 @@ TEST_F(TrafficStatisticsTest, KnowsPhaseAndPaceFromRun) {
   run.pace = 2;
   run.scenario_hash = "abc";
   Add("RUN", Encoded(run));
-  const TrafficView view = Observe(1000);
+  const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);
   EXPECT_EQ(view.runs[0].phase, std::optional<std::int8_t>(run_t::GO));
   EXPECT_EQ(view.runs[0].pace, 2);
@@ -198,17 +200,17 @@ TEST_F(TrafficStatisticsTest, RemembersNoMoreThanItsBoundsWhateverArrives) {
     Add("CHANNEL_" + std::to_string(i), {}, i);
     Add("STATUS", Encoded(Status("world", i, 1)), i);
   }
-  const TrafficView view = Observe(1000);
-  EXPECT_EQ(view.runs.size(), TrafficStatistics::kMaxRuns);
-  EXPECT_EQ(view.others.size(), TrafficStatistics::kMaxOthers);
-  EXPECT_EQ(view.forgotten, (1001 - static_cast<int>(TrafficStatistics::kMaxRuns)) +
-                                (1000 - static_cast<int>(TrafficStatistics::kMaxOthers)) +
-                                (1000 - static_cast<int>(TrafficStatistics::kMaxRoles)));
+  const watch::TrafficView view = Observe(1000);
+  EXPECT_EQ(view.runs.size(), watch::TrafficStatistics::kMaxRuns);
+  EXPECT_EQ(view.others.size(), watch::TrafficStatistics::kMaxOthers);
+  EXPECT_EQ(view.forgotten, (1001 - static_cast<int>(watch::TrafficStatistics::kMaxRuns)) +
+                                (1000 - static_cast<int>(watch::TrafficStatistics::kMaxOthers)) +
+                                (1000 - static_cast<int>(watch::TrafficStatistics::kMaxRoles)));
   // The run that speaks all the time is still there, with all its messages.
-  const auto run = std::ranges::find(view.runs, kRun, &RunView::run_id);
+  const auto run = std::ranges::find(view.runs, kRun, &watch::RunView::run_id);
   ASSERT_NE(run, view.runs.end());
   EXPECT_EQ(run->channels.at(0).arrivals.messages, 1000);
-  EXPECT_EQ(run->roles.size(), TrafficStatistics::kMaxRoles);
+  EXPECT_EQ(run->roles.size(), watch::TrafficStatistics::kMaxRoles);
 }
 
 }  // namespace

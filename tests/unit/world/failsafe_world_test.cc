@@ -24,7 +24,7 @@ class FailsafeWorldTest : public testing::Test {
 
   const Scenario scenario_;
   const double change_mps2_ = scenario_.minimal_risk.jerk_mps3 * scenario_.step_s;
-  FailsafeWorld world_{scenario_};
+  world::FailsafeWorld world_{scenario_};
   arbitration_t host_ = HostCommand(0.5);
   follower_command_t follower_ = FollowerCommand(-0.25);
   truth_t truth_;
@@ -67,7 +67,7 @@ TEST_F(FailsafeWorldTest, StopsEachCarWithoutTheOther) {
 TEST_F(FailsafeWorldTest, GoesOnWithTheManoeuvreOfThePredecessorOfItsProcess) {
   Step(kOk, kOk);
   Step(kLost, kOk);
-  FailsafeWorld next(scenario_);
+  world::FailsafeWorld next(scenario_);
   next.Resume(truth_, world_.minimal_risk());
   const auto& resumed =
       std::get<truth_t>(next.Step({.host = {kOk, &host_}, .followers = {kOk, &follower_}}));
@@ -80,7 +80,7 @@ TEST_F(FailsafeWorldTest, GoesOnWithTheManoeuvreOfThePredecessorOfItsProcess) {
 
 TEST_F(FailsafeWorldTest, KnowsNothingOfAManoeuvreThatItIsNotToldOf) {
   Step(kLost, kOk);
-  FailsafeWorld next(scenario_);
+  world::FailsafeWorld next(scenario_);
   next.Resume(truth_, 0);
   const auto& resumed =
       std::get<truth_t>(next.Step({.host = {kOk, &host_}, .followers = {kOk, &follower_}}));

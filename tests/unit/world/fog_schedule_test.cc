@@ -10,15 +10,15 @@ namespace {
 constexpr std::int64_t kStepUs = 100'000;
 
 TEST(FogScheduleTest, CoversExactlySteps190To299OfThePaper) {
-  const FogSchedule fog(FogSection{.model = FogModel::kBias});
+  const world::FogSchedule fog(FogSection{.model = FogModel::kBias});
   for (std::int64_t step = 0; step < 500; ++step) {
     EXPECT_EQ(fog.At(step * kStepUs).present, step >= 190 && step <= 299) << "step " << step;
   }
 }
 
 TEST(FogScheduleTest, IsAbsentWithoutAModelOrWithoutAWindow) {
-  const FogSchedule none(FogSection{.model = FogModel::kNone});
-  const FogSchedule empty(FogSection{.model = FogModel::kBias, .duration_s = 0.0});
+  const world::FogSchedule none(FogSection{.model = FogModel::kNone});
+  const world::FogSchedule empty(FogSection{.model = FogModel::kBias, .duration_s = 0.0});
   for (std::int64_t step = 0; step < 500; ++step) {
     EXPECT_FALSE(none.At(step * kStepUs).present);
     EXPECT_EQ(none.At(step * kStepUs).level, 0.0);
@@ -27,24 +27,24 @@ TEST(FogScheduleTest, IsAbsentWithoutAModelOrWithoutAWindow) {
 }
 
 TEST(FogScheduleTest, ProfilesHaveTheirShapes) {
-  EXPECT_EQ(FogLevel(FogProfile::kBox, 0.0), 1.0);
-  EXPECT_EQ(FogLevel(FogProfile::kBox, 0.999), 1.0);
+  EXPECT_EQ(world::FogLevel(FogProfile::kBox, 0.0), 1.0);
+  EXPECT_EQ(world::FogLevel(FogProfile::kBox, 0.999), 1.0);
   for (const FogProfile profile :
        {FogProfile::kHalfSine, FogProfile::kRaisedCosine, FogProfile::kTriangle}) {
-    EXPECT_EQ(FogLevel(profile, 0.0), 0.0);
-    EXPECT_DOUBLE_EQ(FogLevel(profile, 0.5), 1.0);
-    EXPECT_DOUBLE_EQ(FogLevel(profile, 0.25), FogLevel(profile, 0.75));
+    EXPECT_EQ(world::FogLevel(profile, 0.0), 0.0);
+    EXPECT_DOUBLE_EQ(world::FogLevel(profile, 0.5), 1.0);
+    EXPECT_DOUBLE_EQ(world::FogLevel(profile, 0.25), world::FogLevel(profile, 0.75));
   }
-  EXPECT_DOUBLE_EQ(FogLevel(FogProfile::kHalfSine, 0.25), std::sqrt(0.5));
-  EXPECT_DOUBLE_EQ(FogLevel(FogProfile::kRaisedCosine, 0.25), 0.5);
-  EXPECT_DOUBLE_EQ(FogLevel(FogProfile::kTriangle, 0.25), 0.5);
+  EXPECT_DOUBLE_EQ(world::FogLevel(FogProfile::kHalfSine, 0.25), std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(world::FogLevel(FogProfile::kRaisedCosine, 0.25), 0.5);
+  EXPECT_DOUBLE_EQ(world::FogLevel(FogProfile::kTriangle, 0.25), 0.5);
 }
 
 TEST(FogScheduleTest, LevelRunsOverTheWindow) {
-  const FogSchedule fog(FogSection{.model = FogModel::kBias,
-                                   .profile = FogProfile::kTriangle,
-                                   .start_s = 2.0,
-                                   .duration_s = 4.0});
+  const world::FogSchedule fog(FogSection{.model = FogModel::kBias,
+                                          .profile = FogProfile::kTriangle,
+                                          .start_s = 2.0,
+                                          .duration_s = 4.0});
   EXPECT_EQ(fog.At(1'999'999).level, 0.0);
   EXPECT_DOUBLE_EQ(fog.At(3'000'000).level, 0.5);
   EXPECT_DOUBLE_EQ(fog.At(4'000'000).level, 1.0);
@@ -53,17 +53,17 @@ TEST(FogScheduleTest, LevelRunsOverTheWindow) {
 }
 
 TEST(FogScheduleTest, ModelBiasLeavesTheVisibilityClear) {
-  const FogSchedule fog(FogSection{.model = FogModel::kBias, .profile = FogProfile::kBox});
+  const world::FogSchedule fog(FogSection{.model = FogModel::kBias, .profile = FogProfile::kBox});
   EXPECT_EQ(fog.At(20'000'000).visibility_m, 20000.0);
 }
 
 TEST(FogScheduleTest, ModelBeamBlendsTheExtinctionsOfClearAirAndFog) {
-  const FogSchedule fog(FogSection{.model = FogModel::kBeam,
-                                   .profile = FogProfile::kTriangle,
-                                   .start_s = 0.0,
-                                   .duration_s = 4.0,
-                                   .visibility_m = 50.0,
-                                   .clear_visibility_m = 1000.0});
+  const world::FogSchedule fog(FogSection{.model = FogModel::kBeam,
+                                          .profile = FogProfile::kTriangle,
+                                          .start_s = 0.0,
+                                          .duration_s = 4.0,
+                                          .visibility_m = 50.0,
+                                          .clear_visibility_m = 1000.0});
   EXPECT_DOUBLE_EQ(fog.At(0).visibility_m, 1000.0);
   // Half way: extinction 3/1000 and 3/50 per metre have the mean 3 * 21/2000.
   EXPECT_DOUBLE_EQ(fog.At(1'000'000).visibility_m, 2000.0 / 21.0);

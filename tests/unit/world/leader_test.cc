@@ -15,7 +15,9 @@ LeadSection Lead(LeadProfile profile, double speed_mps) {
 }
 
 // The speed at a time, for profiles that depend on time.
-double SpeedAt(const LeadSection& lead, double time_s) { return Leader(lead).SpeedAt(0, time_s); }
+double SpeedAt(const LeadSection& lead, double time_s) {
+  return world::Leader(lead).SpeedAt(0, time_s);
+}
 
 TEST(LeaderTest, KeepsAConstantSpeed) {
   const LeadSection lead = Lead(LeadProfile::kConstant, 17.0);
@@ -72,7 +74,7 @@ TEST(LeaderTest, DoesNotSpeedUpToAFinalSpeedAboveItsOwn) {
 TEST(LeaderTest, RepeatsARecordingStepByStepAndHoldsItsLastSpeed) {
   LeadSection lead = Lead(LeadProfile::kRecorded, 20.0);
   lead.recorded.speeds_mps = {11.0, 12.0, 10.5};
-  const Leader leader(lead);
+  const world::Leader leader(lead);
   EXPECT_EQ(leader.SpeedAt(0, 0.0), 11.0);
   EXPECT_EQ(leader.SpeedAt(1, 0.1), 12.0);
   EXPECT_EQ(leader.SpeedAt(2, 0.2), 10.5);
@@ -80,7 +82,7 @@ TEST(LeaderTest, RepeatsARecordingStepByStepAndHoldsItsLastSpeed) {
 }
 
 TEST(LeaderTest, RefusesAnEmptyRecording) {
-  EXPECT_THROW(Leader{Lead(LeadProfile::kRecorded, 20.0)}, std::invalid_argument);
+  EXPECT_THROW(world::Leader{Lead(LeadProfile::kRecorded, 20.0)}, std::invalid_argument);
 }
 
 }  // namespace

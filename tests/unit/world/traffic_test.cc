@@ -14,7 +14,7 @@
 namespace fogline {
 namespace {
 
-const truth_t& Truth(const World::Output& output) { return std::get<truth_t>(output); }
+const truth_t& Truth(const world::World::Output& output) { return std::get<truth_t>(output); }
 
 Scenario WithFollowers(std::int64_t count) {
   Scenario scenario;
@@ -33,7 +33,7 @@ TEST(WorldTrafficTest, StartsEachFollowerItsGapBehindTheOneBefore) {
   Scenario scenario = WithFollowers(3);
   scenario.world.follower_gap_m = 25;
   scenario.world.vehicle_length_m = 5;
-  World world(scenario);
+  world::World world(scenario);
   const truth_t& truth = Truth(world.Start(1));
   EXPECT_EQ(truth.num_followers, 3);
   EXPECT_EQ(truth.follower_position_m, (std::vector<double>{-30, -60, -90}));
@@ -41,7 +41,7 @@ TEST(WorldTrafficTest, StartsEachFollowerItsGapBehindTheOneBefore) {
 }
 
 TEST(WorldTrafficTest, MovesEachFollowerByItsOwnCommand) {
-  World world(WithFollowers(3));
+  world::World world(WithFollowers(3));
   world.Start(1);
   const truth_t& truth = Truth(world.Step(HostCommand(0), FollowerCommands({1, -1, 2})));
   EXPECT_EQ(truth.follower_acceleration_mps2, (std::vector<double>{1, -1, 2}));
@@ -53,7 +53,7 @@ TEST(WorldTrafficTest, MovesEachFollowerByItsOwnCommand) {
 }
 
 TEST(WorldTrafficTest, RefusesCommandsForAnotherNumberOfFollowers) {
-  World world(WithFollowers(2));
+  world::World world(WithFollowers(2));
   world.Start(1);
   EXPECT_THROW(world.Step(HostCommand(0), FollowerCommand(0)), std::invalid_argument);
   EXPECT_THROW(world.Step(HostCommand(0), FollowerCommands({0, 0, 0})), std::invalid_argument);
@@ -63,7 +63,7 @@ TEST(WorldTrafficTest, RefusesCommandsForAnotherNumberOfFollowers) {
 TEST(WorldTrafficTest, NoticesThatTheLastOfThemRunsIntoTheOneBefore) {
   Scenario scenario = WithFollowers(3);
   scenario.world.follower_gap_m = 1;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   const truth_t* truth = nullptr;
   for (int k = 0; k < 8; ++k) {
@@ -75,30 +75,30 @@ TEST(WorldTrafficTest, NoticesThatTheLastOfThemRunsIntoTheOneBefore) {
 }
 
 TEST(WorldTrafficTest, ResumesAsManyCarsAsTheTruthHas) {
-  World before(WithFollowers(3));
+  world::World before(WithFollowers(3));
   before.Start(1);
   const truth_t truth = Truth(before.Step(HostCommand(-1), FollowerCommands({1, -1, 2})));
-  World after(WithFollowers(3));
+  world::World after(WithFollowers(3));
   after.Resume(truth);
   const truth_t& there = Truth(before.Step(HostCommand(2), FollowerCommands({0, 1, -3})));
   const truth_t& here = Truth(after.Step(HostCommand(2), FollowerCommands({0, 1, -3})));
   EXPECT_EQ(here.follower_position_m, there.follower_position_m);
   EXPECT_EQ(here.follower_gap_m, there.follower_gap_m);
   EXPECT_EQ(here.host_position_m, there.host_position_m);
-  World other(WithFollowers(2));
+  world::World other(WithFollowers(2));
   EXPECT_THROW(other.Resume(truth), std::invalid_argument);
 }
 
 TEST(WorldTrafficTest, FitsOneDatagramWithAsManyFollowersAsThereMayBe) {
-  World world(WithFollowers(kMaxFollowers));
-  EXPECT_LT(Truth(world.Start(1)).getEncodedSize(), static_cast<int>(kMaxMessageBytes));
+  world::World world(WithFollowers(kMaxFollowers));
+  EXPECT_LT(Truth(world.Start(1)).getEncodedSize(), static_cast<int>(runtime::kMaxMessageBytes));
   const std::vector<double> all(static_cast<std::size_t>(kMaxFollowers), 0.0);
-  EXPECT_LT(FollowerCommands(all).getEncodedSize(), static_cast<int>(kMaxMessageBytes));
+  EXPECT_LT(FollowerCommands(all).getEncodedSize(), static_cast<int>(runtime::kMaxMessageBytes));
 }
 
 TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
   // GIVEN a sedan with brakes that act after 0.1 s, and then gradually
-  World world(WithVehicles());
+  world::World world(WithVehicles());
   world.Start(1);
   // WHEN it is told to brake
   const truth_t first = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
@@ -116,7 +116,7 @@ TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
 TEST(WorldVehicleTest, LeavesTheOthersAlone) {
   Scenario scenario = WithVehicles();
   scenario.host_vehicle.model = VehicleModel::kPointMass;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   const truth_t& truth = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   EXPECT_EQ(truth.host_acceleration_mps2, -3);
@@ -126,12 +126,12 @@ TEST(WorldVehicleTest, LeavesTheOthersAlone) {
 TEST(WorldVehicleTest, BrakesOnIceNoHarderThanItsTyresHold) {
   Scenario scenario = WithVehicles();
   scenario.road.surface = Surface::kIce;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   for (int k = 0; k < 30; ++k) {
     const truth_t& truth = Truth(world.Step(HostCommand(-6), FollowerCommand(-6)));
     // mu g, plus less than 0.2 m/s2 of drag at 20 m/s.
-    ASSERT_GE(truth.host_acceleration_mps2, -0.15 * kGravity_mps2 - 0.2);
+    ASSERT_GE(truth.host_acceleration_mps2, -0.15 * models::kGravity_mps2 - 0.2);
   }
 }
 
@@ -140,8 +140,8 @@ TEST(WorldVehicleTest, SubstepsChangeNothingButRoundingForVehiclesToo) {
   scenario.road.grade = {{0, 0}, {50, 0.05}};
   Scenario fine = scenario;
   fine.world.substeps = 16;
-  World a(scenario);
-  World b(fine);
+  world::World a(scenario);
+  world::World b(fine);
   a.Start(1);
   b.Start(1);
   for (int k = 0; k < 150; ++k) {
@@ -156,7 +156,7 @@ TEST(WorldVehicleTest, SubstepsChangeNothingButRoundingForVehiclesToo) {
 }
 
 TEST(WorldVehicleTest, BeginsAnewWithEveryRun) {
-  World world(WithVehicles());
+  world::World world(WithVehicles());
   std::vector<double> speeds[2];
   for (std::vector<double>& run : speeds) {
     world.Start(1);
@@ -169,11 +169,11 @@ TEST(WorldVehicleTest, BeginsAnewWithEveryRun) {
 }
 
 TEST(WorldVehicleTest, ResumesAsIfItHadKeptItsAccelerationForLong) {
-  World before(WithVehicles());
+  world::World before(WithVehicles());
   before.Start(1);
   truth_t truth;
   for (int k = 0; k < 30; ++k) truth = Truth(before.Step(HostCommand(-2), FollowerCommand(-2)));
-  World after(WithVehicles());
+  world::World after(WithVehicles());
   after.Resume(truth);
   const truth_t& here = Truth(after.Step(HostCommand(-2), FollowerCommand(-2)));
   const truth_t& there = Truth(before.Step(HostCommand(-2), FollowerCommand(-2)));
@@ -183,7 +183,7 @@ TEST(WorldVehicleTest, ResumesAsIfItHadKeptItsAccelerationForLong) {
 
 std::string RefusalOf(const Scenario& scenario) {
   try {
-    World world(scenario);
+    world::World world(scenario);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -49,7 +49,7 @@ class VehicleFallbackTest : public testing::Test {
     return command;
   }
 
-  VehicleFallback fallback_{SomeScenario()};
+  world::VehicleFallback fallback_{SomeScenario()};
   truth_t now_ = Driving();
   arbitration_t host_ = HostCommand(1.5);
   follower_command_t follower_ = FollowerCommand(-1.5);
@@ -166,7 +166,7 @@ TEST_F(VehicleFallbackTest, ObeysADriverWhoComesDuringTheManoeuvre) {
 
 TEST_F(VehicleFallbackTest, LetsNoDriverEndTheLockOrAManoeuvreAfterFailure) {
   for (const std::int8_t mode : {arbitration_t::MRM_DONE, arbitration_t::MINIMAL_RISK}) {
-    VehicleFallback fallback(SomeScenario());
+    world::VehicleFallback fallback(SomeScenario());
     arbitration_t command = MinimalRiskCommand(0);
     command.mode = mode;
     fallback.Step(now_, {kOk, &command}, {kOk, &follower_});
@@ -191,7 +191,7 @@ class SeveralFollowersTest : public testing::Test {
     return fallback_->followers().acceleration_mps2;
   }
 
-  std::optional<VehicleFallback> fallback_;
+  std::optional<world::VehicleFallback> fallback_;
   truth_t now_ = Driving();
   arbitration_t host_ = HostCommand(1.5);
   follower_command_t commands_ = FollowerCommands({-1.5, 0.25, 1});

@@ -11,7 +11,7 @@
 namespace fogline {
 namespace {
 
-const truth_t& Truth(const World::Output& output) { return std::get<truth_t>(output); }
+const truth_t& Truth(const world::World::Output& output) { return std::get<truth_t>(output); }
 
 TEST(WorldTest, StartsAsTheScenarioSays) {
   Scenario scenario;
@@ -21,7 +21,7 @@ TEST(WorldTest, StartsAsTheScenarioSays) {
   scenario.lead.speed_mps = 21.0;
   scenario.world.host_speed_mps = 20.0;
   scenario.world.follower_speed_mps = 19.0;
-  World world(scenario);
+  world::World world(scenario);
   const auto& [truth, ego] = world.Start(77);
   EXPECT_EQ(truth.header.run_id, 77);
   EXPECT_EQ(truth.header.step, 0);
@@ -43,7 +43,7 @@ TEST(WorldTest, StartsAsTheScenarioSays) {
 }
 
 TEST(WorldTest, MovesEachCarByItsOwnCommand) {
-  World world{Scenario{}};
+  world::World world{Scenario{}};
   world.Start(1);
   const auto& [truth, ego] = world.Step(HostCommand(2.0), FollowerCommand(-1.0));
   EXPECT_EQ(truth.header.step, 1);
@@ -66,7 +66,7 @@ TEST(WorldTest, ReportsTheMeanAccelerationOfACarThatCameToRest) {
   // GIVEN: a host at 0.5 m/s that brakes with 10 m/s2 and is at rest after half of the step
   Scenario scenario;
   scenario.world.host_speed_mps = 0.5;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   // WHEN: it comes to rest and still brakes
   const truth_t resting = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
@@ -83,8 +83,8 @@ TEST(WorldTest, TheLeaderFollowsItsProfileExactly) {
   Scenario scenario;
   scenario.lead.profile = LeadProfile::kEmergencyBrake;
   scenario.lead.emergency_brake = {.start_s = 1.05, .deceleration_mps2 = 6.0};
-  World world(scenario);
-  const Leader profile(scenario.lead);
+  world::World world(scenario);
+  const world::Leader profile(scenario.lead);
   truth_t before = Truth(world.Start(1));
   for (int step = 1; step < 100; ++step) {
     const truth_t& truth = Truth(world.Step(HostCommand(-8.0), FollowerCommand(-8.0)));
@@ -103,7 +103,7 @@ TEST(WorldTest, TheLeaderFollowsItsProfileExactly) {
 TEST(WorldTest, EndsOnTheLastStepOfTheScenario) {
   Scenario scenario;
   scenario.steps = 3;
-  World world(scenario);
+  world::World world(scenario);
   EXPECT_FALSE(Truth(world.Start(1)).last);
   EXPECT_FALSE(Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0))).last);
   EXPECT_TRUE(Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0))).last);
@@ -112,7 +112,7 @@ TEST(WorldTest, EndsOnTheLastStepOfTheScenario) {
 TEST(WorldTest, ARunOfOneStepIsItsStart) {
   Scenario scenario;
   scenario.steps = 1;
-  World world(scenario);
+  world::World world(scenario);
   EXPECT_TRUE(Truth(world.Start(1)).last);
 }
 
@@ -126,7 +126,7 @@ Scenario CollisionAhead() {
 }
 
 TEST(WorldTest, EndsOnTheStepOfTheFirstCollision) {
-  World world(CollisionAhead());
+  world::World world(CollisionAhead());
   world.Start(1);
   for (int step = 1; step <= 5; ++step) {
     const truth_t& truth = Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0)));
@@ -147,7 +147,7 @@ TEST(WorldTest, KeepsTheFirstCollisionWhenTheRunGoesOn) {
   scenario.world.end_on_collision = false;
   scenario.world.follower_gap_m = 2.0;
   scenario.world.follower_speed_mps = 22.0;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   // WHEN: 20 steps pass
   truth_t truth;
@@ -170,7 +170,7 @@ TEST(WorldTest, OfTwoCollisionsInAStepRecordsTheEarlier) {
   scenario.lead.speed_mps = 18.0;
   scenario.world.host_speed_mps = 20.0;
   scenario.world.follower_speed_mps = 24.0;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   const truth_t& truth = Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0)));
   EXPECT_EQ(truth.collision, truth_t::COLLISION_FOLLOWER);
@@ -178,7 +178,7 @@ TEST(WorldTest, OfTwoCollisionsInAStepRecordsTheEarlier) {
 }
 
 TEST(WorldTest, StartBeginsAgainFromTheStart) {
-  World world(CollisionAhead());
+  world::World world(CollisionAhead());
   const truth_t first = Truth(world.Start(1));
   for (int step = 1; step <= 6; ++step) world.Step(HostCommand(1.0), FollowerCommand(-1.0));
   const truth_t again = Truth(world.Start(1));
@@ -192,7 +192,7 @@ TEST(WorldTest, StartBeginsAgainFromTheStart) {
 TEST(WorldTest, CountsTimeInWholeMicroseconds) {
   Scenario scenario;
   scenario.step_s = 0.05;
-  World world(scenario);
+  world::World world(scenario);
   world.Start(1);
   for (int step = 1; step <= 7; ++step) world.Step(HostCommand(0.0), FollowerCommand(0.0));
   EXPECT_EQ(Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0))).header.utime, 400'000);
@@ -205,7 +205,7 @@ TEST(WorldTest, PutsTheFogOfItsTimeIntoTheTruth) {
   scenario.fog.start_s = 0.1;
   scenario.fog.duration_s = 0.1;
   scenario.fog.visibility_m = 60.0;
-  World world(scenario);
+  world::World world(scenario);
   EXPECT_FALSE(Truth(world.Start(1)).fog_present);
   const truth_t in_fog = Truth(world.Step(HostCommand(0.0), FollowerCommand(0.0)));
   EXPECT_TRUE(in_fog.fog_present);
@@ -217,7 +217,7 @@ TEST(WorldTest, PutsTheFogOfItsTimeIntoTheTruth) {
 }
 
 TEST(WorldTest, RefusesCommandsThatAreNoAccelerationPerCar) {
-  World world{Scenario{}};
+  world::World world{Scenario{}};
   world.Start(1);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(world.Step(HostCommand(kNan), FollowerCommand(0.0)), std::invalid_argument);

@@ -37,7 +37,7 @@ std::string Transparent(std::string_view colour, std::string_view alpha) {
 }
 
 /// Mean, ends of its confidence interval, and percentiles.
-std::string Cells(const Summary& of) {
+std::string Cells(const stats::Summary& of) {
   const double mean = of.mean.value_or(kNone);
   const double half = of.ci95.value_or(kNone);
   return fmt::format(" {} {} {} {} {}", Number(mean), Number(mean - half), Number(mean + half),
@@ -154,7 +154,7 @@ std::string ThresholdRanges(const ReportCurves& curves) {
   }
   for (const ReportCurves::Point& point : curves.points) {
     thresholds.push_back(point.threshold);
-    for (const Summary& of : {point.si_pct, point.rhe_pct}) {
+    for (const stats::Summary& of : {point.si_pct, point.rhe_pct}) {
       values.insert(values.end(),
                     {of.mean.value_or(kNone), of.p5.value_or(kNone), of.p95.value_or(kNone)});
     }

@@ -118,7 +118,7 @@ std::string NoValues(std::size_t curves) {
 
 /// The curves' values as a gnuplot data block: time first, then one column for each curve.
 std::string DataBlock(std::size_t number, const ReportRun& run, std::span<const Curve> curves) {
-  const std::span<const Sample> samples = run.samples;
+  const std::span<const metrics::Sample> samples = run.samples;
   std::string block = fmt::format("$run{} << EOD\n", number);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     block += fmt::format("{}", samples[i].time_s);

@@ -58,7 +58,8 @@ struct Replicates {
 
 Estimate Share(std::int64_t seeds, double share, std::vector<double> replicates) {
   Estimate estimate = FromReplicates(seeds, share, std::move(replicates));
-  const EventShare exact = ClopperPearson(std::llround(share * static_cast<double>(seeds)), seeds);
+  const metrics::EventShare exact =
+      metrics::ClopperPearson(std::llround(share * static_cast<double>(seeds)), seeds);
   estimate.low = estimate.has_interval() ? std::min(estimate.low, exact.lower) : exact.lower;
   estimate.high = estimate.high >= exact.upper ? estimate.high : exact.upper;
   return estimate;

@@ -77,7 +77,7 @@ Scenario InFog(const StudyContext& context, std::string_view fog, const Noise& n
 using ClearRuns = std::vector<ClearRun>;
 
 ClearRuns RunClear(DetectorBench& bench, const Scenario& scenario, std::int64_t seed) {
-  ClearRuns runs(ConflictMeasures().size());
+  ClearRuns runs(conflict::ConflictMeasures().size());
   bench.Run(scenario, seed, [&](const truth_t& truth, std::span<const double> scores) {
     const double time_s = static_cast<double>(truth.header.utime) * 1e-6 - kWarmUp_s;
     if (time_s < 0) return;
@@ -96,8 +96,8 @@ template <class Show>
 std::vector<std::vector<ClearRun>> CollectClear(const StudyContext& context,
                                                 const Scenario& scenario, std::int64_t first_seed,
                                                 const Show& show) {
-  std::vector<std::vector<ClearRun>> by_measure(ConflictMeasures().size());
-  ComputeInOrder(
+  std::vector<std::vector<ClearRun>> by_measure(conflict::ConflictMeasures().size());
+  stats::ComputeInOrder(
       0, context.seeds.count(), context.jobs, [] { return DetectorBench(); },
       [&](DetectorBench& bench, std::int64_t unit) {
         return RunClear(bench, scenario, first_seed + context.seeds.first + unit);
@@ -206,7 +206,7 @@ template <class Show>
 std::vector<Gathered> RunCondition(const StudyContext& context, const Scenario& scenario,
                                    std::span<const Calibrated> calibrated, const Show& show) {
   std::vector<Gathered> gathered(calibrated.size(), Gathered(calibrated.front().scores.size()));
-  ComputeInOrder(
+  stats::ComputeInOrder(
       0, context.seeds.count(), context.jobs, [] { return DetectorBench(); },
       [&](DetectorBench& bench, std::int64_t unit) {
         return RunFog(bench, scenario, context.seeds.first + unit, BatchOf(unit), calibrated);

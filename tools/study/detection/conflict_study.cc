@@ -19,7 +19,9 @@ namespace {
 
 constexpr double kHour_s = 3600;
 
-std::string_view NameOfMeasure(std::size_t measure) { return ConflictMeasures()[measure].name; }
+std::string_view NameOfMeasure(std::size_t measure) {
+  return conflict::ConflictMeasures()[measure].name;
+}
 
 std::string NameOfSet(const ConflictSet& set) {
   return fmt::format("{}, {} noise", set.fog, set.noise);
@@ -51,7 +53,7 @@ std::vector<std::size_t> WithoutTwins(std::span<const std::size_t> ranked) {
 /// Name of a measure with its twin, such as "cusum (sprt is the same test)".
 std::string NameWithTwin(std::size_t measure) {
   std::string name(NameOfMeasure(measure));
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     if (TwinOf(row.name) == name) name += fmt::format(" ({} is the same test)", row.name);
   }
   return name;
@@ -165,7 +167,8 @@ std::string FindingOf(const ConflictSet& set, std::span<const std::size_t> ranke
 bool AlarmsAsCalibrated(const DetectorThreshold& threshold) {
   const AlarmCount& found = threshold.calibrated;
   const AlarmCount& other = threshold.clear;
-  const EventShare share = ClopperPearson(other.alarms, found.alarms + other.alarms);
+  const metrics::EventShare share =
+      metrics::ClopperPearson(other.alarms, found.alarms + other.alarms);
   const double expected = other.time_s / (found.time_s + other.time_s);
   return share.lower <= expected && expected <= share.upper;
 }
@@ -308,7 +311,7 @@ report::StudyFigure OverVisibility(const ConflictSet& set, std::span<const std::
                              .x_label = "Visibility (m)",
                              .y_label = std::move(y_label),
                              .log_x = true};
-  for (std::size_t m = 0; m < ConflictMeasures().size(); ++m) {
+  for (std::size_t m = 0; m < conflict::ConflictMeasures().size(); ++m) {
     report::StudySeries& series = figure.series.emplace_back();
     series.name = NameOfMeasure(m);
     // The densest fog is last in a set and first on the axis.
@@ -332,7 +335,7 @@ report::StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const std::s
       .x_label = "False positives (share of steps in clear air)",
       .y_label = "True positives (share of steps in fog)",
       .log_x = true};
-  for (std::size_t m = 0; m < ConflictMeasures().size(); ++m) {
+  for (std::size_t m = 0; m < conflict::ConflictMeasures().size(); ++m) {
     report::StudySeries& series = figure.series.emplace_back();
     series.name = NameOfMeasure(m);
     for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {

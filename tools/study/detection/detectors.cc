@@ -14,8 +14,8 @@ constexpr double kTail = 0.025;  // at each end of an interval of 95 %
 
 }  // namespace
 
-ConflictParameters DetectorParameters(const Scenario& scenario) {
-  ConflictParameters parameters = ConflictParametersOf(scenario.arbitrator);
+conflict::ConflictParameters DetectorParameters(const Scenario& scenario) {
+  conflict::ConflictParameters parameters = policies::ConflictParametersOf(scenario.arbitrator);
   const double radar_m = scenario.radar.range_std_m;
   const double lidar_m = scenario.lidar.range_std_m;
   const double frame_m = parameters.bin_width_m * parameters.frame_bins;
@@ -46,9 +46,9 @@ void DetectorBench::Prepare(const Scenario& scenario, std::int64_t seed) {
     loop_.emplace(scenario_);
   }
   witness_.emplace(scenario_.fusion);
-  const ConflictParameters parameters = DetectorParameters(scenario_);
+  const conflict::ConflictParameters parameters = DetectorParameters(scenario_);
   measures_.clear();
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     measures_.push_back(row.make(parameters));
   }
   scores_.resize(measures_.size());

@@ -24,7 +24,7 @@ namespace fogline::study {
 /// standard deviation of the two sensors. The SPRT tests for the same shift as the CUSUM: 2 kappa
 /// standard deviations of the difference. With fixed parameters a test would be tuned to one noise
 /// of several.
-ConflictParameters DetectorParameters(const Scenario& scenario);
+conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
 
 /// The measure that is the same test as this one under DetectorParameters(), so that both count
 /// once; "" if there is none. The SPRT's ratio is held at its lower bound, and the SPRT tests for
@@ -41,10 +41,10 @@ class DetectorBench {
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
     Prepare(scenario, seed);
-    loop_->Run(0, [&](const StepView& step) {
-      const Evidence evidence{
-          .radar = StatedBy(step.radar),
-          .lidar = StatedBy(step.lidar),
+    loop_->Run(0, [&](const metrics::StepView& step) {
+      const conflict::Evidence evidence{
+          .radar = policies::StatedBy(step.radar),
+          .lidar = policies::StatedBy(step.lidar),
           .prediction = witness_->Prediction(step.track, step.radar, step.lidar)};
       for (std::size_t i = 0; i < measures_.size(); ++i) scores_[i] = measures_[i]->Step(evidence);
       visit(step.truth, std::span<const double>(scores_));
@@ -55,9 +55,9 @@ class DetectorBench {
   void Prepare(const Scenario& scenario, std::int64_t seed);
 
   Scenario scenario_;
-  std::optional<ClosedLoop> loop_;
-  std::optional<Witness> witness_;
-  std::vector<std::unique_ptr<ConflictMeasure>> measures_;
+  std::optional<metrics::ClosedLoop> loop_;
+  std::optional<policies::Witness> witness_;
+  std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;
   std::vector<double> scores_;
 };
 

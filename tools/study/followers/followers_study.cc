@@ -164,8 +164,9 @@ constexpr std::array kStringMeasures{
 
 report::StudyTable TableOf(const StringOutcome& string, std::int64_t seeds) {
   report::StudyTable table{
-      .caption = fmt::format("String of {}, {}: by place; collisions in {}", string.kind,
-                             string.variant, Text(ClopperPearson(string.collisions, seeds))),
+      .caption =
+          fmt::format("String of {}, {}: by place; collisions in {}", string.kind, string.variant,
+                      Text(metrics::ClopperPearson(string.collisions, seeds))),
       .columns = {"place"}};
   for (const StringMeasure& measure : kStringMeasures) table.columns.emplace_back(measure.name);
   for (std::size_t place = 0; place <= kStringCars; ++place) {

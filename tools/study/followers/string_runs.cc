@@ -24,7 +24,7 @@ constexpr double kLeastBraking_mps2 = 0.01;
 /// Result of one run.
 struct StringRun {
   std::array<double, kStringCars + 1> max_deceleration_mps2{};
-  std::vector<FollowerMeasures> followers;
+  std::vector<metrics::FollowerMeasures> followers;
   bool collided = false;
 };
 
@@ -40,8 +40,8 @@ class StringWorker {
       loop_.emplace(scenario_);
     }
     StringRun run;
-    FollowerAccumulator followers;
-    loop_->Run(0, [&](const StepView& step) {
+    metrics::FollowerAccumulator followers;
+    loop_->Run(0, [&](const metrics::StepView& step) {
       const truth_t& truth = step.truth;
       run.collided = truth.collision != truth_t::COLLISION_NONE;
       const double time_s = static_cast<double>(truth.header.utime) * 1e-6;
@@ -60,7 +60,7 @@ class StringWorker {
   }
 
  private:
-  std::optional<ClosedLoop> loop_;
+  std::optional<metrics::ClosedLoop> loop_;
   Scenario scenario_;
 };
 
@@ -74,7 +74,8 @@ void Add(const StringRun& run, StringOutcome& outcome) {
     const double ahead_mps2 = run.max_deceleration_mps2[place - 1];
     car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? kNone : own_mps2 / ahead_mps2);
     const bool there = place <= run.followers.size();
-    const FollowerMeasures measures = there ? run.followers[place - 1] : FollowerMeasures{};
+    const metrics::FollowerMeasures measures =
+        there ? run.followers[place - 1] : metrics::FollowerMeasures{};
     car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : kNone));
     car.min_gap_m.push_back(measures.min_gap_m.value_or(kNone));
   }
@@ -99,7 +100,7 @@ std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<con
   }
   const std::int64_t seeds = context.seeds.count();
   const std::int64_t units = static_cast<std::int64_t>(scenarios.size()) * seeds;
-  ComputeInOrder(
+  stats::ComputeInOrder(
       0, units, context.jobs, [] { return StringWorker(); },
       [&](StringWorker& worker, std::int64_t unit) {
         return worker.Run(scenarios[static_cast<std::size_t>(unit / seeds)],

@@ -128,7 +128,7 @@ MixedRuns RunMix(const StudyContext& context) {
     }
   }
   const std::vector<Scenario> bases = BasesOf(context, mixed);
-  ComputeInOrder(
+  stats::ComputeInOrder(
       0, mixed.situations, context.jobs, [] { return PairedWorker(); },
       [&](PairedWorker& worker, std::int64_t unit) {
         const std::int64_t seed = context.seeds.first + unit;

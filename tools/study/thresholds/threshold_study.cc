@@ -145,9 +145,9 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
 /// Describes the Pareto front of all rules, and lists the rules that cannot be told apart from a
 /// rule on it.
 std::string FrontText(const MixedRuns& mixed) {
-  std::vector<TradeOff> points;
+  std::vector<stats::TradeOff> points;
   for (const RuleMember& member : mixed.members) points.push_back({member.rhe(), member.si()});
-  const std::vector<std::size_t> front = ParetoFront(points);
+  const std::vector<std::size_t> front = stats::ParetoFront(points);
   std::vector<std::string> names;
   for (const std::size_t i : front) {
     const RuleMember& member = mixed.members[i];
@@ -287,7 +287,7 @@ report::StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
         {member.name, Text(EstimateOf(member.rhe_pct), 2), Text(EstimateOf(member.si_pct), 1),
          place ? ThresholdText(mixed, *place) : "–", place ? Text(difference, 2) : "–",
          Text(EstimateOf(member.shortfall_m), 3),
-         Text(ClopperPearson(member.collisions, mixed.situations))});
+         Text(metrics::ClopperPearson(member.collisions, mixed.situations))});
   }
   return table;
 }

@@ -6,7 +6,7 @@
 
 #include "services/decision/conflict/one_step/normal.h"
 
-namespace fogline {
+namespace fogline::conflict {
 namespace {
 
 // Greatest number of bins of one belief. It covers 6 standard deviations on each side if the
@@ -130,4 +130,4 @@ double CorrelationConflict(const BinnedPair& pair) {
                         JaccardProduct(pair.square_2, eta_2, eta_2, pair.bins));
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -7,7 +7,7 @@
 
 #include "services/decision/conflict/disagreement.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// Sums over two bodies of evidence m1, m2, sufficient for all measures below. Focal sets are
 /// single bins, and the whole frame Theta of n bins, which has the mass 1 - eta.
@@ -48,4 +48,4 @@ double CosineConflict(const BinnedPair& pair);
 /// 2016): the cosine under Jousselme's D.
 double CorrelationConflict(const BinnedPair& pair);
 
-}  // namespace fogline
+}  // namespace fogline::conflict

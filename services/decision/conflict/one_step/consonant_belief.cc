@@ -11,7 +11,7 @@
 
 #include "services/decision/conflict/one_step/normal.h"
 
-namespace fogline {
+namespace fogline::conflict {
 namespace {
 
 const double kDensityFactor = std::sqrt(2 / std::numbers::pi);
@@ -125,4 +125,4 @@ double ConsonantBeliefs::CorrelationConflict(const Disagreement& disagreement) c
   return std::clamp(1 - common / jaccard_square_, 0.0, 1.0);
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

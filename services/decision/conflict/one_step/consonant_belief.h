@@ -6,7 +6,7 @@
 
 #include "services/decision/conflict/disagreement.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// The least-committed of all belief densities that have as pignistic probability the sensor's
 /// Gaussian N(mu, s^2). Its focal sets are the nested intervals [mu - y s, mu + y s], with the
@@ -66,4 +66,4 @@ double ConsonantConflict(const Disagreement& disagreement);
 /// differ.
 double ConsonantPignisticDistance(const Disagreement& disagreement);
 
-}  // namespace fogline
+}  // namespace fogline::conflict

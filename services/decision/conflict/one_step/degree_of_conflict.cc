@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace fogline {
+namespace fogline::conflict {
 
 double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m) {
   return 1 / (1 + std::exp(-slope_per_m * (conflict_m - centre_m)));
@@ -26,4 +26,4 @@ double ConflictWindow::Conflict(ConflictReading reading) const {
   return count == 0 ? 0 : std::abs(sum) / count;
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -8,7 +8,7 @@
 
 #include "scenario/sections/control.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// DoC = 1 / (1 + exp(-slope (z - centre))), in [0, 1].
 double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m);
@@ -36,4 +36,4 @@ class ConflictWindow {
   std::size_t oldest_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -4,7 +4,7 @@
 
 #include "services/decision/conflict/one_step/nis.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 double BhattacharyyaOfMeans(const Disagreement& disagreement) {
   return NormalisedSquare(disagreement) / 4;
@@ -25,4 +25,4 @@ double HellingerOfMeans(const Disagreement& disagreement) {
   return std::sqrt(-std::expm1(-BhattacharyyaOfMeans(disagreement)));
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

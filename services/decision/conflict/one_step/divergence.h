@@ -4,7 +4,7 @@
 
 #include "services/decision/conflict/disagreement.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// Bhattacharyya distance D_B = d^2/(4 S) + ln(S/(2 s1 s2))/2, at least 0 (Bhattacharyya 1943).
 /// The second part is above 0 at d = 0, too, if the precisions differ: unequal precision looks like
@@ -20,4 +20,4 @@ double BhattacharyyaOfMeans(const Disagreement& disagreement);
 /// H of that part, sqrt(1 - exp(-d^2/(4 S))), in [0, 1].
 double HellingerOfMeans(const Disagreement& disagreement);
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace fogline {
+namespace fogline::conflict {
 
 Doc::Doc(const ConflictParameters& parameters)
     : source_(parameters, DisagreementSource::Offset::kKept),
@@ -28,4 +28,4 @@ void Doc::Reset() {
   for (int i = 0; i < window_steps_; ++i) window_.Push(std::nullopt);
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

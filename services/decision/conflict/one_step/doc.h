@@ -4,7 +4,7 @@
 #include "services/decision/conflict/disagreement.h"
 #include "services/decision/conflict/one_step/degree_of_conflict.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
 /// services/decision/conflict/one_step/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi)
@@ -31,4 +31,4 @@ class Doc final : public ConflictMeasure {
   double centre_m_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -6,7 +6,7 @@
 
 #include "services/decision/conflict/disagreement.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// A measure that is a function of the disagreement of the step alone: double(Disagreement). A
 /// skipped step scores 0, and so does, under `hold`, a missing value before the first measured one.
@@ -28,4 +28,4 @@ class Momentary final : public ConflictMeasure {
   Score score_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-namespace fogline {
+namespace fogline::conflict {
 
 double StandardisedMean(const Window& window) {
   double sum = 0;
@@ -49,4 +49,4 @@ void SignedNis::Reset() {
   standardised_.Clear();
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -5,7 +5,7 @@
 #include "services/decision/conflict/disagreement.h"
 #include "services/decision/conflict/over_time/window.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// NIS = d^2/S, at least 0. Without a fault it is chi-square with one degree of freedom: above
 /// 3.84, 6.63, 10.83 in 5, 1, 0.1 % of the steps.
@@ -47,4 +47,4 @@ class SignedNis final : public ConflictMeasure {
 /// sum / sqrt(n) of the n values of a window; 0 if it is empty.
 double StandardisedMean(const Window& window);
 
-}  // namespace fogline
+}  // namespace fogline::conflict

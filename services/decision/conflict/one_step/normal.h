@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// The probability of a value below `u`.
 inline double NormalBelow(double u) { return std::erfc(-u / std::numbers::sqrt2) / 2; }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

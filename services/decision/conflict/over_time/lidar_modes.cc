@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace fogline {
+namespace fogline::conflict {
 namespace {
 
 constexpr std::size_t kClean = static_cast<std::size_t>(LidarMode::kClean);
@@ -78,4 +78,4 @@ double LidarModeConflict::Step(const Evidence& evidence) {
   return std::min(1.0, probabilities[kFogReturn] + probabilities[kDropout]);
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -6,7 +6,7 @@
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/conflict_parameters.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// Posterior probabilities of LiDAR modes that change as a Markov chain, as in the IMM (Blom &
 /// Bar-Shalom 1988), with modes of measurement instead of motion:
@@ -61,4 +61,4 @@ class LidarModeBlame final : public BlameMeasure {
   LidarModeConflict conflict_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fogline {
+namespace fogline::conflict {
 
 Cusum::Cusum(const ConflictParameters& parameters)
     : source_(parameters), kappa_(parameters.cusum_kappa), ceiling_(parameters.cusum_ceiling) {}
@@ -69,4 +69,4 @@ void Sprt::Reset() {
   log_ratio_ = 0;
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -6,7 +6,7 @@
 #include "services/decision/conflict/disagreement.h"
 #include "services/decision/conflict/over_time/window.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// Cumulative sum of u = d/sqrt(S) (Page 1954). It is one-sided, because fog shortens the LiDAR's
 /// range:
@@ -79,4 +79,4 @@ class Sprt final : public ConflictMeasure {
   double log_ratio_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

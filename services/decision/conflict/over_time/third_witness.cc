@@ -6,7 +6,7 @@
 
 #include "services/decision/conflict/one_step/nis.h"
 
-namespace fogline {
+namespace fogline::conflict {
 namespace {
 
 // 1 - d_J/sqrt(c11), d_J^2 = c11 - c12.
@@ -160,4 +160,4 @@ double LargestBlame::Step(const Evidence& evidence) {
   return std::max(blame.radar, blame.lidar);
 }
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -15,7 +15,7 @@
 #include "services/decision/conflict/one_step/consonant_belief.h"
 #include "services/decision/conflict/over_time/window.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
 /// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. With one step T^2 is
@@ -144,4 +144,4 @@ class LargestBlame final : public ConflictMeasure {
   std::unique_ptr<BlameMeasure> blame_;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// The values of the last W steps. A step without a value has an empty place, which leaves the
 /// window like any other. A measure computes the whole sum again in every step, so its result
@@ -48,4 +48,4 @@ class Window {
   std::size_t oldest_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

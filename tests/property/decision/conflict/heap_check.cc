@@ -28,7 +28,7 @@ constexpr int kSteps = 1000;
 
 // Whether any measure of these rows allocates in a step; prints those that do.
 template <class Row>
-bool Allocates(std::span<const Row> rows, const ConflictParameters& parameters) {
+bool Allocates(std::span<const Row> rows, const conflict::ConflictParameters& parameters) {
   const Random random(1, Stream::kRadar);
   bool any = false;
   for (const Row& row : rows) {
@@ -46,10 +46,10 @@ bool Allocates(std::span<const Row> rows, const ConflictParameters& parameters) 
 bool Check() {
   bool any = false;
   for (const auto rule : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.missing = rule;
-    any = Allocates(ConflictMeasures(), parameters) || any;
-    any = Allocates(BlameMeasures(), parameters) || any;
+    any = Allocates(conflict::ConflictMeasures(), parameters) || any;
+    any = Allocates(conflict::BlameMeasures(), parameters) || any;
   }
   // Measures are made on the heap, so without any allocation the counter itself would be broken.
   return !any && allocations > 0;

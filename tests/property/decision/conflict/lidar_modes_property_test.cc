@@ -23,22 +23,23 @@ constexpr std::int64_t kLength = 12;  // steps; only the last one counts
 /// A LiDAR that behaves as the model says. It draws the gap of each step independently.
 class Lidar {
  public:
-  Lidar(const ConflictParameters& model, const Random& random) : model_(model), random_(random) {}
+  Lidar(const conflict::ConflictParameters& model, const Random& random)
+      : model_(model), random_(random) {}
 
-  bool deceived() const { return mode_ != LidarMode::kClean; }
+  bool deceived() const { return mode_ != conflict::LidarMode::kClean; }
 
-  Evidence At(std::int64_t step) {
+  conflict::Evidence At(std::int64_t step) {
     const auto [change, echo] = random_.Uniform2(step, 0);
     const auto [stray, place] = random_.Uniform2(step, 1);
     const auto [radar, lidar] = random_.Normal2(step, 2);
     const double gap_m = model_.fog_return_m + 10 * random_.Uniform2(step, 3)[0] - 5;
     const auto& next = model_.mode_transition[static_cast<std::size_t>(mode_)];
-    mode_ = change < next[0]             ? LidarMode::kClean
-            : change < next[0] + next[1] ? LidarMode::kFogReturn
-                                         : LidarMode::kDropout;
-    Evidence evidence{.radar = {true, gap_m + kRadarStd_m * radar, kRadarStd_m},
-                      .lidar = {false, 0, kLidarStd_m},
-                      .prediction = {}};
+    mode_ = change < next[0]             ? conflict::LidarMode::kClean
+            : change < next[0] + next[1] ? conflict::LidarMode::kFogReturn
+                                         : conflict::LidarMode::kDropout;
+    conflict::Evidence evidence{.radar = {true, gap_m + kRadarStd_m * radar, kRadarStd_m},
+                                .lidar = {false, 0, kLidarStd_m},
+                                .prediction = {}};
     if (echo >= model_.echo_probability[static_cast<std::size_t>(mode_)]) return evidence;
     evidence.lidar.valid = true;
     evidence.lidar.range_m = Range(gap_m, stray, place, lidar);
@@ -49,11 +50,11 @@ class Lidar {
   double Range(double gap_m, double stray, double place, double noise) const {
     const double anywhere_m = place * model_.stray_range_m;
     switch (mode_) {
-      case LidarMode::kClean:
+      case conflict::LidarMode::kClean:
         return gap_m + kLidarStd_m * noise;
-      case LidarMode::kDropout:
+      case conflict::LidarMode::kDropout:
         return anywhere_m;
-      case LidarMode::kFogReturn:
+      case conflict::LidarMode::kFogReturn:
         break;
     }
     if (stray < model_.stray_share) return anywhere_m;
@@ -63,9 +64,9 @@ class Lidar {
            std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;
   }
 
-  ConflictParameters model_;
+  conflict::ConflictParameters model_;
   Random random_;
-  LidarMode mode_ = LidarMode::kClean;
+  conflict::LidarMode mode_ = conflict::LidarMode::kClean;
 };
 
 /// Posteriors and deceived steps of one class. The difference of their sums has mean 0.
@@ -78,13 +79,13 @@ struct Claims {
 
 TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
   // GIVEN many LiDARs with a fog return near the car, so that all probabilities occur
-  ConflictParameters model;
+  conflict::ConflictParameters model;
   model.fog_return_m = 40;
   constexpr std::array kEdges{0.02, 0.5, 0.98};  // most steps are almost certain
   std::array<Claims, kEdges.size() + 1> claims{};
   for (std::int64_t sequence = 0; sequence < kSequences; ++sequence) {
     Lidar lidar(model, Random(sequence, Stream::kLidar));
-    LidarModeConflict posterior(model);
+    conflict::LidarModeConflict posterior(model);
     double p = 0;
     for (std::int64_t step = 0; step < kLength; ++step) p = posterior.Step(lidar.At(step));
     Claims& claim = claims[static_cast<std::size_t>(

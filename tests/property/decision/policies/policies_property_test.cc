@@ -101,8 +101,8 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
   Draw draw(1 + static_cast<std::int64_t>(GetParam()));
   for (int run = 0; run < 60; ++run) {
     const Scenario scenario = AnyScenario(draw, policy());
-    Arbitrator arbitrator(scenario);
-    Fusion fusion(scenario);
+    arbitrator::Arbitrator arbitrator(scenario);
+    fusion::Fusion fusion(scenario);
     Inputs in;
     double previous = 0;
     for (std::int64_t k = 0; k < 100; ++k) {
@@ -142,8 +142,8 @@ TEST_P(EveryPolicyProperty, DecidesTheSameAgain) {
     std::vector<arbitration_t> decided[2];
     for (auto& decisions : decided) {
       Draw draw(run);
-      Arbitrator arbitrator(scenario);
-      Fusion fusion(scenario);
+      arbitrator::Arbitrator arbitrator(scenario);
+      fusion::Fusion fusion(scenario);
       Inputs in;
       for (std::int64_t k = 0; k < 50; ++k) {
         in.Next(draw, k);
@@ -183,15 +183,15 @@ TEST(TransferProperty, ALimitedCommandNeverChangesFasterThanItsJerkAfterATransfe
     const double step_s = draw.Uniform(0.02, 0.2);
     const double jerk_mps3 =
         gate ? std::min(section.jerk_mps3, section.gate_jerk_mps3) : section.jerk_mps3;
-    const Transfer::Offers offers{.automation_mps2 = draw.Uniform(-3, 2),
-                                  .human_mps2 = draw.Uniform(-9, 3)};
-    Transfer transfer(section, step_s);
+    const arbitrator::Transfer::Offers offers{.automation_mps2 = draw.Uniform(-3, 2),
+                                              .human_mps2 = draw.Uniform(-9, 3)};
+    arbitrator::Transfer transfer(section, step_s);
     double previous = offers.automation_mps2;
     double wanted = 0;
     // WHEN authority changes often
     for (int k = 0; k < 200; ++k) {
       if (draw.Chance(0.1)) wanted = 1 - wanted;
-      const Transfer::State state = transfer.Step(wanted, offers, previous);
+      const arbitrator::Transfer::State state = transfer.Step(wanted, offers, previous);
       // THEN no step breaks the limit, and the authority is the wanted one
       ASSERT_LE(std::abs(state.acceleration_mps2 - previous), jerk_mps3 * step_s + kRounding);
       ASSERT_EQ(state.lambda_human, wanted);
@@ -213,7 +213,7 @@ TEST(TransferProperty, ARampChangesAuthorityNoFasterThanItsSteepestPart) {
     const double step_s = draw.Uniform(0.02, 0.2);
     // S'(1/2) = k/4 / (1 - 2 s(-k/2)), with k = 10.
     const double steepest = sigmoid ? 2.5 / (1 - 2 / (1 + std::exp(5.0))) : 1;
-    Transfer transfer(section, step_s);
+    arbitrator::Transfer transfer(section, step_s);
     double previous = 0;
     double wanted = 0;
     for (int k = 0; k < 200; ++k) {
@@ -233,7 +233,7 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
   for (int run = 0; run < 200; ++run) {
     TransferSection section = AnyTransfer(draw);
     const double step_s = draw.Uniform(0.02, 0.2);
-    RequestDebouncer steady(section, step_s);
+    arbitrator::RequestDebouncer steady(section, step_s);
     double previous = 0;
     std::optional<int> last;
     for (int k = 0; k < 300; ++k) {
@@ -263,7 +263,7 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     const Random random(14, Stream::kRadar);
     int errors = 0;
     for (int test = 0; test < kTests; ++test) {
-      RequestDebouncer steady(
+      arbitrator::RequestDebouncer steady(
           {.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha}, 0.1);
       // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN it
       // decides for the human in at most a share alpha of the cases

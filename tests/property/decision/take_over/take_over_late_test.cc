@@ -42,8 +42,9 @@ Scenario Asking(const TakeOverParameters& time, double lead_s) {
 }
 
 /// The state `steps` steps after a request in step `request`, if the car does not slow down.
-TakeOverState StateAfter(TakeOver& take_over, std::int64_t request, std::int64_t steps) {
-  const TakeOverInputs inputs{.human_wanted = true, .readiness = 1, .speed_mps = 20};
+take_over::TakeOverState StateAfter(take_over::TakeOver& take_over, std::int64_t request,
+                                    std::int64_t steps) {
+  const take_over::TakeOverInputs inputs{.human_wanted = true, .readiness = 1, .speed_mps = 20};
   header_t header{};
   header.step = request + steps;
   return take_over.Step(header, inputs).state;
@@ -60,14 +61,15 @@ Count Ask(const Scenario& scenario) {
   constexpr std::int64_t kLong = 1'000'000;  // steps: more than a day
   Count count;
   for (std::int64_t request = 0; request < kDraws; ++request) {
-    TakeOver take_over(scenario);
-    EXPECT_EQ(StateAfter(take_over, request, 0), TakeOverState::kDemand);
-    if (StateAfter(take_over, request, lead) != TakeOverState::kMrmComfort) {
-      EXPECT_EQ(take_over.outcome().state, TakeOverState::kHandover);
+    take_over::TakeOver take_over(scenario);
+    EXPECT_EQ(StateAfter(take_over, request, 0), take_over::TakeOverState::kDemand);
+    if (StateAfter(take_over, request, lead) != take_over::TakeOverState::kMrmComfort) {
+      EXPECT_EQ(take_over.outcome().state, take_over::TakeOverState::kHandover);
       continue;
     }
     ++count.late;
-    if (StateAfter(take_over, request, kLong) != TakeOverState::kRecovering) ++count.absent;
+    if (StateAfter(take_over, request, kLong) != take_over::TakeOverState::kRecovering)
+      ++count.absent;
   }
   return count;
 }
@@ -87,13 +89,14 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};
-    ExpectProbability(Ask(Asking(given, 20)).late, TakeOverTime(given, 20).LateProbability());
+    ExpectProbability(Ask(Asking(given, 20)).late,
+                      models::TakeOverTime(given, 20).LateProbability());
   }
 }
 
 TEST(TakeOverLateTest, IsWhatMeanAndDeviationMakeOfItWhereTheyAreGiven) {
   const TakeOverParameters given{.mean_s = 6.75, .std_s = 3.6};  // 15 % take longer than 10 s
-  ExpectProbability(Ask(Asking(given, 10)).late, TakeOverTime(given, 10).LateProbability());
+  ExpectProbability(Ask(Asking(given, 10)).late, models::TakeOverTime(given, 10).LateProbability());
 }
 
 TEST(TakeOverLateTest, IsForeverAsOftenAsTheParameterSays) {

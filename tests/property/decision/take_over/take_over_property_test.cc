@@ -17,7 +17,7 @@
 namespace fogline::test {
 namespace {
 
-using enum TakeOverState;
+using enum take_over::TakeOverState;
 
 constexpr std::int64_t kSequences = 10'000;
 constexpr std::int64_t kSteps = 300;
@@ -27,16 +27,17 @@ struct RowCount {
   int taken = 0;
   int changed = 0;
 };
-using RowCounts = std::array<RowCount, kTakeOverTable.size()>;
+using RowCounts = std::array<RowCount, take_over::kTakeOverTable.size()>;
 
-std::size_t PlaceOf(const TakeOverRow& row) {
-  return static_cast<std::size_t>(&row - kTakeOverTable.data());
+std::size_t PlaceOf(const take_over::TakeOverRow& row) {
+  return static_cast<std::size_t>(&row - take_over::kTakeOverTable.data());
 }
 
 /// Checks one step against the table.
-void ExpectTheTable(const TakeOverRow* row, TakeOverState before, TakeOverState after) {
+void ExpectTheTable(const take_over::TakeOverRow* row, take_over::TakeOverState before,
+                    take_over::TakeOverState after) {
   EXPECT_EQ(after, row == nullptr ? before : row->next)
-      << "from " << InfoOf(before).name << " to " << InfoOf(after).name;
+      << "from " << take_over::InfoOf(before).name << " to " << take_over::InfoOf(after).name;
 }
 
 /// Expects that a change of state has its effect in its own step: the applied command is that of
@@ -48,9 +49,9 @@ void ExpectTheTable(const TakeOverRow* row, TakeOverState before, TakeOverState 
 /// limit, or the near stop, allows less deceleration than even the softer stage wants, both stages
 /// command that same limit.
 /// @return whether the command changed
-bool ExpectTheChangeIsFelt(const TakeOverRow& row, const Witness& witness,
-                           const TakeOverInputs& inputs, double applied_mps2) {
-  const Authority old_authority = AuthorityOf(row.state);
+bool ExpectTheChangeIsFelt(const take_over::TakeOverRow& row, const Witness& witness,
+                           const take_over::TakeOverInputs& inputs, double applied_mps2) {
+  const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
   const double old_mps2 = witness.Would(old_authority, inputs);
   EXPECT_EQ(applied_mps2, witness.Would(row.authority, inputs));
   if (row.authority == old_authority) {
@@ -58,16 +59,20 @@ bool ExpectTheChangeIsFelt(const TakeOverRow& row, const Witness& witness,
     return false;
   }
   const bool changed = std::abs(applied_mps2 - old_mps2) > kTolerance;
-  const bool harder = old_authority == Authority::kComfort && row.authority == Authority::kHard;
+  const bool harder = old_authority == take_over::Authority::kComfort &&
+                      row.authority == take_over::Authority::kHard;
   EXPECT_TRUE(changed || (harder && applied_mps2 == witness.WouldAtMost(inputs)))
-      << InfoOf(row.state).name << " -> " << InfoOf(row.next).name << ": " << applied_mps2
-      << " m/s2 as before";
+      << take_over::InfoOf(row.state).name << " -> " << take_over::InfoOf(row.next).name << ": "
+      << applied_mps2 << " m/s2 as before";
   return changed;
 }
 
-void ExpectNoManoeuvreTooEarly(const TakeOverRow& row, const Witness& witness, std::int64_t step,
-                               const TakeOverInputs& inputs, const TakeOverSection& section) {
-  if (row.authority < Authority::kComfort || AuthorityOf(row.state) >= Authority::kComfort) return;
+void ExpectNoManoeuvreTooEarly(const take_over::TakeOverRow& row, const Witness& witness,
+                               std::int64_t step, const take_over::TakeOverInputs& inputs,
+                               const TakeOverSection& section) {
+  if (row.authority < take_over::Authority::kComfort ||
+      take_over::AuthorityOf(row.state) >= take_over::Authority::kComfort)
+    return;
   if (row.next == kMrmComfort) {
     EXPECT_GE(witness.SinceRequest(step), section.lead_s - kTolerance);
     EXPECT_GE(witness.SinceRequest(step), 10 - kTolerance) << "UN R157, 5.4.4.1";
@@ -76,14 +81,14 @@ void ExpectNoManoeuvreTooEarly(const TakeOverRow& row, const Witness& witness, s
   }
 }
 
-void ExpectTheLimits(const TakeOverOutcome& out, const TakeOverInputs& inputs,
+void ExpectTheLimits(const take_over::TakeOverOutcome& out, const take_over::TakeOverInputs& inputs,
                      const TakeOverSection& section, double step_s) {
-  if (out.authority == Authority::kEasing) {
+  if (out.authority == take_over::Authority::kEasing) {
     // Easing does not accelerate, except while it ends an acceleration within the jerk limit.
     EXPECT_LE(out.acceleration_mps2,
               std::max(0.0, inputs.applied_mps2 - section.jerk_mps3 * step_s) + kTolerance);
   }
-  if (out.authority < Authority::kComfort) return;
+  if (out.authority < take_over::Authority::kComfort) return;
   // A car that brakes harder at the beginning than the manoeuvre may releases the brake within the
   // jerk limit.
   EXPECT_GE(out.acceleration_mps2,
@@ -113,18 +118,19 @@ class Sequence {
 
  private:
   void Step(std::int64_t step, RowCounts& counts) {
-    const TakeOverState before = take_over_.outcome().state;
+    const take_over::TakeOverState before = take_over_.outcome().state;
     const bool manoeuvred = witness_.manoeuvred();
-    const TakeOverInputs& inputs = events_.Next();
-    const TakeOverRow* row = TakeOverRowOf(before, witness_.EventsOf(step, inputs), manoeuvred);
+    const take_over::TakeOverInputs& inputs = events_.Next();
+    const take_over::TakeOverRow* row =
+        take_over::TakeOverRowOf(before, witness_.EventsOf(step, inputs), manoeuvred);
     if (row != nullptr) LetTheControllersDiffer(*row);
     header_t header{};
     header.step = step;
 
-    const TakeOverOutcome& out = take_over_.Step(header, inputs);
+    const take_over::TakeOverOutcome& out = take_over_.Step(header, inputs);
 
     ExpectTheTable(row, before, out.state);
-    EXPECT_EQ(out.authority, AuthorityOf(out.state));
+    EXPECT_EQ(out.authority, take_over::AuthorityOf(out.state));
     if (row != nullptr) {
       ExpectNoManoeuvreTooEarly(*row, witness_, step, inputs, scenario_.arbitrator.take_over);
       RowCount& count = counts[PlaceOf(*row)];
@@ -145,11 +151,11 @@ class Sequence {
   /// Draws other offers until the controllers of the old and of the new state want different
   /// commands. If they want the same, a change has no effect. Both stages of the manoeuvre may be
   /// at the jerk limit, whatever the offers are.
-  void LetTheControllersDiffer(const TakeOverRow& row) {
+  void LetTheControllersDiffer(const take_over::TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
-    const Authority old_authority = AuthorityOf(row.state);
+    const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
     if (row.authority == old_authority) return;
-    const TakeOverInputs& inputs = events_.inputs();
+    const take_over::TakeOverInputs& inputs = events_.inputs();
     for (int k = 0; k < 30; ++k) {
       if (std::abs(witness_.Would(old_authority, inputs) - witness_.Would(row.authority, inputs)) >
           kPlain_mps2) {
@@ -159,7 +165,7 @@ class Sequence {
     }
   }
 
-  void ExpectLocked(TakeOverState before, const TakeOverInputs& inputs) {
+  void ExpectLocked(take_over::TakeOverState before, const take_over::TakeOverInputs& inputs) {
     if (before != kMrmDone) return;
     EXPECT_LT(inputs.speed_mps, 0.01);
     EXPECT_LE(take_over_.outcome().acceleration_mps2, 0.0);
@@ -167,33 +173,34 @@ class Sequence {
   }
 
   // The offers of a side without authority must have no effect, whatever they are.
-  void ExpectNothingLingers(const header_t& header, TakeOverInputs inputs,
-                            const TakeOverOutcome& out) {
+  void ExpectNothingLingers(const header_t& header, take_over::TakeOverInputs inputs,
+                            const take_over::TakeOverOutcome& out) {
     constexpr double kNonsense = 1e9;
-    if (out.authority != Authority::kHuman) inputs.human_mps2 = kNonsense;
-    const bool automation_counts = out.authority == Authority::kAutomation ||
-                                   out.authority == Authority::kEasing ||
-                                   out.authority == Authority::kComfort;
+    if (out.authority != take_over::Authority::kHuman) inputs.human_mps2 = kNonsense;
+    const bool automation_counts = out.authority == take_over::Authority::kAutomation ||
+                                   out.authority == take_over::Authority::kEasing ||
+                                   out.authority == take_over::Authority::kComfort;
     if (!automation_counts) inputs.automation_mps2 = kNonsense;
-    const TakeOverOutcome& same = twin_.Step(header, inputs);
+    const take_over::TakeOverOutcome& same = twin_.Step(header, inputs);
     EXPECT_EQ(same.state, out.state);
     EXPECT_EQ(same.acceleration_mps2, out.acceleration_mps2);
   }
 
-  void Log(const header_t& header, const TakeOverOutcome& out) {
+  void Log(const header_t& header, const take_over::TakeOverOutcome& out) {
     arbitration_t command{};
     command.header = header;
-    command.mode = InfoOf(out.state).mode;
+    command.mode = take_over::InfoOf(out.state).mode;
     command.acceleration_mps2 = out.acceleration_mps2;
-    command.lambda_human = out.authority == Authority::kHuman ? 1 : 0;
+    command.lambda_human = out.authority == take_over::Authority::kHuman ? 1 : 0;
     log_.Add(command, events_.inputs().human_mps2);
   }
 
   /// Notes the first step with a driver's command that differs from the command before he came.
-  void NoteTheDriver(TakeOverState before, std::int64_t step, const TakeOverOutcome& out) {
+  void NoteTheDriver(take_over::TakeOverState before, std::int64_t step,
+                     const take_over::TakeOverOutcome& out) {
     if (out.state == kDemand && before == kAutomated) effective_.reset();
-    if (out.authority != Authority::kHuman) return;
-    if (AuthorityOf(before) != Authority::kHuman) {
+    if (out.authority != take_over::Authority::kHuman) return;
+    if (take_over::AuthorityOf(before) != take_over::Authority::kHuman) {
       before_driver_mps2_ = events_.inputs().applied_mps2;
     }
     if (effective_) return;
@@ -206,7 +213,7 @@ class Sequence {
       return;
     }
     ASSERT_FALSE(log_.requests().empty());
-    TakeOverRequest expected = *take_over_.request();
+    take_over::TakeOverRequest expected = *take_over_.request();
     expected.effective = effective_;
     EXPECT_EQ(log_.requests().back(), expected);
   }
@@ -214,10 +221,10 @@ class Sequence {
   Dice dice_;
   Scenario scenario_;
   Events events_;
-  TakeOver take_over_;
-  TakeOver twin_;
+  take_over::TakeOver take_over_;
+  take_over::TakeOver twin_;
   Witness witness_;
-  TakeOverLog log_;
+  take_over::TakeOverLog log_;
   double before_driver_mps2_ = 0;
   std::optional<std::int64_t> effective_;
 };
@@ -229,16 +236,18 @@ TEST(TakeOverPropertyTest, KeepsToItsTableAndItsLimitsOverTenThousandSequences) 
     ASSERT_FALSE(HasFailure()) << "sequence " << i;
   }
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const TakeOverRow& row = kTakeOverTable[i];
-    SCOPED_TRACE(testing::Message() << InfoOf(row.state).name << " -> " << InfoOf(row.next).name
-                                    << ", " << counts[i].taken << " times");
+    const take_over::TakeOverRow& row = take_over::kTakeOverTable[i];
+    SCOPED_TRACE(testing::Message()
+                 << take_over::InfoOf(row.state).name << " -> " << take_over::InfoOf(row.next).name
+                 << ", " << counts[i].taken << " times");
     EXPECT_GT(counts[i].taken, 0) << "never taken";
-    const Authority old_authority = AuthorityOf(row.state);
+    const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
     if (row.authority == old_authority) {
       EXPECT_EQ(counts[i].changed, 0);
     } else if (row.next == kMrmDone) {
       EXPECT_EQ(counts[i].changed, 0) << "where the car stands neither stage has anything to do";
-    } else if (old_authority == Authority::kComfort && row.authority == Authority::kHard) {
+    } else if (old_authority == take_over::Authority::kComfort &&
+               row.authority == take_over::Authority::kHard) {
       EXPECT_GT(counts[i].changed, 0);
     } else {
       EXPECT_EQ(counts[i].changed, counts[i].taken);
@@ -253,10 +262,10 @@ TEST(TakeOverPropertyTest, BeginsNoManoeuvreBeforeTenSecondsWhateverTheLeadTime)
     scenario.arbitrator.take_over = {
         .mode = TakeOverMode::kRequested, .lead_s = lead_s, .absent_probability = 1};
     if (lead_s < 10) {
-      EXPECT_THROW(TakeOver{scenario}, std::invalid_argument) << lead_s;
+      EXPECT_THROW(take_over::TakeOver{scenario}, std::invalid_argument) << lead_s;
       continue;
     }
-    TakeOver take_over(scenario);
+    take_over::TakeOver take_over(scenario);
     header_t header{};
     while (!take_over.in_manoeuvre() && header.step < 1000) {
       take_over.Step(header, {.human_wanted = true, .speed_mps = 20});

@@ -65,7 +65,7 @@ class Events {
     danger_ = dice.Chance(0.3) ? 0.05 : 0.002;
   }
 
-  const TakeOverInputs& Next() {
+  const take_over::TakeOverInputs& Next() {
     if (dice_.Chance(0.03)) inputs_.human_wanted = !inputs_.human_wanted;
     inputs_.automation_mps2 = dice_.Between(-6, 2);
     inputs_.human_mps2 = dice_.Between(-8, 3);
@@ -84,7 +84,7 @@ class Events {
         eager ? std::max(0.0, inputs_.applied_mps2) + dice_.Between(0.1, 1) : dice_.Between(-6, 2);
     inputs_.human_mps2 = dice_.Between(-8, 3);
   }
-  const TakeOverInputs& inputs() const { return inputs_; }
+  const take_over::TakeOverInputs& inputs() const { return inputs_; }
 
   void Apply(double acceleration_mps2) {
     inputs_.applied_mps2 = acceleration_mps2;
@@ -100,7 +100,7 @@ class Events {
   bool brakes_;
   double danger_;
   track_t track_{};
-  TakeOverInputs inputs_;
+  take_over::TakeOverInputs inputs_;
 };
 
 /// The independent computation: it finds from the inputs alone which events hold, and which command
@@ -116,58 +116,61 @@ class Witness {
                     .jerk_mps3 = section_.jerk_mps3},
                    scenario.step_s) {}
 
-  TakeOverEvents EventsOf(std::int64_t step, const TakeOverInputs& inputs) const {
-    TakeOverEvents events =
-        Bit(inputs.human_wanted ? TakeOverEvent::kWanted : TakeOverEvent::kCalm);
-    const auto set = [&events](TakeOverEvent event, bool holds) {
-      if (holds) events = static_cast<TakeOverEvents>(events | Bit(event));
+  take_over::TakeOverEvents EventsOf(std::int64_t step,
+                                     const take_over::TakeOverInputs& inputs) const {
+    take_over::TakeOverEvents events = take_over::Bit(
+        inputs.human_wanted ? take_over::TakeOverEvent::kWanted : take_over::TakeOverEvent::kCalm);
+    const auto set = [&events](take_over::TakeOverEvent event, bool holds) {
+      if (holds) events = static_cast<take_over::TakeOverEvents>(events | take_over::Bit(event));
     };
-    set(TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
-    set(TakeOverEvent::kStandstill, inputs.speed_mps < 0.01 && inputs.applied_mps2 <= 0);
-    set(TakeOverEvent::kOverdue, stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
+    set(take_over::TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
+    set(take_over::TakeOverEvent::kStandstill, inputs.speed_mps < 0.01 && inputs.applied_mps2 <= 0);
+    set(take_over::TakeOverEvent::kOverdue,
+        stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
     const bool answered = section_.absent_probability < 1 && t + kTolerance >= time_s_;
-    set(TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
-    set(TakeOverEvent::kAcknowledged, answered && time_s_ <= section_.lead_s);
-    set(TakeOverEvent::kReady, answered && inputs.readiness >= section_.required_readiness);
-    set(TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
-    set(TakeOverEvent::kRecovered,
+    set(take_over::TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
+    set(take_over::TakeOverEvent::kAcknowledged, answered && time_s_ <= section_.lead_s);
+    set(take_over::TakeOverEvent::kReady,
+        answered && inputs.readiness >= section_.required_readiness);
+    set(take_over::TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
+    set(take_over::TakeOverEvent::kRecovered,
         transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     return events;
   }
 
   /// The command of `authority` in this step. For a manoeuvre it may be called only once per step.
-  double Source(Authority authority, const TakeOverInputs& inputs) {
+  double Source(take_over::Authority authority, const take_over::TakeOverInputs& inputs) {
     const double least =
         std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
     switch (authority) {
-      case Authority::kAutomation:
+      case take_over::Authority::kAutomation:
         return inputs.automation_mps2;
-      case Authority::kEasing:
+      case take_over::Authority::kEasing:
         return std::min(inputs.automation_mps2,
                         std::max(0.0, inputs.applied_mps2 - section_.jerk_mps3 * step_s_));
-      case Authority::kHuman:
+      case take_over::Authority::kHuman:
         return inputs.human_mps2;
-      case Authority::kComfort:
+      case take_over::Authority::kComfort:
         return manoeuvre_.Step(inputs.speed_mps, std::clamp(-inputs.automation_mps2, least,
                                                             section_.emergency_deceleration_mps2));
-      case Authority::kHard:
+      case take_over::Authority::kHard:
         return manoeuvre_.Step(inputs.speed_mps);
     }
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  void Note(const TakeOverOutcome& out, TakeOverState before, std::int64_t step,
-            const TakeOverInputs& inputs) {
-    using enum TakeOverState;
+  void Note(const take_over::TakeOverOutcome& out, take_over::TakeOverState before,
+            std::int64_t step, const take_over::TakeOverInputs& inputs) {
+    using enum take_over::TakeOverState;
     if (out.state == kDemand && before == kAutomated) {
       requested_ = step;
       transferred_.reset();
       time_s_ = time_.Draw(random_, step);
     }
     if (out.state == kRecovering && before != kRecovering) transferred_ = step;
-    if (out.authority >= Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
+    if (out.authority >= take_over::Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
     if (out.state == before) return;
     stage_.reset();
     if (out.state != kMrmComfort && out.state != kMrmEmergency) return;
@@ -178,21 +181,21 @@ class Witness {
   }
 
   /// The command that `authority` would give in this step if it had control.
-  double Would(Authority authority, const TakeOverInputs& inputs) const {
+  double Would(take_over::Authority authority, const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
-    if (authority >= Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
+    if (authority >= take_over::Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
   /// The command of a manoeuvre without a limit of deceleration: only the jerk or the stop limits
   /// it.
-  double WouldAtMost(const TakeOverInputs& inputs) const {
+  double WouldAtMost(const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
     other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.manoeuvre_.Step(inputs.speed_mps, std::numeric_limits<double>::infinity());
   }
 
   double SinceRequest(std::int64_t step) const { return Since(step, *requested_); }
-  static double Ttc_s(const TakeOverInputs& inputs) {
+  static double Ttc_s(const take_over::TakeOverInputs& inputs) {
     const bool closing =
         inputs.track != nullptr && inputs.track->valid && inputs.track->state[1] < 0;
     return closing ? inputs.track->state[0] / -inputs.track->state[1]
@@ -203,7 +206,7 @@ class Witness {
  private:
   /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
   /// road: apply the brake, slow down, release the brake, and three steps.
-  double LongestStop_s(const TakeOverInputs& inputs, double deceleration_mps2) const {
+  double LongestStop_s(const take_over::TakeOverInputs& inputs, double deceleration_mps2) const {
     const double push = std::max(inputs.applied_mps2, 0.0);
     const double jerk = section_.jerk_mps3;
     return std::abs(inputs.applied_mps2 + deceleration_mps2) / jerk +
@@ -217,8 +220,8 @@ class Witness {
   TakeOverSection section_;
   double step_s_;
   Random random_;
-  TakeOverTime time_;
-  MinimalRisk manoeuvre_;
+  models::TakeOverTime time_;
+  models::MinimalRisk manoeuvre_;
   std::optional<std::int64_t> requested_;
   std::optional<std::int64_t> transferred_;
   double time_s_ = 0;

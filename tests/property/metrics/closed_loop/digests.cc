@@ -8,7 +8,7 @@ int main() {
   for (auto& [name, scenario] : test::ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario")) {
     for (std::size_t fog = 0; fog < ChoiceNames<FogModel>::kNames.size(); ++fog) {
       scenario.fog.model = static_cast<FogModel>(fog);
-      ClosedLoop loop(scenario);
+      metrics::ClosedLoop loop(scenario);
       std::printf("%s %s %s\n", name.c_str(), ChoiceNames<FogModel>::kNames[fog].data(),
                   test::DigestOf(loop).c_str());
     }

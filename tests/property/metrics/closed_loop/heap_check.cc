@@ -52,17 +52,17 @@ namespace {
 // which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
-  AccController acc(AccSection{}, 0.1);
+  acc::AccController acc(AccSection{}, 0.1);
   const long before = allocations;
   for (int k = 0; k < 5000; ++k) {
     const double scale = draw.LogUniform(0.01, 1);
-    const AccController::Output output =
+    const acc::AccController::Output output =
         acc.Step({.distance_m = 33 + scale * draw.Uniform(-33, 60),
                   .relative_speed_mps = scale * draw.Uniform(-15, 15),
                   .speed_mps = 20 + scale * draw.Uniform(-20, 30),
                   .acceleration_mps2 = scale * draw.Uniform(-8, 5),
                   .has_target = draw.Chance(0.9)});
-    if (output.solver == AccController::Solver::kActiveSet) ++solver_steps;
+    if (output.solver == acc::AccController::Solver::kActiveSet) ++solver_steps;
   }
   return allocations - before;
 }
@@ -78,22 +78,23 @@ bool CheckController() {
 // Whether no allocation happens while a human drives a car uphill and through fog, from the first
 // step on.
 bool CheckModels() {
-  LongitudinalVehicle car(kSedan, FrictionOf(Surface::kWet), GradeProfile({{0, 0}, {500, 0.05}}),
-                          0.1);
-  const FogSight sight{FogSightParameters{}};
-  HumanDriver driver(HumanParameters{}, Following(FollowingModel::kAccIdm, DriverSection{}),
-                     Random(1, Stream::kHumanErrors), 0.1);
-  SafetyResponse fuzzy(SafetyModel::kFuzzy, 0.1);
-  Motion motion{0, 20};
+  models::LongitudinalVehicle car(models::kSedan, models::FrictionOf(Surface::kWet),
+                                  models::GradeProfile({{0, 0}, {500, 0.05}}), 0.1);
+  const models::FogSight sight{FogSightParameters{}};
+  models::HumanDriver driver(HumanParameters{},
+                             models::Following(FollowingModel::kAccIdm, DriverSection{}),
+                             Random(1, Stream::kHumanErrors), 0.1);
+  models::SafetyResponse fuzzy(models::SafetyModel::kFuzzy, 0.1);
+  models::Motion motion{0, 20};
   const long before = allocations;
   car.Begin(motion, 0);
   for (std::int64_t k = 0; k < 1000; ++k) {
     const double lead_mps = k / 100 % 2 == 0 ? 10 : 25;
-    const Situation truth{
+    const models::Situation truth{
         .speed_mps = motion.speed_mps,
-        .ahead = CarAhead{.gap_m = static_cast<double>(k % 70), .speed_mps = lead_mps}};
+        .ahead = models::CarAhead{.gap_m = static_cast<double>(k % 70), .speed_mps = lead_mps}};
     const double command = driver.Step(k, sight.Perceive(truth, 60)) - fuzzy.Step(truth);
-    motion = Advance(motion, car.Step(command, motion), 0.1);
+    motion = models::Advance(motion, car.Step(command, motion), 0.1);
   }
   const long made = allocations - before;
   std::printf("models: %ld allocations in 1000 steps\n", made);
@@ -102,15 +103,15 @@ bool CheckModels() {
 
 // The number of allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
-  ClosedLoop loop(scenario);
-  MeasureAccumulator measures;
-  FollowerAccumulator followers;
-  SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  metrics::ClosedLoop loop(scenario);
+  metrics::MeasureAccumulator measures;
+  metrics::FollowerAccumulator followers;
+  metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
   long after_first = 0;
   long after_last = 0;
   steps = 0;
-  loop.Run(1, [&](const StepView& step) {
-    const Sample sample = step.ToSample();
+  loop.Run(1, [&](const metrics::StepView& step) {
+    const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
     improvement.Add(sample, sample);
@@ -178,7 +179,7 @@ bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.absent_probability = 0.3;
   bool clean = true;
   for (const char* policy : {"traded", "blend"}) {
-    scenario.arbitrator.policy = FindPolicy(policy).value();
+    scenario.arbitrator.policy = policies::FindPolicy(policy).value();
     for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
       std::int64_t steps = 0;
       clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;

@@ -37,12 +37,12 @@ inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder
 }
 
 /// Runs to the end. @return the digest. @pre `loop` is new or restarted
-inline std::string DigestOf(ClosedLoop& loop) {
-  Digest digest;
+inline std::string DigestOf(metrics::ClosedLoop& loop) {
+  runtime::Digest digest;
   std::vector<std::uint8_t> buffer;
-  loop.Run(0, [&](const StepView& step) {
+  loop.Run(0, [&](const metrics::StepView& step) {
     step.ForEachMessage([&](const auto& message) {
-      Encode(message, buffer);
+      runtime::Encode(message, buffer);
       digest.Add(buffer);
     });
   });

@@ -21,9 +21,10 @@ Scenario Paper() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"
 
 Scenario DenseFog() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/dense_fog.json"); }
 
-std::vector<Sample> SamplesOf(const Scenario& scenario) {
-  std::vector<Sample> samples;
-  ClosedLoop(scenario).Run(0, [&](const StepView& step) { samples.push_back(step.ToSample()); });
+std::vector<metrics::Sample> SamplesOf(const Scenario& scenario) {
+  std::vector<metrics::Sample> samples;
+  metrics::ClosedLoop(scenario).Run(
+      0, [&](const metrics::StepView& step) { samples.push_back(step.ToSample()); });
   return samples;
 }
 
@@ -39,16 +40,17 @@ Outcome OutcomeOf(Scenario scenario, int seeds) {
   for (scenario.seed = 1; scenario.seed <= seeds; ++scenario.seed) {
     Scenario pair = scenario;
     pair.arbitrator.policy = Policy::kNone;
-    const std::vector<Sample> run = SamplesOf(scenario);
+    const std::vector<metrics::Sample> run = SamplesOf(scenario);
     for (std::size_t k = 1; k < run.size(); ++k) {
       outcome.max_jerk_mps3 =
           std::max(outcome.max_jerk_mps3,
                    std::abs(run[k].command_mps2 - run[k - 1].command_mps2) / scenario.step_s);
     }
-    outcome.handover_jerk_mps3 =
-        std::max(outcome.handover_jerk_mps3, Measure(run).max_handover_jump_mps2 / scenario.step_s);
+    outcome.handover_jerk_mps3 = std::max(
+        outcome.handover_jerk_mps3, metrics::Measure(run).max_handover_jump_mps2 / scenario.step_s);
     outcome.si_pct +=
-        *SafetyImprovementPct(SamplesOf(pair), run, scenario.measures.safety_floor_m) / seeds;
+        *metrics::SafetyImprovementPct(SamplesOf(pair), run, scenario.measures.safety_floor_m) /
+        seeds;
   }
   return outcome;
 }
@@ -104,7 +106,7 @@ struct Step {
 
 std::vector<Step> StepsOf(const Scenario& scenario) {
   std::vector<Step> steps;
-  ClosedLoop(scenario).Run(0, [&](const StepView& step) {
+  metrics::ClosedLoop(scenario).Run(0, [&](const metrics::StepView& step) {
     steps.push_back({.human_wanted = step.host.doc >= scenario.arbitrator.threshold,
                      .automation_mps2 = step.acc.acceleration_mps2,
                      .human_mps2 = step.driver.acceleration_mps2,

@@ -21,13 +21,13 @@ struct Driven {
   std::vector<arbitration_t> commands;
   std::vector<double> automation_mps2;
   std::vector<double> human_mps2;
-  TakeOverLog log;
+  take_over::TakeOverLog log;
 };
 
 Driven Drive(const Scenario& scenario) {
   Driven driven;
-  ClosedLoop loop(scenario);
-  loop.Run(0, [&](const StepView& step) {
+  metrics::ClosedLoop loop(scenario);
+  loop.Run(0, [&](const metrics::StepView& step) {
     driven.commands.push_back(step.host);
     driven.automation_mps2.push_back(step.acc.acceleration_mps2);
     driven.human_mps2.push_back(step.driver.acceleration_mps2);
@@ -36,36 +36,38 @@ Driven Drive(const Scenario& scenario) {
   return driven;
 }
 
-TakeOverState StateOf(std::int8_t mode) {
-  return std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode)->state;
+take_over::TakeOverState StateOf(std::int8_t mode) {
+  return std::ranges::find(take_over::kTakeOverStates, mode, &take_over::TakeOverStateInfo::mode)
+      ->state;
 }
 
-bool IsInTable(TakeOverState from, TakeOverState to) {
-  return std::ranges::any_of(
-      kTakeOverTable, [&](const TakeOverRow& row) { return row.state == from && row.next == to; });
+bool IsInTable(take_over::TakeOverState from, take_over::TakeOverState to) {
+  return std::ranges::any_of(take_over::kTakeOverTable, [&](const take_over::TakeOverRow& row) {
+    return row.state == from && row.next == to;
+  });
 }
 
 // Checks the rules that a log shows: the table's changes, the source of each command, and the
 // manoeuvre's limits.
 void ExpectTheRules(const Scenario& scenario, const Driven& driven) {
   const TakeOverSection& section = scenario.arbitrator.take_over;
-  TakeOverState before = TakeOverState::kAutomated;
+  take_over::TakeOverState before = take_over::TakeOverState::kAutomated;
   double last_mps2 = 0;
   for (std::size_t k = 0; k < driven.commands.size(); ++k) {
     const arbitration_t& command = driven.commands[k];
-    const TakeOverState state = StateOf(command.mode);
+    const take_over::TakeOverState state = StateOf(command.mode);
     ASSERT_TRUE(state == before || IsInTable(before, state)) << "step " << k;
-    const Authority authority = AuthorityOf(state);
+    const take_over::Authority authority = take_over::AuthorityOf(state);
     const double change = section.jerk_mps3 * scenario.step_s + kRounding;
     switch (authority) {
-      case Authority::kAutomation:
+      case take_over::Authority::kAutomation:
         ASSERT_EQ(command.acceleration_mps2, driven.automation_mps2[k]) << k;
         break;
-      case Authority::kEasing:
+      case take_over::Authority::kEasing:
         ASSERT_LE(command.acceleration_mps2, driven.automation_mps2[k]) << k;
         ASSERT_LE(command.acceleration_mps2, std::max(0.0, last_mps2 - change) + kRounding) << k;
         break;
-      case Authority::kHuman:
+      case take_over::Authority::kHuman:
         ASSERT_EQ(command.acceleration_mps2, driven.human_mps2[k]) << k;
         break;
       default:
@@ -99,7 +101,7 @@ TEST_F(TakeOverLoopTest, KeepsTheRulesWhoeverComes) {
       const Driven driven = Drive(scenario);
       ExpectTheRules(scenario, driven);
       ASSERT_FALSE(HasFatalFailure()) << "seed " << seed;
-      for (const TakeOverRequest& request : driven.log.requests()) {
+      for (const take_over::TakeOverRequest& request : driven.log.requests()) {
         ++requests;
         if (request.manoeuvre) ++manoeuvres;
       }
@@ -143,14 +145,17 @@ TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
       const double easing = scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s;
       const double jerk = scenario.arbitrator.transfer.jerk_mps3 * scenario.step_s;
       for (std::size_t k = 1; k < driven.commands.size(); ++k) {
-        const Authority from = AuthorityOf(StateOf(driven.commands[k - 1].mode));
-        const Authority to = AuthorityOf(StateOf(driven.commands[k].mode));
-        const bool to_human = to == Authority::kHuman && from != Authority::kHuman;
-        const bool to_automation = to == Authority::kAutomation && from == Authority::kHuman;
+        const take_over::Authority from =
+            take_over::AuthorityOf(StateOf(driven.commands[k - 1].mode));
+        const take_over::Authority to = take_over::AuthorityOf(StateOf(driven.commands[k].mode));
+        const bool to_human =
+            to == take_over::Authority::kHuman && from != take_over::Authority::kHuman;
+        const bool to_automation =
+            to == take_over::Authority::kAutomation && from == take_over::Authority::kHuman;
         if (!to_human && !to_automation) continue;
         SCOPED_TRACE(testing::Message() << "profile " << static_cast<int>(profile) << ", seed "
                                         << seed << ", step " << k);
-        const bool ends_manoeuvre = to_human && from >= Authority::kComfort;
+        const bool ends_manoeuvre = to_human && from >= take_over::Authority::kComfort;
         const double before = driven.commands[k - 1].acceleration_mps2;
         const double eased = std::min(driven.automation_mps2[k], std::max(0.0, before - easing));
         const double old_offer = to_human ? eased : driven.human_mps2[k];
@@ -178,7 +183,7 @@ TEST_F(TakeOverLoopTest, StandsAtTheEndIfNobodyComes) {
   const Driven driven = Drive(scenario);
   ExpectTheRules(scenario, driven);
   ASSERT_EQ(driven.log.requests().size(), 1U);
-  const TakeOverRequest& request = driven.log.requests().front();
+  const take_over::TakeOverRequest& request = driven.log.requests().front();
   ASSERT_TRUE(request.manoeuvre && request.standstill);
   EXPECT_EQ(*request.manoeuvre - request.requested, 100) << "10 s, and nothing severe before";
   EXPECT_EQ(driven.commands.back().mode, arbitration_t::MRM_DONE);
@@ -187,9 +192,9 @@ TEST_F(TakeOverLoopTest, StandsAtTheEndIfNobodyComes) {
 
 TEST_F(TakeOverLoopTest, ChangesNothingWhereTheDriverIsAlwaysAtIt) {
   Scenario scenario = Paper();
-  ClosedLoop asked(scenario);
+  metrics::ClosedLoop asked(scenario);
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
-  ClosedLoop plain(scenario);
+  metrics::ClosedLoop plain(scenario);
   const std::string digest = DigestOf(plain);
   scenario.arbitrator.take_over.lead_s = 20;
   scenario.arbitrator.take_over.absent_probability = 1;

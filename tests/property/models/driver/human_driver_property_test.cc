@@ -12,16 +12,16 @@ constexpr std::int64_t kSituations = 5'000;
 
 double Between(double low, double high, double u) { return low + (high - low) * u; }
 
-Situation AnySituation(std::int64_t index) {
+models::Situation AnySituation(std::int64_t index) {
   const Random random(23, Stream::kRadar);
   const auto [v, a] = random.Uniform2(index, 0);
   const auto [s, l] = random.Uniform2(index, 1);
   const auto [lead_a, there] = random.Uniform2(index, 2);
-  Situation any{.speed_mps = 45 * v, .acceleration_mps2 = Between(-9, 3, a)};
+  models::Situation any{.speed_mps = 45 * v, .acceleration_mps2 = Between(-9, 3, a)};
   if (there < 0.9) {
-    any.ahead = CarAhead{.gap_m = Between(-1, 150, s),
-                         .speed_mps = 45 * l,
-                         .acceleration_mps2 = Between(-9, 3, lead_a)};
+    any.ahead = models::CarAhead{.gap_m = Between(-1, 150, s),
+                                 .speed_mps = 45 * l,
+                                 .acceleration_mps2 = Between(-9, 3, lead_a)};
   }
   return any;
 }
@@ -31,14 +31,15 @@ constexpr FollowingModel kModels[] = {FollowingModel::kIdm, FollowingModel::kIid
 
 TEST(HumanDriverProperty, WithoutErrorsAndReactionTimeIsTheModelExactly) {
   for (const FollowingModel kind : kModels) {
-    const Following model(kind, DriverSection{});
-    HumanDriver driver({.reaction_time_s = 0, .gap_error = 0, .approach_error_ps = 0}, model,
-                       Random(1, Stream::kHumanErrors), 0.1);
-    HumanDriver attentive({.reaction_time_s = 0}, model, Random(1, Stream::kHumanErrors), 0.1);
+    const models::Following model(kind, DriverSection{});
+    models::HumanDriver driver({.reaction_time_s = 0, .gap_error = 0, .approach_error_ps = 0},
+                               model, Random(1, Stream::kHumanErrors), 0.1);
+    models::HumanDriver attentive({.reaction_time_s = 0}, model, Random(1, Stream::kHumanErrors),
+                                  0.1);
     for (std::int64_t k = 0; k < kSituations; ++k) {
-      const Situation seen = AnySituation(k);
+      const models::Situation seen = AnySituation(k);
       ASSERT_EQ(driver.Step(k, seen), model.Acceleration(seen)) << k;
-      ASSERT_EQ(attentive.Step(k, seen, Attention{}), model.Acceleration(seen)) << k;
+      ASSERT_EQ(attentive.Step(k, seen, models::Attention{}), model.Acceleration(seen)) << k;
     }
   }
 }
@@ -46,7 +47,7 @@ TEST(HumanDriverProperty, WithoutErrorsAndReactionTimeIsTheModelExactly) {
 TEST(FollowingProperty, IsFiniteAndWithinItsLimitsEverywhere) {
   const DriverSection driver;
   for (const FollowingModel kind : kModels) {
-    const Following model(kind, driver);
+    const models::Following model(kind, driver);
     for (std::int64_t k = 0; k < kSituations; ++k) {
       const double acceleration = model.Acceleration(AnySituation(k));
       ASSERT_TRUE(std::isfinite(acceleration)) << k;
@@ -58,11 +59,11 @@ TEST(FollowingProperty, IsFiniteAndWithinItsLimitsEverywhere) {
 
 TEST(FollowingProperty, NeverBrakesHarderForMoreRoom) {
   for (const FollowingModel kind : {FollowingModel::kIdm, FollowingModel::kIidm}) {
-    const Following model(kind, DriverSection{});
+    const models::Following model(kind, DriverSection{});
     for (std::int64_t k = 0; k < kSituations; ++k) {
-      Situation near = AnySituation(k);
+      models::Situation near = AnySituation(k);
       if (!near.ahead) continue;
-      Situation far = near;
+      models::Situation far = near;
       far.ahead->gap_m += 5;
       ASSERT_LE(model.Acceleration(near), model.Acceleration(far) + 1e-12) << k;
     }

@@ -59,14 +59,14 @@ TEST(IdmPropertyTest, EquilibriumGapNeedsNoAcceleration) {
     const double ratio = std::pow(v / driver.desired_speed_mps, driver.exponent);
     const double gap = (driver.standstill_m + v * driver.headway_s) / std::sqrt(1 - ratio);
     // Terms of size 1 cancel; a_max scales the result.
-    ASSERT_NEAR(Idm(driver).Acceleration(v, v, gap), 0, 1e-14);
+    ASSERT_NEAR(models::Idm(driver).Acceleration(v, v, gap), 0, 1e-14);
   });
 }
 
 TEST(IdmPropertyTest, AccelerationIsFiniteAndBounded) {
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
     const double extreme = std::pow(10.0, Between(-300, 300, u));
-    const Idm idm(driver);
+    const models::Idm idm(driver);
     for (const Situation& x :
          {s, Situation{extreme, s.preceding_speed_mps, s.gap_m},
           Situation{s.speed_mps, extreme, s.gap_m}, Situation{s.speed_mps, -extreme, s.gap_m},
@@ -82,7 +82,7 @@ TEST(IdmPropertyTest, AccelerationIsFiniteAndBounded) {
 
 TEST(IdmPropertyTest, LargerGapNeverMeansLessAcceleration) {
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
-    const Idm idm(driver);
+    const models::Idm idm(driver);
     const double before = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m);
     const double after = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m * (1.1 + u));
     ASSERT_GE(after, before);
@@ -96,7 +96,7 @@ TEST(IdmPropertyTest, FasterDriverNeverAcceleratesMore) {
   // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not depend on the speed. Only the
   // free-road term does.
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
-    const Idm idm(driver);
+    const models::Idm idm(driver);
     const double slow = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m);
     const double fast = idm.Acceleration(s.speed_mps + 0.1 + u, s.preceding_speed_mps, s.gap_m);
     ASSERT_LE(fast, slow);
@@ -108,7 +108,7 @@ TEST(IdmPropertyTest, FasterDriverNeverAcceleratesMore) {
 
 TEST(IdmPropertyTest, FasterClosingNeverMeansMoreAcceleration) {
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
-    const Idm idm(driver);
+    const models::Idm idm(driver);
     ASSERT_LE(idm.Acceleration(s.speed_mps, s.preceding_speed_mps - 10 * u, s.gap_m),
               idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m));
   });

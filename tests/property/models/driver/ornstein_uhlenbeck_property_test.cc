@@ -24,7 +24,7 @@ Moments After(std::int64_t steps, double correlation_time_s, double step_s) {
   Moments m;
   for (std::int64_t i = 0; i < kProcesses; ++i) {
     const Random random(i, Stream::kHumanErrors);
-    OrnsteinUhlenbeck process(correlation_time_s, step_s);
+    models::OrnsteinUhlenbeck process(correlation_time_s, step_s);
     const double first = process.Step(random.Normal2(0, 0)[0]);
     double last = first;
     for (std::int64_t k = 1; k <= steps; ++k) last = process.Step(random.Normal2(k, 0)[0]);

@@ -14,7 +14,7 @@ constexpr double kAlpha = 1e-4;  // probability of a false alarm, on either side
 using Binomial = boost::math::binomial_distribution<>;
 
 void ExpectLateWithin(const TakeOverParameters& parameters, double lead_s) {
-  const TakeOverTime time(parameters, lead_s);
+  const models::TakeOverTime time(parameters, lead_s);
   const Random random(1, Stream::kTakeOver);
   std::int64_t late = 0;
   for (std::int64_t step = 0; step < kDraws; ++step) {
@@ -40,7 +40,7 @@ TEST(TakeOverTimeProperty, IsLateAsOftenAsItsParameterWithinTheBoundOfTenThousan
 }
 
 TEST(TakeOverTimeProperty, HasTheMeanAndDeviationAskedFor) {
-  const TakeOverTime time({.mean_s = 4.57, .std_s = 1.63}, 10);
+  const models::TakeOverTime time({.mean_s = 4.57, .std_s = 1.63}, 10);
   const Random random(2, Stream::kTakeOver);
   double sum = 0;
   double squares = 0;

@@ -54,9 +54,9 @@ struct Drive {
 
 // Drives a car as the world moves it until it stands, and checks the limits in every step.
 Drive DriveToRest(const Case& c, std::int64_t index) {
-  MinimalRisk manoeuvre(c.limits, c.step_s);
+  models::MinimalRisk manoeuvre(c.limits, c.step_s);
   manoeuvre.Begin(c.acceleration_mps2);
-  Motion motion{0, c.speed_mps};
+  models::Motion motion{0, c.speed_mps};
   const double change = c.limits.jerk_mps3 * c.step_s + kRounding;
   const double hardest = std::max(c.limits.deceleration_mps2, -c.acceleration_mps2) + kRounding;
   double last = c.acceleration_mps2;
@@ -75,7 +75,7 @@ Drive DriveToRest(const Case& c, std::int64_t index) {
     EXPECT_LE(std::abs(command - last), change) << "case " << index << " step " << k;
     EXPECT_GE(command, -hardest) << "case " << index << " step " << k;
     EXPECT_LE(command, std::max(c.acceleration_mps2, 0.0)) << index;
-    const Motion next = Advance(motion, command, c.step_s);
+    const models::Motion next = models::Advance(motion, command, c.step_s);
     EXPECT_GE(next.position_m, motion.position_m - kRounding) << index;
     const double before = applied;
     applied = (next.speed_mps - motion.speed_mps) / c.step_s;  // the mean over the step
@@ -115,12 +115,12 @@ TEST(MinimalRiskPropertyTest, EndsAsGentlyAsItBegins) {
 TEST(MinimalRiskPropertyTest, NeverDrivesOffAgain) {
   for (std::int64_t i = 0; i < 300; ++i) {
     const Case c = AnyCase(i);
-    MinimalRisk manoeuvre(c.limits, c.step_s);
+    models::MinimalRisk manoeuvre(c.limits, c.step_s);
     manoeuvre.Begin(c.acceleration_mps2);
-    Motion motion{0, c.speed_mps};
+    models::Motion motion{0, c.speed_mps};
     const auto most = static_cast<std::int64_t>(LongestTimeToRest(c) / c.step_s) + 1;
     for (std::int64_t k = 0; k < most; ++k) {
-      motion = Advance(motion, manoeuvre.Step(motion.speed_mps), c.step_s);
+      motion = models::Advance(motion, manoeuvre.Step(motion.speed_mps), c.step_s);
     }
     ASSERT_EQ(motion.speed_mps, 0) << i;
     for (int k = 0; k < 100; ++k) ASSERT_EQ(manoeuvre.Step(0), 0) << i;
@@ -132,7 +132,7 @@ TEST(MinimalRiskPropertyTest, KeepsItsLimitsUnderAnySpeeds) {
   const Random random(11, Stream::kLidar);
   for (std::int64_t i = 0; i < 300; ++i) {
     const Case c = AnyCase(i);
-    MinimalRisk manoeuvre(c.limits, c.step_s);
+    models::MinimalRisk manoeuvre(c.limits, c.step_s);
     manoeuvre.Begin(0);
     double last = 0;
     for (std::uint32_t k = 0; k < 200; ++k) {

@@ -18,19 +18,20 @@ constexpr std::int64_t kSteps = 300;
 
 double Between(double low, double high, double u) { return low + (high - low) * u; }
 
-VehicleParameters AnyVehicle(const Random& random, std::int64_t index) {
-  constexpr std::array<VehicleParameters, 3> kSets{kCompact, kSedan, kTruck};
+models::VehicleParameters AnyVehicle(const Random& random, std::int64_t index) {
+  constexpr std::array<models::VehicleParameters, 3> kSets{models::kCompact, models::kSedan,
+                                                           models::kTruck};
   const auto [set, _] = random.Uniform2(index, 0);
   return kSets[static_cast<std::size_t>(3 * set)];
 }
 
-GradeProfile AnyHill(const Random& random, std::int64_t index) {
+models::GradeProfile AnyHill(const Random& random, std::int64_t index) {
   const auto [a, b] = random.Uniform2(index, 1);
   const auto [c, d] = random.Uniform2(index, 2);
-  return GradeProfile({{0, Between(-0.1, 0.1, a)},
-                       {50, Between(-0.1, 0.1, b)},
-                       {90, Between(-0.1, 0.1, c)},
-                       {300, Between(-0.1, 0.1, d)}});
+  return models::GradeProfile({{0, Between(-0.1, 0.1, a)},
+                               {50, Between(-0.1, 0.1, b)},
+                               {90, Between(-0.1, 0.1, c)},
+                               {300, Between(-0.1, 0.1, d)}});
 }
 
 // Commands far beyond the abilities of any car. A command often stays the same for some steps.
@@ -46,14 +47,14 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
     const auto [v, t] = random.Uniform2(drive, 5);
     const double step_s = Between(0.02, 0.2, h);
     const double mu = Between(0.1, 1.0, f);
-    const VehicleParameters vehicle = AnyVehicle(random, drive);
-    const GradeProfile road = AnyHill(random, drive);
-    LongitudinalVehicle car(vehicle, mu, road, step_s);
-    Motion motion{0, 40 * v * v};
+    const models::VehicleParameters vehicle = AnyVehicle(random, drive);
+    const models::GradeProfile road = AnyHill(random, drive);
+    models::LongitudinalVehicle car(vehicle, mu, road, step_s);
+    models::Motion motion{0, 40 * v * v};
     car.Begin(motion, 0);
     for (std::int64_t step = 0; step < kSteps; ++step) {
       const double acceleration = car.Step(AnyCommand(random, drive, step), motion);
-      const Motion next = Advance(motion, acceleration, step_s);
+      const models::Motion next = models::Advance(motion, acceleration, step_s);
       ASSERT_GE(next.speed_mps, 0);
       ASSERT_GE(next.position_m, motion.position_m);
       const double path_m = next.position_m - motion.position_m;
@@ -69,15 +70,15 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       const double grade =
           std::min(road.GradeAt(motion.position_m), road.GradeAt(next.position_m)) - 5e-3 * path_m;
       const double height_j =
-          vehicle.mass_kg * kGravity_mps2 * path_m * grade / std::sqrt(1 + grade * grade);
+          vehicle.mass_kg * models::kGravity_mps2 * path_m * grade / std::sqrt(1 + grade * grade);
       ASSERT_LE(kinetic_j + height_j, engine_j + 1e-6) << "drive " << drive << " step " << step;
       // The tyres' limits. On a slope gravity may add to either limit.
-      const double slope_mps2 = kGravity_mps2 * 0.1;
-      const double drag_mps2 = 0.5 * kAirDensity_kgpm3 * vehicle.drag_coefficient *
+      const double slope_mps2 = models::kGravity_mps2 * 0.1;
+      const double drag_mps2 = 0.5 * models::kAirDensity_kgpm3 * vehicle.drag_coefficient *
                                vehicle.frontal_area_m2 * motion.speed_mps * motion.speed_mps /
                                vehicle.mass_kg;
-      ASSERT_GE(acceleration, -mu * kGravity_mps2 - slope_mps2 - drag_mps2 - 1e-9);
-      ASSERT_LE(acceleration, mu * kGravity_mps2 + slope_mps2);
+      ASSERT_GE(acceleration, -mu * models::kGravity_mps2 - slope_mps2 - drag_mps2 - 1e-9);
+      ASSERT_LE(acceleration, mu * models::kGravity_mps2 + slope_mps2);
       motion = next;
     }
   }
@@ -92,14 +93,15 @@ struct Error {
 };
 
 // The motion after 24 s over a hill.
-Motion DriveWith(const Commands& commands, double step_s) {
-  LongitudinalVehicle car(kSedan, 0.9, GradeProfile({{0, 0.0}, {800, 0.06}}), step_s);
-  Motion motion{0, 22};
+models::Motion DriveWith(const Commands& commands, double step_s) {
+  models::LongitudinalVehicle car(models::kSedan, 0.9,
+                                  models::GradeProfile({{0, 0.0}, {800, 0.06}}), step_s);
+  models::Motion motion{0, 22};
   car.Begin(motion, 0);
   const auto steps_each = static_cast<std::int64_t>(std::lround(4 / step_s));
   for (const double command : commands) {
     for (std::int64_t i = 0; i < steps_each; ++i) {
-      motion = Advance(motion, car.Step(command, motion), step_s);
+      motion = models::Advance(motion, car.Step(command, motion), step_s);
     }
   }
   return motion;
@@ -107,8 +109,8 @@ Motion DriveWith(const Commands& commands, double step_s) {
 
 // The error against a step of 1/640 s.
 Error ErrorOf(const Commands& commands, double step_s) {
-  const Motion reference = DriveWith(commands, 0.4 / 256);
-  const Motion motion = DriveWith(commands, step_s);
+  const models::Motion reference = DriveWith(commands, 0.4 / 256);
+  const models::Motion motion = DriveWith(commands, step_s);
   return {std::abs(motion.speed_mps - reference.speed_mps),
           std::abs(motion.position_m - reference.position_m)};
 }

@@ -28,11 +28,12 @@ class Cases {
 TEST(MotionProperty, SplittingAStepChangesNothing) {
   Cases cases;
   for (int i = 0; i < kCases; ++i) {
-    const Motion from{cases.Between(-1e3, 1e3), cases.Speed()};
+    const models::Motion from{cases.Between(-1e3, 1e3), cases.Speed()};
     const double a = cases.Acceleration();
     const double duration_s = cases.Duration();
-    const Motion whole = Advance(from, a, duration_s);
-    const Motion halves = Advance(Advance(from, a, duration_s / 2), a, duration_s / 2);
+    const models::Motion whole = models::Advance(from, a, duration_s);
+    const models::Motion halves =
+        models::Advance(models::Advance(from, a, duration_s / 2), a, duration_s / 2);
     // A few roundings of numbers up to 1e3, 1e-12 relative.
     EXPECT_NEAR(halves.position_m, whole.position_m, 1e-12 * 1e3);
     EXPECT_NEAR(halves.speed_mps, whole.speed_mps, 1e-12 * 60.0);
@@ -44,7 +45,7 @@ TEST(MotionProperty, WorkEqualsTheChangeOfEnergy) {
   for (int i = 0; i < kCases; ++i) {
     const double v = cases.Speed();
     const double a = cases.Acceleration();
-    const Motion to = Advance({0.0, v}, a, cases.Duration());
+    const models::Motion to = models::Advance({0.0, v}, a, cases.Duration());
     EXPECT_NEAR(a * to.position_m, 0.5 * (to.speed_mps * to.speed_mps - v * v),
                 1e-12 * (v * v + 1.0));
   }
@@ -53,9 +54,9 @@ TEST(MotionProperty, WorkEqualsTheChangeOfEnergy) {
 TEST(MotionProperty, SpeedIsNeverNegativeAndCarsNeverGoBackwards) {
   Cases cases;
   for (int i = 0; i < kCases; ++i) {
-    Motion car{0.0, cases.Speed()};
+    models::Motion car{0.0, cases.Speed()};
     for (int step = 0; step < 10; ++step) {
-      const Motion next = Advance(car, cases.Acceleration(), cases.Duration());
+      const models::Motion next = models::Advance(car, cases.Acceleration(), cases.Duration());
       ASSERT_GE(next.speed_mps, 0.0);
       ASSERT_GE(next.position_m, car.position_m);
       car = next;
@@ -74,10 +75,11 @@ TEST(ContactProperty, IsTheFirstMomentAtWhichTheGapIsClosed) {
     const double a_behind = cases.Acceleration();
     const double duration_s = cases.Between(0.1, 10.0);
     const auto gap_at = [&](double t) {
-      return gap_m + Advance({0.0, v_ahead}, a_ahead, t).position_m -
-             Advance({0.0, v_behind}, a_behind, t).position_m;
+      return gap_m + models::Advance({0.0, v_ahead}, a_ahead, t).position_m -
+             models::Advance({0.0, v_behind}, a_behind, t).position_m;
     };
-    const auto contact_s = TimeToContact(gap_m, v_ahead, a_ahead, v_behind, a_behind, duration_s);
+    const auto contact_s =
+        models::TimeToContact(gap_m, v_ahead, a_ahead, v_behind, a_behind, duration_s);
     const double open_until_s = contact_s.value_or(duration_s);
     if (contact_s) {
       ++contacts;

@@ -45,14 +45,15 @@ constexpr double kRounding = 1e-7;  // square roots of differences of squares
 constexpr double kBin_m = 0.5;      // binned measures promise nothing between multiples of it
 
 // The score after `steps` steps with this evidence.
-double After(const ConflictMeasureRow& row, int steps, const Evidence& evidence) {
+double After(const conflict::ConflictMeasureRow& row, int steps,
+             const conflict::Evidence& evidence) {
   const auto measure = row.make({});
   double score = 0;
   for (int i = 0; i < steps; ++i) score = measure->Step(evidence);
   return score;
 }
 
-std::vector<double> ScoresOfAnything(ConflictMeasure& measure) {
+std::vector<double> ScoresOfAnything(conflict::ConflictMeasure& measure) {
   const Random random(6, Stream::kRadar);
   std::vector<double> scores;
   for (int step = 0; step < 400; ++step) scores.push_back(measure.Step(Anything(random, step)));
@@ -60,7 +61,7 @@ std::vector<double> ScoresOfAnything(ConflictMeasure& measure) {
 }
 
 TEST(EveryMeasureTest, BeginsAgainAfterReset) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     const auto measure = row.make({});
     const std::vector<double> first = ScoresOfAnything(*measure);
@@ -70,17 +71,17 @@ TEST(EveryMeasureTest, BeginsAgainAfterReset) {
 }
 
 TEST(EveryMeasureTest, GivesEqualScoresForEqualEvidenceToTheBit) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     EXPECT_EQ(ScoresOfAnything(*row.make({})), ScoresOfAnything(*row.make({})));
   }
 }
 
 TEST(EveryMeasureTest, StaysInItsRangeWhateverComesUnderEveryRule) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     for (const auto rule : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
-      ConflictParameters parameters;
+      conflict::ConflictParameters parameters;
       parameters.missing = rule;
       for (const double score : ScoresOfAnything(*row.make(parameters))) {
         ASSERT_TRUE(std::isfinite(score));
@@ -92,7 +93,7 @@ TEST(EveryMeasureTest, StaysInItsRangeWhateverComesUnderEveryRule) {
 }
 
 TEST(EveryMeasureTest, GrowsAsTheLidarGetsShorter) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     double last = After(row, kSteps, LidarShortBy(0));
     for (double short_m = kBin_m; short_m <= 8; short_m += kBin_m) {
@@ -105,7 +106,7 @@ TEST(EveryMeasureTest, GrowsAsTheLidarGetsShorter) {
 }
 
 TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     for (double error_m = kBin_m; error_m <= 8; error_m += kBin_m) {
       const double longer = After(row, kSteps, LidarShortBy(-error_m));
@@ -122,7 +123,7 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
 }
 
 TEST(EveryMeasureTest, FindsConflictInEqualEvidenceOnlyIfItSaysSo) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     const double score = After(row, kSteps, LidarShortBy(0, 0.3, 0.3));
     if (ClaimsOf(row.name).zero_for_equal) {
@@ -134,7 +135,7 @@ TEST(EveryMeasureTest, FindsConflictInEqualEvidenceOnlyIfItSaysSo) {
 }
 
 TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
       // Only this measure treats a missing value as evidence, whatever the rule.
@@ -151,9 +152,9 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
 }
 
 TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.missing = MissingLidar::kConflict;
     const auto measure = row.make(parameters);
     const double before = measure->Step(LidarShortBy(0));
@@ -165,9 +166,9 @@ TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
 }
 
 TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.missing = MissingLidar::kSkip;
     const auto measure = row.make(parameters);
     // 0.1 m leaves lidar_modes clean. Only this measure finds a missing echo more suspicious than
@@ -179,12 +180,12 @@ TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
 }
 
 TEST(EveryMeasureTest, IsBlindToTheOffsetThatItWasToldOfUnlikeTheDoc) {
-  for (const ConflictMeasureRow& row : ConflictMeasures()) {
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     constexpr double kOffset_m = 0.5;
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.offset_m = kOffset_m;
-    Evidence evidence = LidarShortBy(1);
+    conflict::Evidence evidence = LidarShortBy(1);
     evidence.radar.range_m += kOffset_m;
     const double change = row.make(parameters)->Step(evidence) - After(row, 1, LidarShortBy(1));
     EXPECT_EQ(std::abs(change) > kRounding, row.name == "doc");
@@ -208,15 +209,15 @@ std::string ReadFile(const std::string& path) {
 }
 
 TEST(MeasureTableTest, HasNoNameTwiceAndNoCellEmpty) {
-  ExpectWhole(ConflictMeasures());
-  ExpectWhole(BlameMeasures());
+  ExpectWhole(conflict::ConflictMeasures());
+  ExpectWhole(conflict::BlameMeasures());
 }
 
 TEST(MeasureTableTest, FindsRowsByName) {
-  EXPECT_EQ(FindConflictMeasure("cusum")->name, "cusum");
-  EXPECT_EQ(FindBlameMeasure("deng")->name, "deng");
-  EXPECT_EQ(FindConflictMeasure("cusun"), nullptr);
-  EXPECT_EQ(FindBlameMeasure(""), nullptr);
+  EXPECT_EQ(conflict::FindConflictMeasure("cusum")->name, "cusum");
+  EXPECT_EQ(conflict::FindBlameMeasure("deng")->name, "deng");
+  EXPECT_EQ(conflict::FindConflictMeasure("cusun"), nullptr);
+  EXPECT_EQ(conflict::FindBlameMeasure(""), nullptr);
 }
 
 TEST(MeasureTableTest, IsTheTableOfTheReadme) {
@@ -227,8 +228,8 @@ TEST(MeasureTableTest, IsTheTableOfTheReadme) {
     const std::string line = readme.substr(row, readme.find('\n', row) - row);
     EXPECT_NE(line.find(source), std::string::npos) << name << ": " << source;
   };
-  for (const auto& row : ConflictMeasures()) expect_row(row.name, row.source);
-  for (const auto& row : BlameMeasures()) expect_row(row.name, row.source);
+  for (const auto& row : conflict::ConflictMeasures()) expect_row(row.name, row.source);
+  for (const auto& row : conflict::BlameMeasures()) expect_row(row.name, row.source);
 }
 
 }  // namespace

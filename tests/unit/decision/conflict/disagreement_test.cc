@@ -7,16 +7,16 @@
 namespace fogline {
 namespace {
 
-ConflictParameters With(MissingLidar rule) {
-  ConflictParameters parameters;
+conflict::ConflictParameters With(MissingLidar rule) {
+  conflict::ConflictParameters parameters;
   parameters.missing = rule;
   return parameters;
 }
 
 TEST(DisagreementTest, IsRadarLessLidarLessOffset) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.offset_m = 0.5;
-  DisagreementSource source(parameters);
+  conflict::DisagreementSource source(parameters);
   const auto disagreement = source.Next(LidarShortBy(2, 3, 4));
   ASSERT_TRUE(disagreement);
   EXPECT_EQ(disagreement->difference_m, 1.5);
@@ -25,15 +25,15 @@ TEST(DisagreementTest, IsRadarLessLidarLessOffset) {
 }
 
 TEST(DisagreementTest, HoldsNothingBeforeTheFirstMeasurement) {
-  DisagreementSource source(With(MissingLidar::kHold));
+  conflict::DisagreementSource source(With(MissingLidar::kHold));
   EXPECT_FALSE(source.Next(WithoutRadar(LidarShortBy(2))));
   EXPECT_TRUE(source.Next(LidarShortBy(2)));
   EXPECT_EQ(source.Next(WithoutRadar(LidarShortBy(9)))->difference_m, 2);
 }
 
 TEST(DisagreementTest, MissingValueAsConflictHasTheLastStatedPrecision) {
-  const ConflictParameters parameters = With(MissingLidar::kConflict);
-  DisagreementSource source(parameters);
+  const conflict::ConflictParameters parameters = With(MissingLidar::kConflict);
+  conflict::DisagreementSource source(parameters);
   source.Next(LidarShortBy(2, 3, 4));
   const auto disagreement = source.Next(WithoutLidar(LidarShortBy(2, 5, 6)));
   EXPECT_EQ(disagreement->difference_m, parameters.missing_conflict_m);
@@ -42,8 +42,8 @@ TEST(DisagreementTest, MissingValueAsConflictHasTheLastStatedPrecision) {
 }
 
 TEST(DisagreementTest, MissingValueAsConflictHasTheNominalPrecisionAtFirstAndAfterReset) {
-  const ConflictParameters parameters = With(MissingLidar::kConflict);
-  DisagreementSource source(parameters);
+  const conflict::ConflictParameters parameters = With(MissingLidar::kConflict);
+  conflict::DisagreementSource source(parameters);
   EXPECT_EQ(source.Next({})->radar_std_m, parameters.nominal_radar_std_m);
   source.Next(LidarShortBy(2, 3, 4));
   source.Reset();
@@ -52,8 +52,8 @@ TEST(DisagreementTest, MissingValueAsConflictHasTheNominalPrecisionAtFirstAndAft
 }
 
 TEST(DisagreementTest, PrecisionBelowTheSmallestCountsAsTheSmallest) {
-  const ConflictParameters parameters;
-  DisagreementSource source(parameters);
+  const conflict::ConflictParameters parameters;
+  conflict::DisagreementSource source(parameters);
   EXPECT_EQ(source.Next(LidarShortBy(2, 0, 0))->lidar_std_m, parameters.smallest_std_m);
 }
 

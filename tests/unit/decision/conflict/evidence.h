@@ -11,52 +11,52 @@ namespace fogline {
 inline constexpr double kRadarStd_m = 0.4;
 inline constexpr double kLidarStd_m = 0.05;
 
-inline Disagreement Differing(double difference_m, double radar_std_m = kRadarStd_m,
-                              double lidar_std_m = kLidarStd_m) {
+inline conflict::Disagreement Differing(double difference_m, double radar_std_m = kRadarStd_m,
+                                        double lidar_std_m = kLidarStd_m) {
   return {difference_m, radar_std_m, lidar_std_m};
 }
 
 // The radar and the prediction are at 0 m, where differences are exact. The LiDAR reads short by
 // `short_m`.
-inline Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
-                             double lidar_std_m = kLidarStd_m) {
+inline conflict::Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
+                                       double lidar_std_m = kLidarStd_m) {
   return {.radar = {true, 0, radar_std_m},
           .lidar = {true, -short_m, lidar_std_m},
           .prediction = {true, 0, 0.1}};
 }
 
 // The same difference, but the radar reads long.
-inline Evidence RadarLongBy(double long_m) {
+inline conflict::Evidence RadarLongBy(double long_m) {
   return {.radar = {true, long_m, kRadarStd_m},
           .lidar = {true, 0, kLidarStd_m},
           .prediction = {true, 0, 0.1}};
 }
 
-inline Evidence WithoutLidar(Evidence evidence) {
+inline conflict::Evidence WithoutLidar(conflict::Evidence evidence) {
   evidence.lidar = {};
   return evidence;
 }
 
-inline Evidence WithoutRadar(Evidence evidence) {
+inline conflict::Evidence WithoutRadar(conflict::Evidence evidence) {
   evidence.radar = {};
   return evidence;
 }
 
 // d is standard normal, plus a shift. The variance S of both sensors is 1 m2.
-inline Evidence UnitNoise(const Random& random, std::int64_t step, double shift_m = 0) {
+inline conflict::Evidence UnitNoise(const Random& random, std::int64_t step, double shift_m = 0) {
   return LidarShortBy(random.Normal2(step, 0)[0] + shift_m, 0.6, 0.8);
 }
 
 // Arbitrary evidence of sensors: each value is sometimes missing, ranges are up to 250 m, standard
 // deviations start at 0, and readings may be equal or not.
-inline Evidence Anything(const Random& random, std::int64_t step) {
+inline conflict::Evidence Anything(const Random& random, std::int64_t step) {
   const auto [where, near] = random.Uniform2(step, 0);
   const auto range = [&, place = where * 250, close = near < 0.7](std::uint32_t index) {
     const auto [there, deviation] = random.Uniform2(step, index);
     const auto [error, elsewhere] = random.Uniform2(step, index + 1);
     const double std_m = deviation < 0.05 ? 0 : 3 * deviation * deviation;
     const double range_m = close ? place + 4 * std_m * (error - 0.5) : 250 * elsewhere;
-    return StatedRange{there > 0.1, range_m, std_m};
+    return conflict::StatedRange{there > 0.1, range_m, std_m};
   };
   return {.radar = range(1), .lidar = range(3), .prediction = range(5)};
 }

@@ -6,7 +6,7 @@
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/conflict_parameters.h"
 
-namespace fogline {
+namespace fogline::conflict {
 
 /// max(0, radar - LiDAR)/radar, in [0, 1]. A missing value holds the last score.
 class Relative final : public ConflictMeasure {
@@ -26,4 +26,4 @@ class Relative final : public ConflictMeasure {
   double score_ = 0;
 };
 
-}  // namespace fogline
+}  // namespace fogline::conflict

@@ -13,12 +13,14 @@
 namespace fogline {
 namespace {
 
+using conflict::Relative;
+
 template <class Measure>
-std::unique_ptr<ConflictMeasure> Make(const ConflictParameters& parameters) {
+std::unique_ptr<conflict::ConflictMeasure> Make(const conflict::ConflictParameters& parameters) {
   return std::make_unique<Measure>(parameters);
 }
 
-constexpr ConflictMeasureRow kRow = {
+constexpr conflict::ConflictMeasureRow kRow = {
     "relative", "missing share of the radar's range", "ours", "[0, 1]", "holds", Make<Relative>};
 
 std::string ReadFile(const std::string& path) {

@@ -3,7 +3,7 @@
 
 #include "services/decision/policies/policy.h"
 
-namespace fogline {
+namespace fogline::policies {
 
 /// As `traded`; and whatever the DoC, the human drives while there is no track, or one whose
 /// distance has a standard deviation above 2 m.
@@ -18,4 +18,4 @@ class Cautious final : public EngagementPolicy {
   }
 };
 
-}  // namespace fogline
+}  // namespace fogline::policies

@@ -35,30 +35,32 @@ struct Situation {
   track_t track{};
   accel_command_t automation{};
   driver_command_t driver{};
-  Surroundings surroundings;
+  policies::Surroundings surroundings;
 
   Situation() {
     ego.speed_mps = 20;
     driver.readiness = 1;
   }
-  ArbitratorView View() const {
+  policies::ArbitratorView View() const {
     return {doc, threshold, lambda_human, ego, track, automation, driver, surroundings};
   }
 };
 
-EngagementRequest Decide(std::string_view policy, const Situation& situation,
-                         const Scenario& scenario = {}) {
-  return RowOf(FindPolicy(policy).value()).make(scenario)->Decide(situation.View());
+policies::EngagementRequest Decide(std::string_view policy, const Situation& situation,
+                                   const Scenario& scenario = {}) {
+  return policies::RowOf(policies::FindPolicy(policy).value())
+      .make(scenario)
+      ->Decide(situation.View());
 }
 
-SensorSelection SelectSensors(std::string_view policy, const FusionView& view,
-                              const Scenario& scenario = {}) {
-  return RowOf(FindPolicy(policy).value()).make(scenario)->SelectSensors(view);
+policies::SensorSelection SelectSensors(std::string_view policy, const policies::FusionView& view,
+                                        const Scenario& scenario = {}) {
+  return policies::RowOf(policies::FindPolicy(policy).value()).make(scenario)->SelectSensors(view);
 }
 
-constexpr SensorSelection kBoth{.radar = true, .lidar = true};
-constexpr SensorSelection kRadarAlone{.radar = true, .lidar = false};
-constexpr SensorSelection kLidarAlone{.radar = false, .lidar = true};
+constexpr policies::SensorSelection kBoth{.radar = true, .lidar = true};
+constexpr policies::SensorSelection kRadarAlone{.radar = true, .lidar = false};
+constexpr policies::SensorSelection kLidarAlone{.radar = false, .lidar = true};
 
 // ---- the table ----------------------------------------------------------------------------------
 
@@ -66,11 +68,11 @@ TEST(PoliciesTest, EveryRowIsAChoiceOfTheScenarioWithItsNameAndText) {
   const std::string schema = ScenarioSchema();
   const std::string explained = ExplainField("/arbitrator/policy");
   std::set<std::string_view> names;
-  for (const PolicyRow& row : Policies()) {
+  for (const policies::PolicyRow& row : policies::Policies()) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     const Scenario scenario = ParseScenario(WithPolicy(row.name), "test");
     EXPECT_EQ(&RowOf(scenario.arbitrator.policy), &row);
-    EXPECT_EQ(FindPolicy(row.name), scenario.arbitrator.policy);
+    EXPECT_EQ(policies::FindPolicy(row.name), scenario.arbitrator.policy);
     const std::string quoted = '"' + std::string(row.name) + '"';
     EXPECT_THAT(PrintScenario(scenario), HasSubstr("\"policy\": " + quoted));
     EXPECT_THAT(schema, HasSubstr(quoted));
@@ -94,7 +96,7 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
   // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
        {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
-    const PolicyRow& row = RowOf(FindPolicy(name).value());
+    const policies::PolicyRow& row = policies::RowOf(policies::FindPolicy(name).value());
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
     };
@@ -108,16 +110,16 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
 // For a policy with a simple rule, the arbitrator applies the rule and does not ask the policy.
 TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
   int simple = 0;
-  for (const PolicyRow& row : Policies()) {
-    if (row.rule == Rule::kOwn) continue;
+  for (const policies::PolicyRow& row : policies::Policies()) {
+    if (row.rule == policies::Rule::kOwn) continue;
     ++simple;
     const auto policy = row.make({});
     Situation situation;
     for (const double doc : {0.0, 0.3, std::nextafter(0.5, 0), 0.5, 0.9, 1.0}) {
       situation.doc = doc;
-      const EngagementRequest decided = policy->Decide(situation.View());
-      const EngagementRequest rule =
-          row.rule == Rule::kNever ? StayAutomated(0.5) : Compare(doc, 0.5);
+      const policies::EngagementRequest decided = policy->Decide(situation.View());
+      const policies::EngagementRequest rule =
+          row.rule == policies::Rule::kNever ? policies::StayAutomated(0.5) : Compare(doc, 0.5);
       EXPECT_EQ(decided.lambda_human, rule.lambda_human) << row.name << ' ' << doc;
       EXPECT_EQ(decided.threshold, rule.threshold) << row.name;
       EXPECT_EQ(decided.firm, rule.firm) << row.name;
@@ -127,7 +129,7 @@ TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
 }
 
 TEST(PoliciesTest, ThePapersIsTheDefault) {
-  EXPECT_EQ(RowOf(Scenario().arbitrator.policy).name, "traded");
+  EXPECT_EQ(policies::RowOf(Scenario().arbitrator.policy).name, "traded");
 }
 
 // ---- each policy --------------------------------------------------------------------------------
@@ -136,7 +138,7 @@ TEST(PoliciesTest, NoneIsolateAndOracleStayAutomatedWhateverTheConflict) {
   Situation situation;
   situation.doc = 1;
   for (const char* policy : {"none", "isolate", "oracle"}) {
-    const EngagementRequest wish = Decide(policy, situation);
+    const policies::EngagementRequest wish = Decide(policy, situation);
     EXPECT_EQ(wish.lambda_human, 0) << policy;
     EXPECT_EQ(wish.threshold, 0.5) << policy;
     EXPECT_TRUE(wish.firm) << policy;
@@ -156,7 +158,7 @@ TEST(PoliciesTest, BlendSharesInProportionToTheConflict) {
   Situation situation;
   for (const auto& [doc, lambda] : {std::pair{0.1, 0.0}, {0.2, 0.0}, {0.5, 0.5}, {0.9, 1.0}}) {
     situation.doc = doc;
-    const EngagementRequest wish = Decide("blend", situation);
+    const policies::EngagementRequest wish = Decide("blend", situation);
     EXPECT_NEAR(wish.lambda_human, lambda, 1e-15) << doc;
     EXPECT_EQ(wish.threshold, 0.5);
     EXPECT_TRUE(wish.firm);
@@ -214,18 +216,18 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
 TEST(TimeUntilHardBrakingTest, IsThatOfHandWorkedCases) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   // At 10 m/s and 3 m/s2 the last safe gap is 100/6 m. 50 m are 33.3 m more.
-  EXPECT_NEAR(TimeUntilHardBraking(50, 10, 0, 3), (50 - 100.0 / 6) / 10, 1e-12);
-  EXPECT_EQ(TimeUntilHardBraking(10, 10, 0, 3), 0) << "too near already";
-  EXPECT_EQ(TimeUntilHardBraking(0, -1, 0, 3), 0) << "touching";
-  EXPECT_EQ(TimeUntilHardBraking(50, 0, 0, 3), kNever);
-  EXPECT_EQ(TimeUntilHardBraking(50, -5, 0, 3), kNever);
+  EXPECT_NEAR(policies::TimeUntilHardBraking(50, 10, 0, 3), (50 - 100.0 / 6) / 10, 1e-12);
+  EXPECT_EQ(policies::TimeUntilHardBraking(10, 10, 0, 3), 0) << "too near already";
+  EXPECT_EQ(policies::TimeUntilHardBraking(0, -1, 0, 3), 0) << "touching";
+  EXPECT_EQ(policies::TimeUntilHardBraking(50, 0, 0, 3), kNever);
+  EXPECT_EQ(policies::TimeUntilHardBraking(50, -5, 0, 3), kNever);
 }
 
 TEST(TimeUntilHardBrakingTest, SolvesItsOwnEquation) {
   for (const double gap_m : {5.0, 30.0, 80.0}) {
     for (const double closing_mps : {-8.0, -1.0, 0.0, 1.0, 4.0}) {
       for (const double braking_mps2 : {0.1, 1.0, 3.0}) {
-        const double t = TimeUntilHardBraking(gap_m, closing_mps, braking_mps2, 3);
+        const double t = policies::TimeUntilHardBraking(gap_m, closing_mps, braking_mps2, 3);
         ASSERT_TRUE(std::isfinite(t));
         const double speed = closing_mps + braking_mps2 * t;
         const double gap = gap_m - closing_mps * t - braking_mps2 * t * t / 2;
@@ -262,11 +264,11 @@ TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
 
 // ---- in the fusion ------------------------------------------------------------------------------
 
-constexpr Evidence kLidarShort{
+constexpr conflict::Evidence kLidarShort{
     .radar = {true, 40, 0.1}, .lidar = {true, 4, 0.02}, .prediction = {true, 40.1, 0.05}};
-constexpr Evidence kRadarLong{
+constexpr conflict::Evidence kRadarLong{
     .radar = {true, 43, 0.1}, .lidar = {true, 40, 0.02}, .prediction = {true, 40, 0.05}};
-constexpr Evidence kAgreeing{
+constexpr conflict::Evidence kAgreeing{
     .radar = {true, 40.05, 0.1}, .lidar = {true, 40.01, 0.02}, .prediction = {true, 40, 0.05}};
 
 TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
@@ -280,7 +282,7 @@ TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
 // The fusion and the arbitrator each have an instance of the policy. Neither knows the decisions of
 // the other about the driver.
 TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
-  const auto policy = RowOf(FindPolicy("availability").value()).make({});
+  const auto policy = policies::RowOf(policies::FindPolicy("availability").value()).make({});
   Situation available;
   Situation late;
   late.surroundings = {.followed = true, .follower_gap_m = 5, .follower_speed_mps = 30};
@@ -292,22 +294,22 @@ TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
 }
 
 TEST(PoliciesTest, IsolateDropsNobodyWithoutAWitnessAndNeverBoth) {
-  Evidence alone = kLidarShort;
+  conflict::Evidence alone = kLidarShort;
   alone.prediction = {};
   EXPECT_EQ(SelectSensors("isolate", {alone, {}}), kBoth);
-  Evidence both_off = kLidarShort;
+  conflict::Evidence both_off = kLidarShort;
   both_off.radar.range_m = 80;
-  const SensorSelection trust = SelectSensors("isolate", {both_off, {}});
+  const policies::SensorSelection trust = SelectSensors("isolate", {both_off, {}});
   EXPECT_TRUE(trust.radar || trust.lidar);
 }
 
 TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
-  for (const BlameMeasureRow& row : BlameMeasures()) {
+  for (const conflict::BlameMeasureRow& row : conflict::BlameMeasures()) {
     Scenario scenario;
-    scenario.arbitrator.blame = static_cast<BlameChoice>(&row - BlameMeasures().data());
+    scenario.arbitrator.blame = static_cast<BlameChoice>(&row - conflict::BlameMeasures().data());
     scenario.arbitrator.blame_threshold = 0.6;
-    const auto policy = RowOf(FindPolicy("isolate").value()).make(scenario);
-    SensorSelection trust;
+    const auto policy = policies::RowOf(policies::FindPolicy("isolate").value()).make(scenario);
+    policies::SensorSelection trust;
     for (int i = 0; i < 5; ++i) trust = policy->SelectSensors({kLidarShort, {}});
     EXPECT_EQ(trust, kRadarAlone) << row.name;
   }
@@ -316,7 +318,7 @@ TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
 TEST(PoliciesTest, OracleTakesTheNearerToTheTruth) {
   EXPECT_EQ(SelectSensors("oracle", {kLidarShort, 40}), kRadarAlone);
   EXPECT_EQ(SelectSensors("oracle", {kLidarShort, 5}), kLidarAlone);
-  Evidence no_lidar = kLidarShort;
+  conflict::Evidence no_lidar = kLidarShort;
   no_lidar.lidar.valid = false;
   EXPECT_EQ(SelectSensors("oracle", {no_lidar, 5}), kBoth) << "there is no choice";
   EXPECT_EQ(SelectSensors("oracle", {kLidarShort, {}}), kBoth) << "nothing was heard";
@@ -324,8 +326,8 @@ TEST(PoliciesTest, OracleTakesTheNearerToTheTruth) {
 
 // ---- the example of the README ------------------------------------------------------------------
 
-constexpr PolicyRow kExample =
-    RowFor<Cautious>("cautious", "as traded, and while the track is uncertain");
+constexpr policies::PolicyRow kExample =
+    policies::RowFor<policies::Cautious>("cautious", "as traded, and while the track is uncertain");
 
 TEST(ExamplePolicyTest, IsAPolicyLikeAnyOther) {
   const auto policy = kExample.make({});

@@ -23,7 +23,7 @@ arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_m
   command.header.utime = step * 100'000;
   command.mode = mode;
   command.acceleration_mps2 = acceleration_mps2;
-  command.lambda_human = HumanDrives(mode) ? 1 : 0;
+  command.lambda_human = models::HumanDrives(mode) ? 1 : 0;
   return command;
 }
 
@@ -36,26 +36,26 @@ arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
 }
 
 /// Adds the command of a side that drives alone, so its offer is the command.
-void Add(TakeOverLog& log, const arbitration_t& command) {
+void Add(take_over::TakeOverLog& log, const arbitration_t& command) {
   log.Add(command, command.acceleration_mps2);
 }
 
-std::vector<std::int64_t> Transfers(const TakeOverLog& log) {
+std::vector<std::int64_t> Transfers(const take_over::TakeOverLog& log) {
   std::vector<std::int64_t> steps;
-  for (const TakeOverEntry& entry : log.entries()) {
+  for (const take_over::TakeOverEntry& entry : log.entries()) {
     if (entry.transfer) steps.push_back(entry.step);
   }
   return steps;
 }
 
-std::vector<std::string_view> Texts(const TakeOverLog& log) {
+std::vector<std::string_view> Texts(const take_over::TakeOverLog& log) {
   std::vector<std::string_view> texts;
-  for (const TakeOverEntry& entry : log.entries()) texts.push_back(entry.logged);
+  for (const take_over::TakeOverEntry& entry : log.entries()) texts.push_back(entry.logged);
   return texts;
 }
 
 TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::AUTOMATION, 0.3));
   Add(log, Command(1, arbitration_t::REQUEST));
   Add(log, Command(2, arbitration_t::REQUEST_URGENT));
@@ -70,13 +70,13 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
                                       "return to automation"));
   EXPECT_THAT(
       log.requests(),
-      ElementsAre(TakeOverRequest{
+      ElementsAre(take_over::TakeOverRequest{
           .requested = 1, .escalated = 2, .acknowledged = 3, .transferred = 4, .effective = 5}));
   EXPECT_EQ(log.entries()[5].utime, 500'000);
 }
 
 TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
   Add(log, Command(1, arbitration_t::MRM_COMFORT));
   Add(log, Command(2, arbitration_t::MRM_EMERGENCY));
@@ -84,12 +84,12 @@ TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
   EXPECT_THAT(Texts(log),
               ElementsAre("activation of the automation", "request to take over",
                           "comfortable manoeuvre", "emergency manoeuvre", "standstill, locked"));
-  EXPECT_THAT(log.requests(),
-              ElementsAre(TakeOverRequest{.requested = 0, .manoeuvre = 1, .standstill = 3}));
+  EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{
+                                  .requested = 0, .manoeuvre = 1, .standstill = 3}));
 }
 
 TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::AUTOMATION, 1));
   Add(log, Command(1, arbitration_t::HUMAN, 1));
   Add(log, Command(2, arbitration_t::HUMAN, 1.5));
@@ -102,16 +102,16 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
 }
 
 TEST(TakeOverLogTest, DoesNotCountAnInputOfADriverWhomNobodyAskedForTheLastRequest) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
   Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed
   Add(log, Command(2, arbitration_t::HUMAN, 2));
-  EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0}));
+  EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{.requested = 0}));
   EXPECT_THAT(log.entries(), SizeIs(4));
 }
 
 TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST, 0.3));
   Add(log, Command(1, arbitration_t::HANDOVER, 0.3));
   log.Add(Shared(2, arbitration_t::RECOVERING, 0.4, 0.3), 0.3);
@@ -126,30 +126,31 @@ TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) 
                           "return to automation"));
   EXPECT_THAT(Transfers(log), ElementsAre(3, 6));
   EXPECT_THAT(log.requests(),
-              ElementsAre(TakeOverRequest{
+              ElementsAre(take_over::TakeOverRequest{
                   .requested = 0, .acknowledged = 1, .transferred = 3, .effective = 4}));
 }
 
 TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithoutAShare) {
-  TakeOverLog log;
+  take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
   Add(log, Command(1, arbitration_t::HANDOVER));
   log.Add(Shared(2, arbitration_t::RECOVERING, 0, -2), 1);
   log.Add(Shared(3, arbitration_t::RECOVERING, 0.1, -3), 0.09);
   log.Add(Shared(4, arbitration_t::HUMAN, 0.1, -3), std::nullopt);
   EXPECT_THAT(Transfers(log), IsEmpty());
-  EXPECT_THAT(log.requests(), ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1}));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(take_over::TakeOverRequest{.requested = 0, .acknowledged = 1}));
   // With a tenth of the authority, a change of the offer counts by a tenth.
   log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
-  EXPECT_THAT(log.requests(),
-              ElementsAre(TakeOverRequest{.requested = 0, .acknowledged = 1, .effective = 5}));
+  EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{
+                                  .requested = 0, .acknowledged = 1, .effective = 5}));
   EXPECT_THAT(Transfers(log), IsEmpty());
 }
 
 TEST(TakeOverLogTest, GivesAModeThatIsNoneANameOfItsOwn) {
-  EXPECT_EQ(NameOfMode(arbitration_t::MINIMAL_RISK), "MINIMAL_RISK");
-  EXPECT_EQ(NameOfMode(arbitration_t::HUMAN), "MANUAL");
-  EXPECT_EQ(NameOfMode(77), "UNKNOWN");
+  EXPECT_EQ(take_over::NameOfMode(arbitration_t::MINIMAL_RISK), "MINIMAL_RISK");
+  EXPECT_EQ(take_over::NameOfMode(arbitration_t::HUMAN), "MANUAL");
+  EXPECT_EQ(take_over::NameOfMode(77), "UNKNOWN");
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace fogline {
 namespace {
 
-using enum TakeOverState;
-using Change = std::pair<TakeOverState, TakeOverState>;
+using enum take_over::TakeOverState;
+using Change = std::pair<take_over::TakeOverState, take_over::TakeOverState>;
 
 constexpr unsigned kEventSets = 1U << 10;
 
@@ -26,34 +26,37 @@ const std::set<Change> kChanges{
 
 TEST(TakeOverTableTest, HasTheseChangesOfStateAndNoOtherWhateverHappens) {
   std::set<Change> seen;
-  std::set<const TakeOverRow*> taken;
-  for (const TakeOverStateInfo& info : kTakeOverStates) {
+  std::set<const take_over::TakeOverRow*> taken;
+  for (const take_over::TakeOverStateInfo& info : take_over::kTakeOverStates) {
     for (unsigned events = 0; events < kEventSets; ++events) {
       for (const bool manoeuvred : {false, true}) {
-        const TakeOverRow* row =
-            TakeOverRowOf(info.state, static_cast<TakeOverEvents>(events), manoeuvred);
+        const take_over::TakeOverRow* row = take_over::TakeOverRowOf(
+            info.state, static_cast<take_over::TakeOverEvents>(events), manoeuvred);
         if (row == nullptr) continue;
         ASSERT_EQ(row->state, info.state);
-        ASSERT_NE(events & Bit(row->event), 0U);
+        ASSERT_NE(events & take_over::Bit(row->event), 0U);
         seen.emplace(row->state, row->next);
         taken.insert(row);
       }
     }
   }
   EXPECT_EQ(seen, kChanges);
-  EXPECT_EQ(taken.size(), kTakeOverTable.size()) << "a row that nothing leads to";
+  EXPECT_EQ(taken.size(), take_over::kTakeOverTable.size()) << "a row that nothing leads to";
 }
 
 TEST(TakeOverTableTest, NeverLeavesTheLock) {
   for (unsigned events = 0; events < kEventSets; ++events) {
-    EXPECT_EQ(TakeOverRowOf(kMrmDone, static_cast<TakeOverEvents>(events), true), nullptr);
+    EXPECT_EQ(
+        take_over::TakeOverRowOf(kMrmDone, static_cast<take_over::TakeOverEvents>(events), true),
+        nullptr);
   }
 }
 
 TEST(TakeOverTableTest, NeverReturnsToTheAutomationAfterAManoeuvre) {
-  for (const TakeOverStateInfo& info : kTakeOverStates) {
+  for (const take_over::TakeOverStateInfo& info : take_over::kTakeOverStates) {
     for (unsigned events = 0; events < kEventSets; ++events) {
-      const TakeOverRow* row = TakeOverRowOf(info.state, static_cast<TakeOverEvents>(events), true);
+      const take_over::TakeOverRow* row = take_over::TakeOverRowOf(
+          info.state, static_cast<take_over::TakeOverEvents>(events), true);
       EXPECT_TRUE(row == nullptr || row->next != kAutomated);
     }
   }
@@ -62,15 +65,15 @@ TEST(TakeOverTableTest, NeverReturnsToTheAutomationAfterAManoeuvre) {
 TEST(TakeOverTableTest, GivesEachStateAModeOfItsOwnAndThePapersTheirs) {
   std::set<std::int8_t> modes;
   std::set<std::string_view> names;
-  for (const TakeOverStateInfo& info : kTakeOverStates) {
+  for (const take_over::TakeOverStateInfo& info : take_over::kTakeOverStates) {
     modes.insert(info.mode);
     names.insert(info.name);
     EXPECT_NE(info.mode, arbitration_t::MINIMAL_RISK) << "failed inputs are another matter";
   }
-  EXPECT_EQ(modes.size(), kTakeOverStates.size());
-  EXPECT_EQ(names.size(), kTakeOverStates.size());
-  EXPECT_EQ(InfoOf(kAutomated).mode, 0);
-  EXPECT_EQ(InfoOf(kManual).mode, 1);
+  EXPECT_EQ(modes.size(), take_over::kTakeOverStates.size());
+  EXPECT_EQ(names.size(), take_over::kTakeOverStates.size());
+  EXPECT_EQ(take_over::InfoOf(kAutomated).mode, 0);
+  EXPECT_EQ(take_over::InfoOf(kManual).mode, 1);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace fogline {
 namespace {
 
-using enum TakeOverState;
+using enum take_over::TakeOverState;
 
 constexpr double kStep_s = 0.1;
 
@@ -42,9 +42,9 @@ class TakeOverTest : public testing::Test {
  protected:
   void Begin(const Scenario& scenario) { take_over_.emplace(scenario); }
 
-  const TakeOverOutcome& Step() {
+  const take_over::TakeOverOutcome& Step() {
     inputs_.track = &track_;
-    const TakeOverOutcome& out = take_over_->Step(Header(step_++), inputs_);
+    const take_over::TakeOverOutcome& out = take_over_->Step(Header(step_++), inputs_);
     inputs_.applied_mps2 = out.acceleration_mps2;
     if (brakes_) {
       inputs_.speed_mps = std::max(0.0, inputs_.speed_mps + kStep_s * out.acceleration_mps2);
@@ -53,12 +53,12 @@ class TakeOverTest : public testing::Test {
   }
 
   /// Steps until the state changes, or until this time. @return seconds since the start of the run
-  double StepWhile(TakeOverState state, double limit_s = 100) {
+  double StepWhile(take_over::TakeOverState state, double limit_s = 100) {
     while (take_over_->outcome().state == state && Now() < limit_s) Step();
     return Now();
   }
 
-  TakeOverState state() const { return take_over_->outcome().state; }
+  take_over::TakeOverState state() const { return take_over_->outcome().state; }
   double Now() const { return static_cast<double>(step_ - 1) * kStep_s; }
 
   static header_t Header(std::int64_t step) {
@@ -67,12 +67,12 @@ class TakeOverTest : public testing::Test {
     return header;
   }
 
-  std::optional<TakeOver> take_over_;
-  TakeOverInputs inputs_{.human_wanted = true,
-                         .automation_mps2 = 0.5,
-                         .human_mps2 = -0.7,
-                         .readiness = 1,
-                         .speed_mps = 20};
+  std::optional<take_over::TakeOver> take_over_;
+  take_over::TakeOverInputs inputs_{.human_wanted = true,
+                                    .automation_mps2 = 0.5,
+                                    .human_mps2 = -0.7,
+                                    .readiness = 1,
+                                    .speed_mps = 20};
   track_t track_ = Ahead(50, 0);
   bool brakes_ = true;
   std::int64_t step_ = 0;
@@ -83,7 +83,7 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(Step().state, kDemand);
   EXPECT_NEAR(StepWhile(kDemand), 2.0, 1.5 * kStep_s);
   EXPECT_EQ(state(), kHandover);
-  const TakeOverOutcome& out = Step();
+  const take_over::TakeOverOutcome& out = Step();
   EXPECT_EQ(out.state, kRecovering);
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
@@ -95,7 +95,7 @@ TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   for (int k = 0; k < 5; ++k) Step();
   inputs_.human_wanted = true;
   while (step_ < 32) Step();
-  const TakeOverRequest& request = *take_over_->request();
+  const take_over::TakeOverRequest& request = *take_over_->request();
   EXPECT_EQ(request.requested, 5);
   EXPECT_EQ(request.acknowledged, 26);
   EXPECT_EQ(request.transferred, 27);
@@ -131,7 +131,7 @@ TEST_F(TakeOverTest, StaysLockedInStandstillWhoeverComes) {
   inputs_.human_wanted = false;
   inputs_.human_mps2 = 2;
   for (int k = 0; k < 1000; ++k) {
-    const TakeOverOutcome& out = Step();
+    const take_over::TakeOverOutcome& out = Step();
     ASSERT_EQ(out.state, kMrmDone);
     ASSERT_LE(out.acceleration_mps2, 0);
   }
@@ -165,7 +165,7 @@ TEST_F(TakeOverTest, WithoutARequestLeavesANearCollisionToTheAutomation) {
   inputs_.human_wanted = false;
   track_ = Ahead(5, 10);
   inputs_.automation_mps2 = -5;
-  const TakeOverOutcome& out = Step();
+  const take_over::TakeOverOutcome& out = Step();
   EXPECT_EQ(out.state, kAutomated);
   EXPECT_EQ(out.acceleration_mps2, -5);
 }
@@ -220,7 +220,7 @@ TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndTheWishIs
   inputs_.human_wanted = false;
   EXPECT_NEAR(StepWhile(kRecovering), transfer_s + 5, 1e-9);
   EXPECT_EQ(state(), kManual);
-  const TakeOverOutcome& out = Step();
+  const take_over::TakeOverOutcome& out = Step();
   EXPECT_EQ(out.state, kAutomated);
   EXPECT_EQ(out.acceleration_mps2, 0.5);
 }

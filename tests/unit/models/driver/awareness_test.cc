@@ -9,29 +9,29 @@ namespace fogline {
 namespace {
 
 TEST(AwarenessTest, IsRecoveredFiveSecondsAfterItWasHalf) {
-  Awareness awareness({}, 0.5);
-  for (int i = 0; i < 49; ++i) awareness.Step(DriverTask::kDrives, 0.1);
+  models::Awareness awareness({}, 0.5);
+  for (int i = 0; i < 49; ++i) awareness.Step(models::DriverTask::kDrives, 0.1);
   EXPECT_LT(awareness.awareness(), 1);
-  awareness.Step(DriverTask::kDrives, 0.1 + 1e-9);
+  awareness.Step(models::DriverTask::kDrives, 0.1 + 1e-9);
   EXPECT_EQ(awareness.awareness(), 1);
-  EXPECT_EQ(awareness.Step(DriverTask::kDrives, 1), 1);
+  EXPECT_EQ(awareness.Step(models::DriverTask::kDrives, 1), 1);
 }
 
 TEST(AwarenessTest, FadesTowardsMonitoringWithItsTimeConstant) {
-  Awareness coarse({}, 1.0);
-  coarse.Step(DriverTask::kMonitors, 60);
+  models::Awareness coarse({}, 1.0);
+  coarse.Step(models::DriverTask::kMonitors, 60);
   EXPECT_NEAR(coarse.awareness(), 0.5 + 0.5 * std::exp(-1), 1e-12);
-  Awareness fine({}, 1.0);
-  for (int i = 0; i < 600; ++i) fine.Step(DriverTask::kMonitors, 0.1);
+  models::Awareness fine({}, 1.0);
+  for (int i = 0; i < 600; ++i) fine.Step(models::DriverTask::kMonitors, 0.1);
   EXPECT_NEAR(fine.awareness(), coarse.awareness(), 1e-12);
 }
 
 TEST(AwarenessTest, MakesErrorsAndReactionTimesOfWhatIsMissing) {
-  const Awareness aware({}, 1.0);
+  const models::Awareness aware({}, 1.0);
   EXPECT_EQ(aware.ReactionTime_s(), 0.8);
   EXPECT_EQ(aware.GapError(), 0);
   EXPECT_EQ(aware.ApproachError_ps(), 0);
-  const Awareness half({}, 0.5);
+  const models::Awareness half({}, 0.5);
   EXPECT_NEAR(half.ReactionTime_s(), 1.15, 1e-12);
   EXPECT_NEAR(half.GapError(), 0.075, 1e-12);          // 0.75 * 0.2 * 0.5
   EXPECT_NEAR(half.ApproachError_ps(), 0.015, 1e-12);  // 0.15 * 0.2 * 0.5
@@ -40,7 +40,7 @@ TEST(AwarenessTest, MakesErrorsAndReactionTimesOfWhatIsMissing) {
 TEST(AwarenessTest, RefusesATimeConstantOfNothing) {
   AwarenessParameters p;
   p.fading_s = 0;
-  EXPECT_THROW(Awareness{p}, std::invalid_argument);
+  EXPECT_THROW(models::Awareness{p}, std::invalid_argument);
 }
 
 }  // namespace

@@ -11,17 +11,18 @@ namespace {
 
 constexpr double kClearAir = std::numeric_limits<double>::infinity();
 
-Situation Behind(double speed_mps, double gap_m, double lead_mps) {
-  return {.speed_mps = speed_mps,
-          .ahead = CarAhead{.gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = -1}};
+models::Situation Behind(double speed_mps, double gap_m, double lead_mps) {
+  return {
+      .speed_mps = speed_mps,
+      .ahead = models::CarAhead{.gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = -1}};
 }
 
 TEST(FogSightTest, SeesABlackOutlineAsFarAsTheVisibilityAndAGreyOneLess) {
   FogSightParameters black;
   black.contrast = 1;
-  EXPECT_NEAR(FogSight(black).OutlineRange(50), 50, 1e-9);
+  EXPECT_NEAR(models::FogSight(black).OutlineRange(50), 50, 1e-9);
   // ln 10 / ln 20 = 0.769.
-  EXPECT_NEAR(FogSight(FogSightParameters{}).OutlineRange(50), 0.7686 * 50, 0.005);
+  EXPECT_NEAR(models::FogSight(FogSightParameters{}).OutlineRange(50), 0.7686 * 50, 0.005);
 }
 
 struct Lamp {
@@ -38,7 +39,7 @@ TEST(FogSightTest, SeesLampsAsFarAsAllardSays) {
     FogSightParameters p;
     p.lamp_intensity_cd = lamp.intensity_cd;
     p.illuminance_threshold_lx = lamp.threshold_lx;
-    EXPECT_NEAR(FogSight(p).LampRange(50), lamp.range_m, 0.5)
+    EXPECT_NEAR(models::FogSight(p).LampRange(50), lamp.range_m, 0.5)
         << lamp.intensity_cd << " cd, " << lamp.threshold_lx << " lx";
   }
 }
@@ -46,7 +47,7 @@ TEST(FogSightTest, SeesLampsAsFarAsAllardSays) {
 TEST(FogSightTest, FulfilsAllardsLawAtTheRange) {
   const FogSightParameters p;
   for (const double visibility_m : {20.0, 50.0, 300.0, 5000.0}) {
-    const double d = FogSight(p).LampRange(visibility_m);
+    const double d = models::FogSight(p).LampRange(visibility_m);
     EXPECT_NEAR(p.lamp_intensity_cd * std::exp(-std::log(20) / visibility_m * d) / (d * d) /
                     p.illuminance_threshold_lx,
                 1, 1e-9);
@@ -54,18 +55,18 @@ TEST(FogSightTest, FulfilsAllardsLawAtTheRange) {
 }
 
 TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
-  const FogSight sight{FogSightParameters{}};
+  const models::FogSight sight{FogSightParameters{}};
   EXPECT_EQ(sight.OutlineRange(kClearAir), kClearAir);
   EXPECT_NEAR(sight.LampRange(kClearAir), std::sqrt(5 / 1e-4), 1e-9);
-  const Situation perceived = sight.Perceive(Behind(20, 60, 15), kClearAir);
+  const models::Situation perceived = sight.Perceive(Behind(20, 60, 15), kClearAir);
   EXPECT_EQ(perceived.ahead->gap_m, 60);
 }
 
 TEST(FogSightTest, LosesOutlineThenLamps) {
-  const FogSight sight{FogSightParameters{}};  // its two ranges at 50 m: 38.4 m and 50 m
-  EXPECT_EQ(sight.At(38, 50), Seen::kOutline);
-  EXPECT_EQ(sight.At(39, 50), Seen::kLamps);
-  EXPECT_EQ(sight.At(51, 50), Seen::kNothing);
+  const models::FogSight sight{FogSightParameters{}};  // its two ranges at 50 m: 38.4 m and 50 m
+  EXPECT_EQ(sight.At(38, 50), models::Seen::kOutline);
+  EXPECT_EQ(sight.At(39, 50), models::Seen::kLamps);
+  EXPECT_EQ(sight.At(51, 50), models::Seen::kNothing);
   EXPECT_FALSE(sight.Perceive(Behind(20, 51, 10), 50).ahead.has_value());
   EXPECT_EQ(sight.Perceive(Behind(20, 51, 10), 50).speed_mps, 20);
 }
@@ -73,7 +74,7 @@ TEST(FogSightTest, LosesOutlineThenLamps) {
 TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
   FogSightParameters p;
   p.lamp_distance_factor = 1.4;
-  const FogSight sight(p);
+  const models::FogSight sight(p);
   const double outline_m = sight.OutlineRange(50);
   const auto factor = [&](double gap_m) {
     return sight.Perceive(Behind(20, gap_m, 10), 50).ahead->gap_m / gap_m;
@@ -85,7 +86,7 @@ TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
 }
 
 TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
-  const FogSight sight{FogSightParameters{}};
+  const models::FogSight sight{FogSightParameters{}};
   // 1.8 dv / 30^2 = 0.003 at dv = 1.5 m/s.
   EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->speed_mps, 20);
   EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->acceleration_mps2, 0);
@@ -98,20 +99,21 @@ TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
 }
 
 TEST(FogSightTest, LeavesAFreeRoadFree) {
-  EXPECT_FALSE(FogSight(FogSightParameters{}).Perceive({.speed_mps = 20}, 50).ahead.has_value());
+  EXPECT_FALSE(
+      models::FogSight(FogSightParameters{}).Perceive({.speed_mps = 20}, 50).ahead.has_value());
 }
 
 TEST(FogSightTest, GivesTheSpeedFromWhichACarStopsWithinSight) {
   // tau = 1 s, b = 3 m/s2.
-  EXPECT_NEAR(SpeedForSightDistance(50, 1, 3), 14.6, 0.05);
-  EXPECT_NEAR(SpeedForSightDistance(100, 1, 3), 21.7, 0.05);
-  EXPECT_NEAR(SpeedForSightDistance(200, 1, 3), 31.8, 0.05);
+  EXPECT_NEAR(models::SpeedForSightDistance(50, 1, 3), 14.6, 0.05);
+  EXPECT_NEAR(models::SpeedForSightDistance(100, 1, 3), 21.7, 0.05);
+  EXPECT_NEAR(models::SpeedForSightDistance(200, 1, 3), 31.8, 0.05);
 }
 
 TEST(FogSightTest, RefusesAContrastBelowItsThreshold) {
   FogSightParameters p;
   p.contrast = 0.04;
-  EXPECT_THROW(FogSight{p}, std::invalid_argument);
+  EXPECT_THROW(models::FogSight{p}, std::invalid_argument);
 }
 
 }  // namespace

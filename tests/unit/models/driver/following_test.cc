@@ -10,28 +10,29 @@ namespace {
 
 constexpr double kNear = 1e-12;  // some roundings of values around 1
 
-Situation Behind(double speed_mps, double gap_m, double lead_mps, double lead_mps2 = 0) {
+models::Situation Behind(double speed_mps, double gap_m, double lead_mps, double lead_mps2 = 0) {
   return {.speed_mps = speed_mps,
-          .ahead = CarAhead{.gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = lead_mps2}};
+          .ahead = models::CarAhead{
+              .gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = lead_mps2}};
 }
 
 TEST(FollowingTest, IsTheDriversOwnIdm) {
   const DriverSection driver;
-  const Following idm(FollowingModel::kIdm, driver);
-  EXPECT_EQ(idm.Acceleration(Behind(20, 40, 18)), Idm(driver).Acceleration(20, 18, 40));
-  EXPECT_EQ(idm.Acceleration({.speed_mps = 20}), Idm(driver).Acceleration(20, 20, 1e300));
+  const models::Following idm(FollowingModel::kIdm, driver);
+  EXPECT_EQ(idm.Acceleration(Behind(20, 40, 18)), models::Idm(driver).Acceleration(20, 18, 40));
+  EXPECT_EQ(idm.Acceleration({.speed_mps = 20}), models::Idm(driver).Acceleration(20, 20, 1e300));
 }
 
 TEST(FollowingTest, IidmKeepsExactlyStandstillGapAndHeadway) {
   const DriverSection driver;
-  const Following iidm(FollowingModel::kIidm, driver);
+  const models::Following iidm(FollowingModel::kIidm, driver);
   for (const double v : {0.0, 1.0, 10.0, 20.0, 33.0}) {
     const double gap_m = driver.standstill_m + v * driver.headway_s;
     EXPECT_EQ(iidm.Acceleration(Behind(v, gap_m, v)), 0) << v;
     EXPECT_GT(iidm.Acceleration(Behind(v, 1.01 * gap_m, v)), 0) << v;
     EXPECT_LT(iidm.Acceleration(Behind(v, 0.99 * gap_m, v)), 0) << v;
     // At the same gap the IDM still wants more room.
-    const Following idm(FollowingModel::kIdm, driver);
+    const models::Following idm(FollowingModel::kIdm, driver);
     if (v > 0) {
       EXPECT_LT(idm.Acceleration(Behind(v, gap_m, v)), 0) << v;
     }
@@ -46,7 +47,7 @@ TEST(FollowingTest, IidmIsAsWorkedByHand) {
   driver.headway_s = 1;
   driver.standstill_m = 2;
   driver.exponent = 4;
-  const Following iidm(FollowingModel::kIidm, driver);
+  const models::Following iidm(FollowingModel::kIidm, driver);
   // s* = 12 m, so z = 2: 1 - 4.
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 6, 10)), -3, kNear);
   // z = 1/2, a_free = 1 - 1/16 = 15/16: 15/16 (1 - 2^(-32/15)).
@@ -59,11 +60,11 @@ TEST(FollowingTest, IidmIsAsWorkedByHand) {
 
 TEST(FollowingTest, AccIdmWithoutCoolnessIsTheIidm) {
   const DriverSection driver;
-  const Following iidm(FollowingModel::kIidm, driver);
-  const Following acc(FollowingModel::kAccIdm, driver, 0);
+  const models::Following iidm(FollowingModel::kIidm, driver);
+  const models::Following acc(FollowingModel::kAccIdm, driver, 0);
   for (const double gap_m : {1.0, 10.0, 30.0, 200.0}) {
     for (const double lead_mps : {0.0, 15.0, 25.0}) {
-      const Situation seen = Behind(20, gap_m, lead_mps, -1);
+      const models::Situation seen = Behind(20, gap_m, lead_mps, -1);
       EXPECT_EQ(acc.Acceleration(seen), iidm.Acceleration(seen));
     }
   }
@@ -74,12 +75,12 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
   DriverSection driver;
   driver.max_acceleration_mps2 = 1;
   driver.comfortable_deceleration_mps2 = 2;
-  const Situation cut_in = Behind(20, 6, 22);
-  const double improved = Following(FollowingModel::kIidm, driver).Acceleration(cut_in);
+  const models::Situation cut_in = Behind(20, 6, 22);
+  const double improved = models::Following(FollowingModel::kIidm, driver).Acceleration(cut_in);
   ASSERT_LT(improved, -5);
   // THEN a_CAH is 0, as for any steady faster car ahead, and b limits the reaction
   for (const double c : {0.5, 0.99, 1.0}) {
-    EXPECT_NEAR(Following(FollowingModel::kAccIdm, driver, c).Acceleration(cut_in),
+    EXPECT_NEAR(models::Following(FollowingModel::kAccIdm, driver, c).Acceleration(cut_in),
                 (1 - c) * improved + c * 2 * std::tanh(improved / 2), kNear);
   }
 }
@@ -89,7 +90,7 @@ TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
   // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139, which is greater, so the model
   // takes it.
   DriverSection driver;
-  const Following acc(FollowingModel::kAccIdm, driver);
+  const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);
   // With s = 8: z = 4, the IIDM is at its limit of -9, a_CAH = -1600 / 464 = -3.448.
   const double heuristic = -1600.0 / 464;
@@ -100,7 +101,7 @@ TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
 
 TEST(FollowingTest, StandsBehindACarThatStands) {
   for (const auto model : {FollowingModel::kIdm, FollowingModel::kIidm, FollowingModel::kAccIdm}) {
-    const Following following(model, DriverSection{});
+    const models::Following following(model, DriverSection{});
     EXPECT_EQ(following.Acceleration(Behind(0, 2, 0)), 0);
     EXPECT_EQ(following.Acceleration(Behind(20, 0, 20)), -9);
     EXPECT_EQ(following.Acceleration(Behind(20, -3, 20)), -9);
@@ -108,8 +109,8 @@ TEST(FollowingTest, StandsBehindACarThatStands) {
 }
 
 TEST(FollowingTest, RefusesCoolnessThatIsNone) {
-  EXPECT_THROW(Following(FollowingModel::kAccIdm, {}, 1.01), std::invalid_argument);
-  EXPECT_THROW(Following(FollowingModel::kAccIdm, {}, -0.01), std::invalid_argument);
+  EXPECT_THROW(models::Following(FollowingModel::kAccIdm, {}, 1.01), std::invalid_argument);
+  EXPECT_THROW(models::Following(FollowingModel::kAccIdm, {}, -0.01), std::invalid_argument);
 }
 
 }  // namespace

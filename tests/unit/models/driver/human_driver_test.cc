@@ -12,21 +12,22 @@ constexpr double kStep_s = 0.1;
 constexpr HumanParameters kPerfect{.reaction_time_s = 0, .gap_error = 0, .approach_error_ps = 0};
 
 Random AnyErrors() { return Random(3, Stream::kHumanErrors); }
-Following AnyModel() { return Following(FollowingModel::kIidm, DriverSection{}); }
+models::Following AnyModel() { return models::Following(FollowingModel::kIidm, DriverSection{}); }
 
-Situation Behind(double speed_mps, double acceleration_mps2, double gap_m, double lead_mps) {
+models::Situation Behind(double speed_mps, double acceleration_mps2, double gap_m,
+                         double lead_mps) {
   return {.speed_mps = speed_mps,
           .acceleration_mps2 = acceleration_mps2,
-          .ahead = CarAhead{.gap_m = gap_m, .speed_mps = lead_mps}};
+          .ahead = models::CarAhead{.gap_m = gap_m, .speed_mps = lead_mps}};
 }
 
 TEST(HumanDriverTest, ActsOnWhatHeSawAReactionTimeAgo) {
   HumanParameters late = kPerfect;
   late.reaction_time_s = 0.3;
   late.anticipates = false;
-  HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
-  const Situation before = Behind(20, 0, 32, 20);
-  const Situation after = Behind(20, 0, 20, 15);
+  models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
+  const models::Situation before = Behind(20, 0, 32, 20);
+  const models::Situation after = Behind(20, 0, 20, 15);
   for (int k = 0; k < 5; ++k) EXPECT_EQ(driver.Step(k, before), AnyModel().Acceleration(before));
   for (int k = 5; k < 8; ++k) EXPECT_EQ(driver.Step(k, after), AnyModel().Acceleration(before));
   EXPECT_EQ(driver.Step(8, after), AnyModel().Acceleration(after));
@@ -36,7 +37,7 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
   HumanParameters late = kPerfect;
   late.reaction_time_s = 0.175;
   late.anticipates = false;
-  HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
+  models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
   driver.Step(0, Behind(20, 0, 40, 20));
   driver.Step(1, Behind(20, 0, 36, 18));
   // 0.175 s before 0.2 s: a quarter of the way from step 0 to step 1.
@@ -48,7 +49,7 @@ TEST(HumanDriverTest, AnticipatesWhatHasHappenedSince) {
   // GIVEN 1 s of reaction time, a gap that closes at 2 m/s, and his own braking at 1 m/s2
   HumanParameters human = kPerfect;
   human.reaction_time_s = 1;
-  HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
+  models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
   // THEN he reacts to 19 m/s, 38 m and the closing speed of that time
   EXPECT_NEAR(driver.Step(0, Behind(20, -1, 40, 18)),
               AnyModel().Acceleration(Behind(19, -1, 38, 17)), 1e-12);
@@ -58,10 +59,10 @@ TEST(HumanDriverTest, AnticipationOfConstantMotionUndoesTheReactionTime) {
   // For equal constant accelerations the linear extrapolation is exact.
   HumanParameters human = kPerfect;
   human.reaction_time_s = 0.75;
-  HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
+  models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
   for (int k = 0; k < 30; ++k) {
     const double t = k * kStep_s;
-    const Situation now = Behind(20 - 0.5 * t, -0.5, 40 - 2 * t, 18 - 0.5 * t);
+    const models::Situation now = Behind(20 - 0.5 * t, -0.5, 40 - 2 * t, 18 - 0.5 * t);
     const double acceleration = driver.Step(k, now);
     if (k < 9) continue;
     EXPECT_NEAR(acceleration, AnyModel().Acceleration(now), 1e-9) << k;
@@ -71,9 +72,9 @@ TEST(HumanDriverTest, AnticipationOfConstantMotionUndoesTheReactionTime) {
 TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
   HumanParameters late = kPerfect;
   late.reaction_time_s = 0.2;
-  HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
-  const Situation free{.speed_mps = 20};
-  const Situation close = Behind(20, 0, 10, 10);
+  models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
+  const models::Situation free{.speed_mps = 20};
+  const models::Situation close = Behind(20, 0, 10, 10);
   EXPECT_GT(driver.Step(0, free), 0);
   EXPECT_GT(driver.Step(1, close), 0);
   EXPECT_GT(driver.Step(2, close), 0);
@@ -81,10 +82,11 @@ TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
 }
 
 TEST(HumanDriverTest, MakesTheSameErrorsAgain) {
-  HumanDriver one(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
-  HumanDriver other(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
-  HumanDriver stranger(HumanParameters{}, AnyModel(), Random(4, Stream::kHumanErrors), kStep_s);
-  const Situation seen = Behind(20, 0, 32, 20);
+  models::HumanDriver one(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
+  models::HumanDriver other(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
+  models::HumanDriver stranger(HumanParameters{}, AnyModel(), Random(4, Stream::kHumanErrors),
+                               kStep_s);
+  const models::Situation seen = Behind(20, 0, 32, 20);
   for (int k = 0; k < 20; ++k) {
     const double acceleration = one.Step(k, seen);
     EXPECT_EQ(acceleration, other.Step(k, seen));
@@ -94,7 +96,7 @@ TEST(HumanDriverTest, MakesTheSameErrorsAgain) {
 
 TEST(HumanDriverTest, RefusesWhatNoDriverIs) {
   const auto make = [](const HumanParameters& human) {
-    return HumanDriver(human, AnyModel(), AnyErrors(), kStep_s);
+    return models::HumanDriver(human, AnyModel(), AnyErrors(), kStep_s);
   };
   EXPECT_THROW(make({.reaction_time_s = -0.1}), std::invalid_argument);
   EXPECT_THROW(make({.reaction_time_s = 25.6}), std::invalid_argument);

@@ -14,25 +14,26 @@ constexpr double kNear = 1e-12;  // some roundings of values around 1
 TEST(IdmTest, BrakesAsWorkedByHand) {
   // a = 0.73, b = 1.67, v_0 = 33.33, T = 1.5, s_0 = 2: s* = 32 + 40 / (2 sqrt(1.2191)) = 50.1137 m,
   // a = 0.73 (1 - 0.12965 - 1.56961). The tolerance is half a unit of the last digit.
-  EXPECT_NEAR(Idm(DriverSection()).Acceleration(20, 18, 40), -0.5105, 5e-5);
+  EXPECT_NEAR(models::Idm(DriverSection()).Acceleration(20, 18, 40), -0.5105, 5e-5);
 }
 
 TEST(IdmTest, StartsOnAFreeRoadAtMaximumAcceleration) {
   const DriverSection driver;
-  EXPECT_NEAR(Idm(driver).Acceleration(0, 0, kFreeRoad_m), driver.max_acceleration_mps2, kNear);
+  EXPECT_NEAR(models::Idm(driver).Acceleration(0, 0, kFreeRoad_m), driver.max_acceleration_mps2,
+              kNear);
 }
 
 TEST(IdmTest, HoldsTheDesiredSpeedOnAFreeRoad) {
   const DriverSection driver;
   const double v0 = driver.desired_speed_mps;
-  EXPECT_NEAR(Idm(driver).Acceleration(v0, v0, kFreeRoad_m), 0, kNear);
-  EXPECT_GT(Idm(driver).Acceleration(0.99 * v0, v0, kFreeRoad_m), 0);
-  EXPECT_LT(Idm(driver).Acceleration(1.01 * v0, v0, kFreeRoad_m), 0);
+  EXPECT_NEAR(models::Idm(driver).Acceleration(v0, v0, kFreeRoad_m), 0, kNear);
+  EXPECT_GT(models::Idm(driver).Acceleration(0.99 * v0, v0, kFreeRoad_m), 0);
+  EXPECT_LT(models::Idm(driver).Acceleration(1.01 * v0, v0, kFreeRoad_m), 0);
 }
 
 TEST(IdmTest, StandsStillAtTheStandstillGap) {
   const DriverSection driver;
-  const Idm idm(driver);
+  const models::Idm idm(driver);
   EXPECT_EQ(idm.Acceleration(0, 0, driver.standstill_m), 0);
   EXPECT_GT(idm.Acceleration(0, 0, 1.1 * driver.standstill_m), 0);
   EXPECT_LT(idm.Acceleration(0, 0, 0.9 * driver.standstill_m), 0);
@@ -40,7 +41,7 @@ TEST(IdmTest, StandsStillAtTheStandstillGap) {
 
 TEST(IdmTest, WantsNoLessThanTheStandstillGapBehindACarThatRunsAway) {
   const DriverSection driver;
-  const Idm idm(driver);
+  const models::Idm idm(driver);
   const double away = 1000;  // m/s: the bracket of s* is negative at either speed
   EXPECT_EQ(idm.Acceleration(10, away, 5), idm.Acceleration(10, 2 * away, 5));
 }
@@ -48,7 +49,7 @@ TEST(IdmTest, WantsNoLessThanTheStandstillGapBehindACarThatRunsAway) {
 TEST(IdmTest, BrakesAsHardAsItCanWhereTheFormulaHasNoLimit) {
   DriverSection driver;
   driver.max_deceleration_mps2 = 7;
-  const Idm idm(driver);
+  const models::Idm idm(driver);
   EXPECT_EQ(idm.Acceleration(20, 20, 0), -7);
   EXPECT_EQ(idm.Acceleration(20, 20, -3), -7);
   EXPECT_EQ(idm.Acceleration(20, 20, std::numeric_limits<double>::denorm_min()), -7);
@@ -58,7 +59,7 @@ TEST(IdmTest, BrakesAsHardAsItCanWhereTheFormulaHasNoLimit) {
 TEST(IdmTest, TakesANegativeSpeedForStandingStill) {
   DriverSection driver;
   driver.exponent = 3.5;  // a negative base has no such power
-  const Idm idm(driver);
+  const models::Idm idm(driver);
   EXPECT_EQ(idm.Acceleration(-0.1, 5, 20), idm.Acceleration(0, 5, 20));
 }
 

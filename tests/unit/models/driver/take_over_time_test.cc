@@ -11,8 +11,8 @@ namespace {
 TEST(TakeOverTimeTest, KnowsHowOftenALogNormalDriverIsLate) {
   // For a mean of 2.7 s and a deviation of 1.45 s: s^2 = ln 1.2884 = 0.2534, mu = 0.9933 - 0.1267 =
   // 0.8666. 95 % are within e^(0.8666 + 1.6449 * 0.5034) = 5.445 s.
-  EXPECT_NEAR(TakeOverTime({}, 5.445).LateProbability(), 0.05, 5e-4);
-  EXPECT_NEAR(TakeOverTime({}, std::exp(0.8666)).LateProbability(), 0.5, 5e-4);
+  EXPECT_NEAR(models::TakeOverTime({}, 5.445).LateProbability(), 0.05, 5e-4);
+  EXPECT_NEAR(models::TakeOverTime({}, std::exp(0.8666)).LateProbability(), 0.5, 5e-4);
 }
 
 TEST(TakeOverTimeTest, IsLateAsOftenAsAskedFor) {
@@ -20,9 +20,9 @@ TEST(TakeOverTimeTest, IsLateAsOftenAsAskedFor) {
     for (const double lead_s : {2.0, 5.0, 8.0}) {
       const TakeOverParameters by_lead{.model = TakeOverModel::kLogNormalByLead,
                                        .late_probability = p};
-      EXPECT_NEAR(TakeOverTime(by_lead, lead_s).LateProbability(), p, 1e-12);
+      EXPECT_NEAR(models::TakeOverTime(by_lead, lead_s).LateProbability(), p, 1e-12);
       const TakeOverParameters sumo{.model = TakeOverModel::kSumo, .late_probability = p};
-      EXPECT_NEAR(TakeOverTime(sumo, lead_s).LateProbability(), p, 0.01 * p) << lead_s;
+      EXPECT_NEAR(models::TakeOverTime(sumo, lead_s).LateProbability(), p, 0.01 * p) << lead_s;
     }
   }
 }
@@ -30,7 +30,7 @@ TEST(TakeOverTimeTest, IsLateAsOftenAsAskedFor) {
 TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
   // Mean 6.325 s, standard deviation 2.234 s (SUMO's table: 2.233). A draw is late if its normal
   // number is above 1.645. A normal number of one gives 8.558 s.
-  const TakeOverTime sumo({.model = TakeOverModel::kSumo}, 10);
+  const models::TakeOverTime sumo({.model = TakeOverModel::kSumo}, 10);
   const Random random(5, Stream::kTakeOver);
   for (std::int64_t step = 0; step < 20; ++step) {
     const double normal = random.Normal2(step, 0)[0];
@@ -40,7 +40,7 @@ TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
 
 TEST(TakeOverTimeTest, OverdrawsSumosPromiseForLongLeadTimes) {
   // For 60 s: mean 15.49 s, deviation 27.06 s. SUMO repeats the 28 % of draws that are negative.
-  const TakeOverTime sumo({.model = TakeOverModel::kSumo}, 60);
+  const models::TakeOverTime sumo({.model = TakeOverModel::kSumo}, 60);
   EXPECT_NEAR(sumo.LateProbability(), 0.05 / 0.7165, 1e-4);
 }
 
@@ -48,22 +48,22 @@ TEST(TakeOverTimeTest, RefusesWhatNoDistributionHas) {
   const auto by_lead = [](double p) {
     return TakeOverParameters{.model = TakeOverModel::kLogNormalByLead, .late_probability = p};
   };
-  EXPECT_THROW(TakeOverTime({}, 0), std::invalid_argument);
-  EXPECT_THROW(TakeOverTime({.mean_s = 0}, 5), std::invalid_argument);
-  EXPECT_THROW(TakeOverTime(by_lead(0), 5), std::invalid_argument);
-  EXPECT_THROW(TakeOverTime(by_lead(0.5), 5), std::invalid_argument);
-  EXPECT_NO_THROW(TakeOverTime(by_lead(0.199), 5));
-  EXPECT_THROW(TakeOverTime(by_lead(0.20), 5), std::invalid_argument);
-  EXPECT_THROW(TakeOverTime(by_lead(0.05), 61), std::invalid_argument);
+  EXPECT_THROW(models::TakeOverTime({}, 0), std::invalid_argument);
+  EXPECT_THROW(models::TakeOverTime({.mean_s = 0}, 5), std::invalid_argument);
+  EXPECT_THROW(models::TakeOverTime(by_lead(0), 5), std::invalid_argument);
+  EXPECT_THROW(models::TakeOverTime(by_lead(0.5), 5), std::invalid_argument);
+  EXPECT_NO_THROW(models::TakeOverTime(by_lead(0.199), 5));
+  EXPECT_THROW(models::TakeOverTime(by_lead(0.20), 5), std::invalid_argument);
+  EXPECT_THROW(models::TakeOverTime(by_lead(0.05), 61), std::invalid_argument);
 }
 
 // 95 % of drivers have taken over after 5.44 s (log-normal with mean 2.7 s and deviation 1.45 s).
 // The share that is not late has taken over after the lead time.
 TEST(TakeOverTimeTest, QuantilesAreThoseOfTheDistribution) {
-  EXPECT_NEAR(TakeOverTime({}, 10).Quantile(0.95), 5.44, 0.005);
+  EXPECT_NEAR(models::TakeOverTime({}, 10).Quantile(0.95), 5.44, 0.005);
   for (const TakeOverModel model :
        {TakeOverModel::kLogNormal, TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
-    const TakeOverTime time({.model = model}, 8);
+    const models::TakeOverTime time({.model = model}, 8);
     EXPECT_NEAR(time.Quantile(1 - time.LateProbability()), 8, 1e-9);
   }
 }

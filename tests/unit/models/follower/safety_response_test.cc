@@ -8,11 +8,13 @@ namespace fogline {
 namespace {
 
 constexpr double kStep_s = 0.1;
-const Situation kSafe{.speed_mps = 20, .ahead = CarAhead{.gap_m = 100, .speed_mps = 20}};
-const Situation kCutIn{.speed_mps = 20, .ahead = CarAhead{.gap_m = 15, .speed_mps = 10}};
+const models::Situation kSafe{.speed_mps = 20,
+                              .ahead = models::CarAhead{.gap_m = 100, .speed_mps = 20}};
+const models::Situation kCutIn{.speed_mps = 20,
+                               .ahead = models::CarAhead{.gap_m = 15, .speed_mps = 10}};
 
 TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
-  SafetyResponse human(SafetyModel::kReferenceHuman, kStep_s);
+  models::SafetyResponse human(models::SafetyModel::kReferenceHuman, kStep_s);
   EXPECT_EQ(human.Step(kSafe), 0);
   EXPECT_FALSE(human.alarmed());
   // TTC 1.5 s. After 0.4 s of perception the throttle is released for 0.75 s: from 0.4 to 1.1 s.
@@ -27,7 +29,7 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
   }
   EXPECT_EQ(human.Step(kCutIn), 7.59);
   // Not critical but still closing: he goes on braking. Then he stops braking.
-  Situation clearing = kCutIn;
+  models::Situation clearing = kCutIn;
   clearing.ahead->gap_m = 50;
   EXPECT_EQ(human.Step(clearing), 7.59);
   clearing.speed_mps = 10;
@@ -35,9 +37,10 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
 }
 
 TEST(SafetyResponseTest, ReferenceHumanFearsAHardBrakeAheadOnlyWhenClose) {
-  Situation braking{.speed_mps = 20,
-                    .ahead = CarAhead{.gap_m = 39, .speed_mps = 20, .acceleration_mps2 = -6}};
-  SafetyResponse human(SafetyModel::kReferenceHuman, kStep_s);
+  models::Situation braking{
+      .speed_mps = 20,
+      .ahead = models::CarAhead{.gap_m = 39, .speed_mps = 20, .acceleration_mps2 = -6}};
+  models::SafetyResponse human(models::SafetyModel::kReferenceHuman, kStep_s);
   human.Step(braking);
   EXPECT_TRUE(human.alarmed());
   braking.ahead->gap_m = 41;
@@ -46,25 +49,28 @@ TEST(SafetyResponseTest, ReferenceHumanFearsAHardBrakeAheadOnlyWhenClose) {
 }
 
 TEST(SafetyResponseTest, RssAnswersAfterItsResponseTime) {
-  SafetyResponse rss(SafetyModel::kRss, kStep_s);
-  const Situation close{.speed_mps = 20, .ahead = CarAhead{.gap_m = 65, .speed_mps = 20}};
+  models::SafetyResponse rss(models::SafetyModel::kRss, kStep_s);
+  const models::Situation close{.speed_mps = 20,
+                                .ahead = models::CarAhead{.gap_m = 65, .speed_mps = 20}};
   for (int k = 0; k < 10; ++k) EXPECT_EQ(rss.Step(close), 0) << k;
   EXPECT_NEAR(rss.Step(close), 1.265, 1e-9);
-  const Situation far{.speed_mps = 20, .ahead = CarAhead{.gap_m = 66, .speed_mps = 20}};
+  const models::Situation far{.speed_mps = 20,
+                              .ahead = models::CarAhead{.gap_m = 66, .speed_mps = 20}};
   EXPECT_EQ(rss.Step(far), 0);
 }
 
 TEST(SafetyResponseTest, FuzzyModelBrakesNoHarderThanItsSurrogatesSay) {
-  SafetyResponse fuzzy(SafetyModel::kFuzzy, kStep_s);
-  Situation near{.speed_mps = 20, .ahead = CarAhead{.gap_m = 31, .speed_mps = 20}};
+  models::SafetyResponse fuzzy(models::SafetyModel::kFuzzy, kStep_s);
+  models::Situation near{.speed_mps = 20, .ahead = models::CarAhead{.gap_m = 31, .speed_mps = 20}};
   double braking = 0;
   for (int k = 0; k < 20; ++k) braking = fuzzy.Step(near);
   EXPECT_GT(braking, 0);
-  EXPECT_EQ(braking, FuzzyDeceleration({}, near));
+  EXPECT_EQ(braking, models::FuzzyDeceleration({}, near));
 }
 
 TEST(SafetyResponseTest, RefusesAFuzzyModelWithoutFuzz) {
-  EXPECT_THROW(SafetyResponse(SafetyModel::kFuzzy, kStep_s, {}, {}, {.hard_braking_mps2 = 4}),
+  EXPECT_THROW(models::SafetyResponse(models::SafetyModel::kFuzzy, kStep_s, {}, {},
+                                      {.hard_braking_mps2 = 4}),
                std::invalid_argument);
 }
 

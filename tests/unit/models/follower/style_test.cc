@@ -8,9 +8,9 @@ namespace fogline {
 namespace {
 
 TEST(StyleTest, KeepsMoreRoomTheMoreCautious) {
-  const StyleParameters aggressive = ParametersOf(Style::kAggressive);
-  const StyleParameters normal = ParametersOf(Style::kNormal);
-  const StyleParameters cautious = ParametersOf(Style::kCautious);
+  const models::StyleParameters aggressive = models::ParametersOf(models::Style::kAggressive);
+  const models::StyleParameters normal = models::ParametersOf(models::Style::kNormal);
+  const models::StyleParameters cautious = models::ParametersOf(models::Style::kCautious);
   EXPECT_LT(aggressive.driver.headway_s, normal.driver.headway_s);
   EXPECT_LT(normal.driver.headway_s, cautious.driver.headway_s);
   EXPECT_GT(aggressive.driver.max_acceleration_mps2, normal.driver.max_acceleration_mps2);
@@ -21,16 +21,17 @@ TEST(StyleTest, KeepsMoreRoomTheMoreCautious) {
 TEST(StyleTest, DrawsOnlyWhatHasAShare) {
   const Random random(9, Stream::kStyle);
   for (std::int64_t i = 0; i < 100; ++i) {
-    EXPECT_EQ(DrawStyle({1, 0, 0}, random, i), Style::kAggressive);
-    EXPECT_EQ(DrawStyle({0, 2, 0}, random, i), Style::kNormal);
-    EXPECT_EQ(DrawStyle({0, 0, 0.1}, random, i), Style::kCautious);
+    EXPECT_EQ(models::DrawStyle({1, 0, 0}, random, i), models::Style::kAggressive);
+    EXPECT_EQ(models::DrawStyle({0, 2, 0}, random, i), models::Style::kNormal);
+    EXPECT_EQ(models::DrawStyle({0, 0, 0.1}, random, i), models::Style::kCautious);
   }
 }
 
 TEST(StyleTest, DrawsTheSameCarTheSameStyle) {
   const Random random(9, Stream::kStyle);
   for (std::int64_t i = 0; i < 20; ++i) {
-    EXPECT_EQ(DrawStyle({}, random, i), DrawStyle({}, Random(9, Stream::kStyle), i));
+    EXPECT_EQ(models::DrawStyle({}, random, i),
+              models::DrawStyle({}, Random(9, Stream::kStyle), i));
   }
 }
 
@@ -40,9 +41,10 @@ TEST(StyleTest, DrawsInProportionToTheShares) {
   int aggressive = 0;
   int normal = 0;
   for (int i = 0; i < kCars; ++i) {
-    const Style style = DrawStyle({.aggressive = 2, .normal = 5, .cautious = 3}, random, i);
-    aggressive += style == Style::kAggressive ? 1 : 0;
-    normal += style == Style::kNormal ? 1 : 0;
+    const models::Style style =
+        models::DrawStyle({.aggressive = 2, .normal = 5, .cautious = 3}, random, i);
+    aggressive += style == models::Style::kAggressive ? 1 : 0;
+    normal += style == models::Style::kNormal ? 1 : 0;
   }
   // Four standard deviations sqrt(n p (1 - p)), which are 40 and 50 cars.
   EXPECT_NEAR(aggressive, 2000, 160);
@@ -51,8 +53,8 @@ TEST(StyleTest, DrawsInProportionToTheShares) {
 
 TEST(StyleTest, RefusesNoShares) {
   const Random random(9, Stream::kStyle);
-  EXPECT_THROW(DrawStyle({0, 0, 0}, random, 0), std::invalid_argument);
-  EXPECT_THROW(DrawStyle({1, -1, 1}, random, 0), std::invalid_argument);
+  EXPECT_THROW(models::DrawStyle({0, 0, 0}, random, 0), std::invalid_argument);
+  EXPECT_THROW(models::DrawStyle({1, -1, 1}, random, 0), std::invalid_argument);
 }
 
 }  // namespace

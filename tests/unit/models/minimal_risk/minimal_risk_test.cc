@@ -11,7 +11,7 @@ constexpr double kStep_s = 0.1;
 constexpr MinimalRiskSection kLimits{.deceleration_mps2 = 3, .jerk_mps3 = 2};
 
 TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(0.5);
   double expected = 0.5;
   for (int k = 0; k < 30; ++k) {
@@ -22,7 +22,7 @@ TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
 
 // r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, so the brake is released in exactly 5 steps of 0.2.
 TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(-1.0);
   double speed_mps = 0.3;
   for (const double expected : {-1.0, -0.8, -0.6, -0.4, -0.2}) {
@@ -34,7 +34,7 @@ TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
 }
 
 TEST(MinimalRiskTest, ReleasesABrakeThatIsHarderThanItsLimitGently) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(-9);
   EXPECT_NEAR(manoeuvre.Step(30), -8.8, 1e-12);
   for (int k = 0; k < 100; ++k) manoeuvre.Step(30);
@@ -42,7 +42,7 @@ TEST(MinimalRiskTest, ReleasesABrakeThatIsHarderThanItsLimitGently) {
 }
 
 TEST(MinimalRiskTest, BeginsOnce) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   EXPECT_FALSE(manoeuvre.begun());
   manoeuvre.Begin(0);
   manoeuvre.Step(30);
@@ -52,13 +52,13 @@ TEST(MinimalRiskTest, BeginsOnce) {
 }
 
 TEST(MinimalRiskTest, HoldsACarThatStands) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(0);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(manoeuvre.Step(0), 0);
 }
 
 TEST(MinimalRiskTest, BrakesACarThatRollsAgain) {
-  MinimalRisk manoeuvre(kLimits, kStep_s);
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(0);
   manoeuvre.Step(0);
   EXPECT_LT(manoeuvre.Step(1), 0);

@@ -12,7 +12,7 @@ constexpr double kRounding = 1e-12;  // relative to a force of 1, over some hund
 
 // The force after `duration_s`. A demand of 1 comes at time 0 to an actuator at rest.
 double StepResponse(double delay_s, double lag_s, double step_s, double duration_s) {
-  Actuator actuator(delay_s, lag_s, step_s);
+  models::Actuator actuator(delay_s, lag_s, step_s);
   const int steps = static_cast<int>(std::lround(duration_s / step_s));
   for (int i = 0; i < steps; ++i) actuator.Step(1);
   return actuator.force_n();
@@ -41,27 +41,27 @@ TEST(ActuatorTest, ComesToTheSameForceWithAnyStep) {
 
 TEST(ActuatorTest, ReportsTheMeanOverTheStep) {
   // Without delay: 1 - (tau / h)(1 - e^(-h / tau)) = e^-1 for h = tau.
-  Actuator lag(0, 0.1, 0.1);
+  models::Actuator lag(0, 0.1, 0.1);
   EXPECT_NEAR(lag.Step(1), std::exp(-1), kRounding);
   // Without lag, the demand takes effect at 0.03 s of a step of 0.1 s.
-  Actuator delay(0.03, 0, 0.1);
+  models::Actuator delay(0.03, 0, 0.1);
   EXPECT_NEAR(delay.Step(1), 0.7, kRounding);
   EXPECT_EQ(delay.force_n(), 1);
 }
 
 TEST(ActuatorTest, StaysWhereItHasSettled) {
-  Actuator actuator(0.25, 0.4, 0.1);
+  models::Actuator actuator(0.25, 0.4, 0.1);
   actuator.Settle(3);
   EXPECT_NEAR(actuator.Step(3), 3, kRounding);
   EXPECT_EQ(actuator.force_n(), 3);
 }
 
 TEST(ActuatorTest, RefusesWhatIsNegativeOrLongerThanItsMemory) {
-  EXPECT_THROW(Actuator(-0.1, 0.1, 0.1), std::invalid_argument);
-  EXPECT_THROW(Actuator(0.1, -0.1, 0.1), std::invalid_argument);
-  EXPECT_THROW(Actuator(0.1, 0.1, 0), std::invalid_argument);
-  EXPECT_NO_THROW(Actuator(0.254, 0.1, 0.001));
-  EXPECT_THROW(Actuator(0.256, 0.1, 0.001), std::invalid_argument);
+  EXPECT_THROW(models::Actuator(-0.1, 0.1, 0.1), std::invalid_argument);
+  EXPECT_THROW(models::Actuator(0.1, -0.1, 0.1), std::invalid_argument);
+  EXPECT_THROW(models::Actuator(0.1, 0.1, 0), std::invalid_argument);
+  EXPECT_NO_THROW(models::Actuator(0.254, 0.1, 0.001));
+  EXPECT_THROW(models::Actuator(0.256, 0.1, 0.001), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 namespace fogline {
 namespace {
 
-TEST(GradeProfileTest, IsLevelWithoutPoints) { EXPECT_EQ(GradeProfile().GradeAt(123), 0); }
+TEST(GradeProfileTest, IsLevelWithoutPoints) { EXPECT_EQ(models::GradeProfile().GradeAt(123), 0); }
 
 TEST(GradeProfileTest, RisesBetweenPointsAndStaysOutside) {
-  const GradeProfile hill({{100, 0.0}, {200, 0.05}, {300, -0.03}});
+  const models::GradeProfile hill({{100, 0.0}, {200, 0.05}, {300, -0.03}});
   EXPECT_EQ(hill.GradeAt(-50), 0);
   EXPECT_DOUBLE_EQ(hill.GradeAt(150), 0.025);
   EXPECT_DOUBLE_EQ(hill.GradeAt(200), 0.05);
@@ -21,7 +21,7 @@ TEST(GradeProfileTest, RisesBetweenPointsAndStaysOutside) {
 
 TEST(GradeProfileTest, NamesThePlaceThatDoesNotComeAfterTheOneBefore) {
   try {
-    GradeProfile({{0, 0}, {150, 0.1}, {120, 0}});
+    models::GradeProfile({{0, 0}, {150, 0.1}, {120, 0}});
     FAIL() << "was taken";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
@@ -31,8 +31,8 @@ TEST(GradeProfileTest, NamesThePlaceThatDoesNotComeAfterTheOneBefore) {
 }
 
 TEST(GradeProfileTest, RefusesPointsOutOfOrder) {
-  EXPECT_THROW(GradeProfile({{10, 0}, {10, 0.1}}), std::invalid_argument);
-  EXPECT_THROW(GradeProfile({{10, std::numeric_limits<double>::quiet_NaN()}}),
+  EXPECT_THROW(models::GradeProfile({{10, 0}, {10, 0.1}}), std::invalid_argument);
+  EXPECT_THROW(models::GradeProfile({{10, std::numeric_limits<double>::quiet_NaN()}}),
                std::invalid_argument);
 }
 

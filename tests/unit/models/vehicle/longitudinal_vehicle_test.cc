@@ -10,13 +10,13 @@ namespace fogline {
 namespace {
 
 constexpr double kStep_s = 0.1;
-constexpr double kDry = FrictionOf(Surface::kDry);
+constexpr double kDry = models::FrictionOf(Surface::kDry);
 
 // A car on a road, which moves as the world moves cars.
 class Drive {
  public:
-  Drive(const VehicleParameters& vehicle, double speed_mps, double command_mps2 = 0,
-        double friction = kDry, GradeProfile road = {})
+  Drive(const models::VehicleParameters& vehicle, double speed_mps, double command_mps2 = 0,
+        double friction = kDry, models::GradeProfile road = {})
       : car_(vehicle, friction, std::move(road), kStep_s), motion_{0, speed_mps} {
     car_.Begin(motion_, command_mps2);
   }
@@ -26,33 +26,34 @@ class Drive {
     double change_mps = 0;
     for (int i = 0; i < std::lround(duration_s / kStep_s); ++i) {
       const double before_mps = motion_.speed_mps;
-      motion_ = Advance(motion_, car_.Step(command_mps2, motion_), kStep_s);
+      motion_ = models::Advance(motion_, car_.Step(command_mps2, motion_), kStep_s);
       change_mps = motion_.speed_mps - before_mps;
     }
     return change_mps / kStep_s;
   }
 
-  const Motion& motion() const { return motion_; }
-  const LongitudinalVehicle& car() const { return car_; }
+  const models::Motion& motion() const { return motion_; }
+  const models::LongitudinalVehicle& car() const { return car_; }
 
  private:
-  LongitudinalVehicle car_;
-  Motion motion_;
+  models::LongitudinalVehicle car_;
+  models::Motion motion_;
 };
 
-double DragFactor(const VehicleParameters& p) {
-  return 0.5 * kAirDensity_kgpm3 * p.drag_coefficient * p.frontal_area_m2;
+double DragFactor(const models::VehicleParameters& p) {
+  return 0.5 * models::kAirDensity_kgpm3 * p.drag_coefficient * p.frontal_area_m2;
 }
-double Rolling(const VehicleParameters& p) {
-  return p.rolling_coefficient * p.mass_kg * kGravity_mps2;
+double Rolling(const models::VehicleParameters& p) {
+  return p.rolling_coefficient * p.mass_kg * models::kGravity_mps2;
 }
 
-class EveryVehicleTest : public testing::TestWithParam<VehicleParameters> {};
-INSTANTIATE_TEST_SUITE_P(Sets, EveryVehicleTest, testing::Values(kCompact, kSedan, kTruck));
+class EveryVehicleTest : public testing::TestWithParam<models::VehicleParameters> {};
+INSTANTIATE_TEST_SUITE_P(Sets, EveryVehicleTest,
+                         testing::Values(models::kCompact, models::kSedan, models::kTruck));
 
 TEST_P(EveryVehicleTest, EndsAtTheSpeedWhereItsPowerIsUsedUp) {
   // P = c v^3 + R v, solved by Cardano's formula with p = R/c, r = P/c.
-  const VehicleParameters& vehicle = GetParam();
+  const models::VehicleParameters& vehicle = GetParam();
   const double p = Rolling(vehicle) / DragFactor(vehicle);
   const double r = vehicle.power_w / DragFactor(vehicle);
   const double root = std::sqrt(r * r / 4 + p * p * p / 27);
@@ -68,7 +69,7 @@ TEST_P(EveryVehicleTest, EndsAtTheSpeedWhereItsPowerIsUsedUp) {
 TEST_P(EveryVehicleTest, CoastsDownAsTheClosedFormSays) {
   // m_eff dv/dt = -R - c v^2 has the solution v = w tan(atan(v0 / w) - sqrt(R c) t / m_eff), w =
   // sqrt(R / c).
-  const VehicleParameters& vehicle = GetParam();
+  const models::VehicleParameters& vehicle = GetParam();
   const double c = DragFactor(vehicle);
   const double rolling = Rolling(vehicle);
   const double mass = vehicle.rotating_mass_factor * vehicle.mass_kg;
@@ -78,7 +79,7 @@ TEST_P(EveryVehicleTest, CoastsDownAsTheClosedFormSays) {
     return w * std::tan(std::atan(from_mps / w) - std::sqrt(rolling * c) * t / mass);
   };
   // The command is within the dead band around coasting (rolling and drag), so no pedal is pressed.
-  VehicleParameters coasting = vehicle;
+  models::VehicleParameters coasting = vehicle;
   coasting.pedal_dead_band_mps2 = 5;
   Drive drive(coasting, from_mps, -1);
   for (const double t : {10.0, 20.0, 30.0}) {
@@ -99,45 +100,47 @@ TEST_P(EveryVehicleTest, FollowsASteadyCommandWithinItsLimits) {
 }
 
 TEST(LongitudinalVehicleTest, LosesHalfAMetrePerSecondSquaredOnFivePercent) {
-  VehicleParameters frictionless;
+  models::VehicleParameters frictionless;
   frictionless.rotating_mass_factor = 1;
   frictionless.drag_coefficient = 0;
   frictionless.rolling_coefficient = 0;
   frictionless.pedal_dead_band_mps2 = 5;
-  Drive drive(frictionless, 20, -0.49, kDry, GradeProfile({{0, 0.05}}));
+  Drive drive(frictionless, 20, -0.49, kDry, models::GradeProfile({{0, 0.05}}));
   EXPECT_NEAR(drive.For(1, -0.49), -0.4897, 5e-5);  // 9.80665 * 0.05 / sqrt(1.0025)
 }
 
 TEST(LongitudinalVehicleTest, HoldsItsSpeedUphill) {
-  Drive drive(kSedan, 20, 0, kDry, GradeProfile({{0, 0.05}}));
+  Drive drive(models::kSedan, 20, 0, kDry, models::GradeProfile({{0, 0.05}}));
   drive.For(30, 0);
   EXPECT_NEAR(drive.motion().speed_mps, 20, 1e-9);
   EXPECT_NEAR(drive.car().traction_n(),
-              Rolling(kSedan) / std::sqrt(1.0025) + DragFactor(kSedan) * 400 + 1500 * 0.489721,
+              Rolling(models::kSedan) / std::sqrt(1.0025) + DragFactor(models::kSedan) * 400 +
+                  1500 * 0.489721,
               0.01);
 }
 
 TEST(LongitudinalVehicleTest, BrakesOnIceWithFrictionTimesGravityAtMost) {
-  VehicleParameters without_drag;
+  models::VehicleParameters without_drag;
   without_drag.drag_coefficient = 0;
-  const double mu = FrictionOf(Surface::kIce);
+  const double mu = models::FrictionOf(Surface::kIce);
   Drive drive(without_drag, 20, 0, mu);
-  EXPECT_NEAR(drive.For(2, -6), -mu * kGravity_mps2, 1e-12);
+  EXPECT_NEAR(drive.For(2, -6), -mu * models::kGravity_mps2, 1e-12);
 
-  Drive dry(without_drag, 20, 0, FrictionOf(Surface::kDry));
+  Drive dry(without_drag, 20, 0, models::FrictionOf(Surface::kDry));
   EXPECT_NEAR(dry.For(2, -6), -6, 0.01);
 }
 
 TEST(LongitudinalVehicleTest, SpinsItsWheelsOnIceAtTheDrivenShareOfFriction) {
-  VehicleParameters without_drag;
+  models::VehicleParameters without_drag;
   without_drag.drag_coefficient = 0;
-  const double mu = FrictionOf(Surface::kIce);
+  const double mu = models::FrictionOf(Surface::kIce);
   Drive drive(without_drag, 2, 0, mu);
-  EXPECT_NEAR(drive.For(3, 3), without_drag.driven_weight_share * mu * kGravity_mps2, 1e-12);
+  EXPECT_NEAR(drive.For(3, 3), without_drag.driven_weight_share * mu * models::kGravity_mps2,
+              1e-12);
 }
 
 TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
-  VehicleParameters light = kSedan;  // nothing but brakes
+  models::VehicleParameters light = models::kSedan;  // nothing but brakes
   light.drag_coefficient = 0;
   light.rolling_coefficient = 0;
   light.pedal_dead_band_mps2 = 0;
@@ -154,11 +157,12 @@ TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
 }
 
 TEST(LongitudinalVehicleTest, DoesNotTouchThePedalsForATremblingCommand) {
-  Drive drive(kSedan, 20);
+  Drive drive(models::kSedan, 20);
   int changes = 0;
-  Pedal pedal = drive.car().pedal();
+  models::Pedal pedal = drive.car().pedal();
   // Around the acceleration of coasting, where the demanded force is 0.
-  const double coasting = -(Rolling(kSedan) + DragFactor(kSedan) * 400) / (1.05 * 1500);
+  const double coasting =
+      -(Rolling(models::kSedan) + DragFactor(models::kSedan) * 400) / (1.05 * 1500);
   for (int i = 0; i < 100; ++i) {
     drive.For(kStep_s, coasting + (i % 2 == 0 ? 0.05 : -0.05));
     if (drive.car().pedal() != pedal) ++changes;
@@ -168,7 +172,7 @@ TEST(LongitudinalVehicleTest, DoesNotTouchThePedalsForATremblingCommand) {
 }
 
 TEST(LongitudinalVehicleTest, StopsWithinTheStepAndStands) {
-  Drive drive(kSedan, 0.15, -3);
+  Drive drive(models::kSedan, 0.15, -3);
   drive.For(0.1, -3);
   EXPECT_EQ(drive.motion().speed_mps, 0);
   EXPECT_NEAR(drive.motion().position_m, 0.15 * 0.15 / (2 * 3), 1e-4);
@@ -178,25 +182,25 @@ TEST(LongitudinalVehicleTest, StopsWithinTheStepAndStands) {
 }
 
 TEST(LongitudinalVehicleTest, HasNoAccelerationWhileTheBrakesHoldItAtRest) {
-  LongitudinalVehicle car(kSedan, kDry, {}, kStep_s);
+  models::LongitudinalVehicle car(models::kSedan, kDry, {}, kStep_s);
   car.Begin({}, -3);
   EXPECT_EQ(car.Step(-3, {}), 0);
 }
 
 TEST(LongitudinalVehicleTest, DoesNotRollBackwards) {
-  Drive drive(kTruck, 0, 0, kDry, GradeProfile({{0, 0.1}}));
+  Drive drive(models::kTruck, 0, 0, kDry, models::GradeProfile({{0, 0.1}}));
   drive.For(10, -1);
   EXPECT_EQ(drive.motion().position_m, 0);
 }
 
 TEST(LongitudinalVehicleTest, RefusesParametersOutOfRange) {
-  VehicleParameters massless;
+  models::VehicleParameters massless;
   massless.mass_kg = 0;
-  EXPECT_THROW(LongitudinalVehicle(massless, kDry, {}, kStep_s), std::invalid_argument);
-  EXPECT_THROW(LongitudinalVehicle(kSedan, 0, {}, kStep_s), std::invalid_argument);
-  VehicleParameters eager;
+  EXPECT_THROW(models::LongitudinalVehicle(massless, kDry, {}, kStep_s), std::invalid_argument);
+  EXPECT_THROW(models::LongitudinalVehicle(models::kSedan, 0, {}, kStep_s), std::invalid_argument);
+  models::VehicleParameters eager;
   eager.brake_delay_s = -1;
-  EXPECT_THROW(LongitudinalVehicle(eager, kDry, {}, kStep_s), std::invalid_argument);
+  EXPECT_THROW(models::LongitudinalVehicle(eager, kDry, {}, kStep_s), std::invalid_argument);
 }
 
 }  // namespace

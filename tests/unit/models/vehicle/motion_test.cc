@@ -8,80 +8,80 @@ namespace fogline {
 namespace {
 
 TEST(MotionTest, AdvancesByTheClosedForm) {
-  const Motion to = Advance({100.0, 20.0}, 2.0, 0.5);
+  const models::Motion to = models::Advance({100.0, 20.0}, 2.0, 0.5);
   EXPECT_DOUBLE_EQ(to.position_m, 110.25);
   EXPECT_DOUBLE_EQ(to.speed_mps, 21.0);
 }
 
 TEST(MotionTest, ComesToRestAtTheExactMomentWithinTheStep) {
   // 0.5 m/s at -10 m/s2: at rest after 0.05 s and v^2 / (2 a) = 0.0125 m.
-  const Motion to = Advance({3.0, 0.5}, -10.0, 0.1);
+  const models::Motion to = models::Advance({3.0, 0.5}, -10.0, 0.1);
   EXPECT_DOUBLE_EQ(to.position_m, 3.0125);
   EXPECT_EQ(to.speed_mps, 0.0);
 }
 
 TEST(MotionTest, DoesNotRollBackFromRest) {
-  const Motion to = Advance({3.0, 0.0}, -10.0, 0.1);
+  const models::Motion to = models::Advance({3.0, 0.0}, -10.0, 0.1);
   EXPECT_EQ(to.position_m, 3.0);
   EXPECT_EQ(to.speed_mps, 0.0);
 }
 
 TEST(MotionTest, StartsFromRest) {
-  const Motion to = Advance({0.0, 0.0}, 2.0, 1.0);
+  const models::Motion to = models::Advance({0.0, 0.0}, 2.0, 1.0);
   EXPECT_DOUBLE_EQ(to.position_m, 1.0);
   EXPECT_DOUBLE_EQ(to.speed_mps, 2.0);
 }
 
 TEST(MotionTest, NeverRestsWithoutBraking) {
-  EXPECT_EQ(TimeToRest(20.0, 0.0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(TimeToRest(0.0, 1.0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(TimeToRest(0.0, -1.0), 0.0);
-  EXPECT_DOUBLE_EQ(TimeToRest(20.0, -4.0), 5.0);
+  EXPECT_EQ(models::TimeToRest(20.0, 0.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(models::TimeToRest(0.0, 1.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(models::TimeToRest(0.0, -1.0), 0.0);
+  EXPECT_DOUBLE_EQ(models::TimeToRest(20.0, -4.0), 5.0);
 }
 
 TEST(ContactTest, OfConstantSpeedsIsGapOverClosingSpeed) {
-  EXPECT_DOUBLE_EQ(TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 3.0).value(), 2.0);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 3.0).value(), 2.0);
 }
 
 TEST(ContactTest, IsTheFirstRootOfTheParabola) {
   // 6 - 5 t + t^2 = (t - 2) (t - 3): after contact at 2 s the cars would separate at 3 s.
-  EXPECT_DOUBLE_EQ(TimeToContact(6.0, 20.0, 2.0, 25.0, 0.0, 10.0).value(), 2.0);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(6.0, 20.0, 2.0, 25.0, 0.0, 10.0).value(), 2.0);
 }
 
 TEST(ContactTest, HappensWhenTheGapOpensFirst) {
   // 8 + 2 t - 3 t^2 = (2 - t) (4 + 3 t).
-  EXPECT_DOUBLE_EQ(TimeToContact(8.0, 30.0, -6.0, 28.0, 0.0, 4.0).value(), 2.0);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(8.0, 30.0, -6.0, 28.0, 0.0, 4.0).value(), 2.0);
 }
 
 TEST(ContactTest, CountsAtTheEndItself) {
-  EXPECT_DOUBLE_EQ(TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 2.0).value(), 2.0);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 2.0).value(), 2.0);
 }
 
 TEST(ContactTest, DoesNotHappenAfterTheEnd) {
-  EXPECT_FALSE(TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 1.999));
-  EXPECT_FALSE(TimeToContact(10.0, 20.0, 0.0, 20.0, 0.0, 1e6));
-  EXPECT_FALSE(TimeToContact(10.0, 25.0, 0.0, 20.0, 0.0, 1e6));
+  EXPECT_FALSE(models::TimeToContact(10.0, 15.0, 0.0, 20.0, 0.0, 1.999));
+  EXPECT_FALSE(models::TimeToContact(10.0, 20.0, 0.0, 20.0, 0.0, 1e6));
+  EXPECT_FALSE(models::TimeToContact(10.0, 25.0, 0.0, 20.0, 0.0, 1e6));
 }
 
 TEST(ContactTest, CountsTheRestOfTheCarAhead) {
   // The car ahead stops after 1 s and 5 m; the car behind keeps 10 m/s: (7 + 5) m / 10 m/s. If the
   // car ahead could roll back, the gap 7 - 5 t^2 would close at 1.183 s.
-  EXPECT_DOUBLE_EQ(TimeToContact(7.0, 10.0, -10.0, 10.0, 0.0, 2.0).value(), 1.2);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(7.0, 10.0, -10.0, 10.0, 0.0, 2.0).value(), 1.2);
 }
 
 TEST(ContactTest, DoesNotHappenIfTheCarBehindStopsInFrontOfTheGap) {
   // The car behind needs 4^2 / (2 * 2) = 4 m; the car ahead stands.
-  EXPECT_FALSE(TimeToContact(4.001, 0.0, 0.0, 4.0, -2.0, 10.0));
-  EXPECT_DOUBLE_EQ(TimeToContact(3.0, 0.0, 0.0, 4.0, -2.0, 10.0).value(), 1.0);
+  EXPECT_FALSE(models::TimeToContact(4.001, 0.0, 0.0, 4.0, -2.0, 10.0));
+  EXPECT_DOUBLE_EQ(models::TimeToContact(3.0, 0.0, 0.0, 4.0, -2.0, 10.0).value(), 1.0);
 }
 
 TEST(ContactTest, CountsATouchAtTheMomentOfRest) {
-  EXPECT_DOUBLE_EQ(TimeToContact(4.0, 0.0, 0.0, 4.0, -2.0, 10.0).value(), 2.0);
+  EXPECT_DOUBLE_EQ(models::TimeToContact(4.0, 0.0, 0.0, 4.0, -2.0, 10.0).value(), 2.0);
 }
 
 TEST(ContactTest, IsImmediateIfTheGapIsClosed) {
-  EXPECT_EQ(TimeToContact(0.0, 20.0, 0.0, 10.0, 0.0, 1.0).value(), 0.0);
-  EXPECT_EQ(TimeToContact(-0.5, 20.0, 0.0, 10.0, 0.0, 1.0).value(), 0.0);
+  EXPECT_EQ(models::TimeToContact(0.0, 20.0, 0.0, 10.0, 0.0, 1.0).value(), 0.0);
+  EXPECT_EQ(models::TimeToContact(-0.5, 20.0, 0.0, 10.0, 0.0, 1.0).value(), 0.0);
 }
 
 }  // namespace

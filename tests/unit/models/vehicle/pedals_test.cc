@@ -6,7 +6,7 @@ namespace fogline {
 namespace {
 
 TEST(PedalsTest, GivesADemandToOnePedalOnly) {
-  Pedals pedals(10);
+  models::Pedals pedals(10);
   EXPECT_EQ(pedals.Split(50).traction_n, 50);
   EXPECT_EQ(pedals.Split(50).brake_n, 0);
   EXPECT_EQ(pedals.Split(-50).traction_n, 0);
@@ -14,19 +14,19 @@ TEST(PedalsTest, GivesADemandToOnePedalOnly) {
 }
 
 TEST(PedalsTest, ChangesPedalsOnlyBeyondTheBand) {
-  Pedals pedals(10);
+  models::Pedals pedals(10);
   pedals.Split(-10);
-  EXPECT_EQ(pedals.pedal(), Pedal::kThrottle);
+  EXPECT_EQ(pedals.pedal(), models::Pedal::kThrottle);
   pedals.Split(-10.1);
-  EXPECT_EQ(pedals.pedal(), Pedal::kBrake);
+  EXPECT_EQ(pedals.pedal(), models::Pedal::kBrake);
   pedals.Split(10);
-  EXPECT_EQ(pedals.pedal(), Pedal::kBrake);
+  EXPECT_EQ(pedals.pedal(), models::Pedal::kBrake);
   pedals.Split(10.1);
-  EXPECT_EQ(pedals.pedal(), Pedal::kThrottle);
+  EXPECT_EQ(pedals.pedal(), models::Pedal::kThrottle);
 }
 
 TEST(PedalsTest, CoastsWithinTheBandOnTheOtherPedalsSide) {
-  Pedals pedals(10);
+  models::Pedals pedals(10);
   EXPECT_EQ(pedals.Split(-5).brake_n, 0);
   pedals.Split(-20);
   EXPECT_EQ(pedals.Split(5).traction_n, 0);

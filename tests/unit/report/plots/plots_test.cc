@@ -149,7 +149,7 @@ TEST_F(PlotsTest, GrowsWithTheNumberOfRuns) {
 TEST_F(PlotsTest, DrawsRunsWithoutValuesToo) {
   report::ReportRun empty;
   report::ReportRun alone = ExampleRun({.steps = 5});
-  for (Sample& sample : alone.samples) {
+  for (metrics::Sample& sample : alone.samples) {
     sample.follower_gap_m = sample.follower_safe_distance_m =
         std::numeric_limits<double>::quiet_NaN();
   }

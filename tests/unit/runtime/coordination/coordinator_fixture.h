@@ -26,7 +26,7 @@ class RunCoordinatorTest : public testing::Test {
       status.pid = 100 + static_cast<std::int32_t>(info.role);
       status.instance = status.pid;
       status.state = status_t::READY;
-      status.scenario_hash = HashOf(script_.text());
+      status.scenario_hash = runtime::HashOf(script_.text());
       status.type_fingerprint = TypeFingerprint();
     }
   }
@@ -50,7 +50,7 @@ class RunCoordinatorTest : public testing::Test {
     script_.bus().Drain();
   }
   /// Looks at the clock until then as often as a runner does.
-  static void PollUntil(RunCoordinator& coordinator, TimePoint end) {
+  static void PollUntil(runtime::RunCoordinator& coordinator, TimePoint end) {
     for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) coordinator.Poll(now);
     coordinator.Poll(end);
   }
@@ -65,8 +65,8 @@ class RunCoordinatorTest : public testing::Test {
 
   Script script_;
   std::vector<run_t>& said_ = script_.Listen<run_t>();
-  RunCoordinator coordinator_{script_.bus(),
-                              {.run_id = Script::kRunId, .scenario_text = script_.text()}};
+  runtime::RunCoordinator coordinator_{script_.bus(),
+                                       {.run_id = Script::kRunId, .scenario_text = script_.text()}};
   std::array<status_t, kRoles.size()> roles_{};
 };
 

@@ -47,7 +47,7 @@ class DeafRolesTest : public testing::Test {
   }
   bool IsDeaf() const { return deaf_.Of(Role::kRadar).has_value(); }
 
-  DeafRoles deaf_{kPeriod};
+  runtime::DeafRoles deaf_{kPeriod};
   TimePoint now_{std::chrono::hours(5)};
   std::int64_t world_step_ = 20;
   std::int64_t age_ms_ = 0;
@@ -160,7 +160,7 @@ TEST_F(DeafRolesTest, ItsSuccessorIsNot) {
 }
 
 TEST_F(DeafRolesTest, InLockstepNoRoleIsDeaf) {
-  deaf_ = DeafRoles(Duration::zero());
+  deaf_ = runtime::DeafRoles(Duration::zero());
   Pass(20);
   EXPECT_FALSE(IsDeaf());
 }

@@ -19,7 +19,7 @@ status_t Status(std::int64_t run_id, const std::string& role, std::int32_t pid,
 }
 
 TEST(ForeignPeersTest, AreNamedOnceEach) {
-  ForeignPeers foreign_peers;
+  runtime::ForeignPeers foreign_peers;
   EXPECT_EQ(foreign_peers.Text(), "");
   foreign_peers.Hear(Status(123, "fusion", 4711, "lab2"));
   foreign_peers.Hear(Status(123, "fusion", 4711, "lab2"));
@@ -29,13 +29,13 @@ TEST(ForeignPeersTest, AreNamedOnceEach) {
 }
 
 TEST(ForeignPeersTest, MustHaveTheNameOfARole) {
-  ForeignPeers foreign_peers;
+  runtime::ForeignPeers foreign_peers;
   foreign_peers.Hear(Status(1, "nobody", 1, "here"));
   EXPECT_TRUE(foreign_peers.known().empty());
 }
 
 TEST(ForeignPeersTest, CannotWriteToTheTerminal) {
-  ForeignPeers foreign_peers;
+  runtime::ForeignPeers foreign_peers;
   foreign_peers.Hear(Status(1, "radar", 1, "\x1b[31m\n\xff" + std::string(1000, 'x')));
   const std::string text = foreign_peers.Text();
   EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; })) << text;
@@ -43,15 +43,15 @@ TEST(ForeignPeersTest, CannotWriteToTheTerminal) {
 }
 
 TEST(ForeignPeersTest, AreManyOnlyUpToALimit) {
-  ForeignPeers foreign_peers;
+  runtime::ForeignPeers foreign_peers;
   for (int i = 0; i < 10'000; ++i) foreign_peers.Hear(Status(i, "radar", 1, "here"));
-  EXPECT_EQ(foreign_peers.known().size(), ForeignPeers::kMax);
+  EXPECT_EQ(foreign_peers.known().size(), runtime::ForeignPeers::kMax);
   EXPECT_THAT(foreign_peers.Text(), testing::EndsWith("\nignored: more processes of other runs"));
 }
 
 TEST(ForeignPeersTest, AreNotHiddenByAFloodOfInventedOnes) {
   // GIVEN a flood of invented processes, and a genuine stale process among them
-  ForeignPeers foreign_peers;
+  runtime::ForeignPeers foreign_peers;
   int invented = 0;
   const auto flood = [&] {
     for (int i = 0; i < 1000; ++i) foreign_peers.Hear(Status(++invented, "radar", 1, "nowhere"));
@@ -65,7 +65,7 @@ TEST(ForeignPeersTest, AreNotHiddenByAFloodOfInventedOnes) {
   // THEN the text names the genuine one, and the list does not grow
   EXPECT_THAT(foreign_peers.Text(),
               testing::HasSubstr("ignored: fusion (pid 4711 on lab2) of run 7"));
-  EXPECT_EQ(foreign_peers.known().size(), ForeignPeers::kMax);
+  EXPECT_EQ(foreign_peers.known().size(), runtime::ForeignPeers::kMax);
 }
 
 }  // namespace

@@ -6,30 +6,30 @@ namespace fogline {
 namespace {
 
 TEST(RestartPolicyTest, WaitsTwiceAsLongEachTimeThatItDoesNotHelpUpToASecond) {
-  RestartPolicy policy(10);
+  runtime::RestartPolicy policy(10);
   for (const int wait_ms : {10, 20, 40, 80, 160, 320, 640, 1000, 1000, 1000}) {
     EXPECT_EQ(policy.OnDeath(217), milliseconds(wait_ms));
   }
 }
 
 TEST(RestartPolicyTest, BeginsAnewWhenTheRunHasMadeProgress) {
-  RestartPolicy policy(10);
+  runtime::RestartPolicy policy(10);
   policy.OnDeath(217);
   policy.OnDeath(217);
-  EXPECT_EQ(policy.OnDeath(218), RestartPolicy::kShortest);
+  EXPECT_EQ(policy.OnDeath(218), runtime::RestartPolicy::kShortest);
 }
 
 TEST(RestartPolicyTest, CountsEveryRestartWhetherItHelpsOrNot) {
-  RestartPolicy policy(2);
+  runtime::RestartPolicy policy(2);
   EXPECT_TRUE(policy.OnDeath(1));
   EXPECT_TRUE(policy.OnDeath(2));
   EXPECT_FALSE(policy.OnDeath(3));
   EXPECT_EQ(policy.restarts(), 2);
-  EXPECT_FALSE(RestartPolicy(0).OnDeath(0));
+  EXPECT_FALSE(runtime::RestartPolicy(0).OnDeath(0));
 }
 
 TEST(RestartPolicyTest, TriesAgainEverLaterWhatCannotBeStartedAndCountsThatForNothing) {
-  RestartPolicy policy(1);
+  runtime::RestartPolicy policy(1);
   EXPECT_EQ(policy.OnDeath(1), milliseconds(10));
   for (const int wait_ms : {20, 40, 80, 160, 320, 640, 1000, 1000}) {
     EXPECT_EQ(policy.OnFailedStart(), milliseconds(wait_ms));

@@ -26,10 +26,10 @@ TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
 TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
   using testing::ElementsAre;
   using testing::IsEmpty;
-  RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                             .scenario_text = script_.text(),
-                                             .stall_limit = milliseconds(60'000),
-                                             .external = {Role::kDriver, Role::kAcc}});
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .stall_limit = milliseconds(60'000),
+                                                      .external = {Role::kDriver, Role::kAcc}});
   const TimePoint now = Clock::now();
   EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kAcc, Role::kDriver));
   SayStatus(Role::kAcc);
@@ -49,13 +49,14 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   const status_t first = role(Role::kAcc);
   Replace(Role::kAcc);
   SayStatus(Role::kAcc);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning) << "the first may be dead";
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
+      << "the first may be dead";
   // WHEN the first speaks long after the second has come
   const TimePoint end = Clock::now() + milliseconds(120);
   while (Clock::now() < end) Poll(Clock::now());
   role(Role::kAcc) = first;
   SayStatus(Role::kAcc);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kFailed);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
   EXPECT_THAT(coordinator_.error(), HasSubstr("two processes are the acc: pid 104 on "));
   EXPECT_THAT(coordinator_.error(), HasSubstr(" and pid 1104 on "));
 }
@@ -83,12 +84,12 @@ class ExternalDriverTest : public RunCoordinatorTest {
     return other;
   }
 
-  RunCoordinator external_{script_.bus(),
-                           {.run_id = Script::kRunId,
-                            .scenario_text = script_.text(),
-                            .stall_limit = milliseconds(60'000),
-                            .external = {Role::kDriver},
-                            .restarts = 10}};
+  runtime::RunCoordinator external_{script_.bus(),
+                                    {.run_id = Script::kRunId,
+                                     .scenario_text = script_.text(),
+                                     .stall_limit = milliseconds(60'000),
+                                     .external = {Role::kDriver},
+                                     .restarts = 10}};
   Duration later_{};
 };
 
@@ -152,7 +153,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   Say(other);
   SpeakFor(milliseconds(1300), driver);
   Say(other);
-  EXPECT_NE(external_.phase(), RunCoordinator::Phase::kFailed) << external_.error();
+  EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
   // Unless it goes on.
   for (int i = 0; i < 12; ++i) {
     Say(other);
@@ -171,23 +172,24 @@ TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
   Say(dead);
   SpeakFor(milliseconds(1300), other);
   Say(dead);
-  EXPECT_NE(external_.phase(), RunCoordinator::Phase::kFailed) << external_.error();
+  EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
 }
 
 TEST_F(RunCoordinatorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
-  RoleBuilds builds;
+  runtime::RoleBuilds builds;
   builds.fill(4711);
   for (const bool wanted : {false, true}) {
-    RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                               .scenario_text = script_.text(),
-                                               .builds = builds,
-                                               .same_build = wanted});
+    runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                        .scenario_text = script_.text(),
+                                                        .builds = builds,
+                                                        .same_build = wanted});
     role(Role::kAcc).build_id = 4711;
     SayStatus(Role::kAcc);
-    EXPECT_EQ(coordinator.phase(), RunCoordinator::Phase::kJoining) << coordinator.error();
+    EXPECT_EQ(coordinator.phase(), runtime::RunCoordinator::Phase::kJoining) << coordinator.error();
     role(Role::kDriver).build_id = 17;
     SayStatus(Role::kDriver);
-    EXPECT_EQ(coordinator.phase() == RunCoordinator::Phase::kFailed, wanted) << coordinator.error();
+    EXPECT_EQ(coordinator.phase() == runtime::RunCoordinator::Phase::kFailed, wanted)
+        << coordinator.error();
     if (!wanted) continue;
     EXPECT_THAT(coordinator.error(), HasSubstr("driver (pid "));
     EXPECT_THAT(coordinator.error(),
@@ -197,12 +199,12 @@ TEST_F(RunCoordinatorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
 }
 
 TEST_F(RunCoordinatorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
-  RoleBuilds builds;
+  runtime::RoleBuilds builds;
   builds.fill(4711);
-  RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                             .scenario_text = script_.text(),
-                                             .builds = builds,
-                                             .same_build = true});
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .builds = builds,
+                                                      .same_build = true});
   SayStatus(Role::kDriver);
   EXPECT_THAT(coordinator.error(), HasSubstr("does not say of which build it is (--same-build)"));
 }

@@ -51,7 +51,7 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   SayStatus(Role::kFusion);
   Poll(Clock::now());
   EXPECT_EQ(said_.back().phase, run_t::GO);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
 }
 
 TEST_F(RunCoordinatorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
@@ -68,7 +68,7 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
   BeAtStep(-1);
   BeAtStep(40);
   PollUntil(coordinator_, Clock::now() + milliseconds(3900));
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
   coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   Replace(Role::kFusion);
   for (const std::int64_t step : {-1, 10, 20}) {
@@ -76,10 +76,10 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
     SayStatus(Role::kFusion);
   }
   PollUntil(coordinator_, Clock::now() + milliseconds(3900));
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
   EXPECT_EQ(coordinator_.step(), 40) << "of the run, not of who catches up";
   PollUntil(coordinator_, Clock::now() + milliseconds(4100));
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kFailed);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
 TEST_F(RunCoordinatorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) {
@@ -87,16 +87,16 @@ TEST_F(RunCoordinatorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) 
   BeAtStep(40);
   const TimePoint again = Clock::now() + milliseconds(5000);
   Poll(again);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning) << coordinator_.error();
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
   EXPECT_GE(coordinator_.TakeLongestPause(), milliseconds(4900));
   EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
   // What is not heard from then on counts.
   for (TimePoint now = again; now < again + milliseconds(3990); now += milliseconds(20)) {
     coordinator_.Poll(now);
   }
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning) << coordinator_.error();
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
   coordinator_.Poll(again + milliseconds(4010));
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kFailed);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
 TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
@@ -106,7 +106,7 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
   const TimePoint began = Clock::now();
   TimePoint now = began;
   Duration looked{};
-  while (coordinator_.phase() == RunCoordinator::Phase::kRunning &&
+  while (coordinator_.phase() == runtime::RunCoordinator::Phase::kRunning &&
          now < began + milliseconds(20'000)) {
     const Duration away =
         looked % milliseconds(1000) == Duration::zero() ? milliseconds(600) : milliseconds(20);
@@ -115,14 +115,14 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
     coordinator_.Poll(now);
   }
   // THEN the four seconds in which it looked count
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kFailed);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
   EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
 }
 
 TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
-  RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
-                                       .scenario_text = script_.text(),
-                                       .stall_limit = milliseconds(100)});
+  runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
+                                                .scenario_text = script_.text(),
+                                                .stall_limit = milliseconds(100)});
   BeAtStep(-1);
   hasty.Poll(Clock::now());
   // GIVEN that everybody waits for somebody
@@ -143,12 +143,12 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse
 }
 
 TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
-  RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                             .scenario_text = script_.text(),
-                                             .steps = 500,
-                                             .pace = 1,
-                                             .realtime = true,
-                                             .period = std::chrono::hours(1)});
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .steps = 500,
+                                                      .pace = 1,
+                                                      .realtime = true,
+                                                      .period = std::chrono::hours(1)});
   const auto say = [&](std::int64_t step) {
     role(Role::kRadar).header.step = step;
     SayStatus(Role::kRadar);
@@ -164,9 +164,9 @@ TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) 
 }
 
 TEST_F(RunCoordinatorTest, SaysWithTheCulpritWhyItCannotBeStartedAgain) {
-  RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
-                                       .scenario_text = script_.text(),
-                                       .stall_limit = milliseconds(100)});
+  runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
+                                                .scenario_text = script_.text(),
+                                                .stall_limit = milliseconds(100)});
   BeAtStep(-1);
   hasty.Poll(Clock::now());
   hasty.MarkDead(Role::kWorld, role(Role::kWorld).pid, Clock::now());
@@ -186,7 +186,7 @@ TEST_F(RunCoordinatorTest, TellsWhatRolesCouldNotSendTheDeadIncluded) {
   role(Role::kFusion).sends_failed = 4;
   role(Role::kFusion).send_error = "Network is unreachable";
   SayStatus(Role::kFusion);
-  const std::vector<SendTrouble> troubles = coordinator_.SendTroubles();
+  const std::vector<runtime::SendTrouble> troubles = coordinator_.SendTroubles();
   ASSERT_EQ(troubles.size(), 1U);
   EXPECT_EQ(troubles[0].role, "fusion");
   EXPECT_EQ(troubles[0].count, 7);
@@ -210,8 +210,9 @@ TEST_F(RunCoordinatorTest, CountsWhatItRefusesItself) {
   resend.header.run_id = Script::kRunId + 1;
   script_.Say(resend);
   const auto count = [refused = coordinator_.Refused()](std::int64_t status_t::*counter) {
-    const auto* kind = std::ranges::find(kRefusals, counter, &RefusalKind::counter);
-    return refused[static_cast<std::size_t>(kind - kRefusals.begin())];
+    const auto* kind =
+        std::ranges::find(runtime::kRefusals, counter, &runtime::RefusalKind::counter);
+    return refused[static_cast<std::size_t>(kind - runtime::kRefusals.begin())];
   };
   EXPECT_EQ(count(&status_t::foreign), 2);
   EXPECT_EQ(count(&status_t::malformed), 2);
@@ -236,7 +237,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kWorld).header.step = 48;
   role(Role::kWorld).state = status_t::DONE;
   SayStatus(Role::kWorld);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
   // WHEN the word of the recorder was lost, THEN it is asked for
   PollUntil(coordinator_, Clock::now() + milliseconds(40));
   script_.bus().Drain();
@@ -246,7 +247,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kRecorder).header.step = 48;
   role(Role::kRecorder).log_bytes = 4711;
   SayStatus(Role::kRecorder);
-  EXPECT_EQ(coordinator_.phase(), RunCoordinator::Phase::kDone);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kDone);
   // AND what it says when it leaves counts
   role(Role::kRecorder).log_bytes = 4712;
   SayStatus(Role::kRecorder);

@@ -6,7 +6,7 @@ namespace fogline {
 namespace {
 
 TEST(SendTroubleTest, IsToldByReason) {
-  EXPECT_EQ(Text(std::vector<SendTrouble>{}), "");
+  EXPECT_EQ(Text(std::vector<runtime::SendTrouble>{}), "");
   EXPECT_EQ(Text({{"world", 3, "Operation not permitted"},
                   {"lidar", 1, "Network is unreachable"},
                   {"runner", 12, "Operation not permitted"}}),

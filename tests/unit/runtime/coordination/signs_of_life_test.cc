@@ -25,7 +25,7 @@ class SignsOfLifeTest : public testing::Test {
   double Chance(Role role, std::int64_t silence_ms) const {
     return signs_.ChanceOfLife(role, milliseconds(silence_ms));
   }
-  SignsOfLife signs_{kEvery};
+  runtime::SignsOfLife signs_{kEvery};
 };
 
 TEST_F(SignsOfLifeTest, AProcessThatIsSilentWhileTheOthersAreHeardHangs) {

@@ -27,24 +27,24 @@ class AnnouncementsTest : public testing::Test {
  protected:
   void Hear(const beacon_t& beacon) {
     std::vector<std::uint8_t> bytes;
-    Encode(beacon, bytes);
+    runtime::Encode(beacon, bytes);
     Hear(bytes);
   }
-  void Hear(Bytes bytes) { announcements_.Hear(bytes, now_, kNow_us); }
+  void Hear(runtime::Bytes bytes) { announcements_.Hear(bytes, now_, kNow_us); }
   std::vector<std::int64_t> Runs() const {
     std::vector<std::int64_t> ids;
-    for (const Announcement& run : announcements_.Current(now_)) ids.push_back(run.run_id);
+    for (const runtime::Announcement& run : announcements_.Current(now_)) ids.push_back(run.run_id);
     return ids;
   }
 
-  Announcements announcements_{"lab1"};
+  runtime::Announcements announcements_{"lab1"};
   TimePoint now_ = Clock::now();
 };
 
 TEST_F(AnnouncementsTest, TellOfARunWhatItsBeaconSays) {
   Hear(Beacon(7));
   ASSERT_THAT(Runs(), testing::ElementsAre(7));
-  const Announcement run = announcements_.Current(now_).front();
+  const runtime::Announcement run = announcements_.Current(now_).front();
   EXPECT_EQ(run.url, "udpm://239.255.76.67:7700?ttl=0");
   EXPECT_EQ(run.scenario, "Nebel über der Straße");
   EXPECT_EQ(run.pid, 4711);
@@ -76,7 +76,7 @@ TEST_F(AnnouncementsTest, ForgetARunThatIsOverOrSilent) {
   last.over = 1;
   Hear(last);
   EXPECT_THAT(Runs(), testing::ElementsAre(8));
-  now_ += Announcements::kGone;
+  now_ += runtime::Announcements::kGone;
   EXPECT_THAT(Runs(), testing::ElementsAre(8));
   now_ += milliseconds(1);
   EXPECT_THAT(Runs(), testing::IsEmpty());
@@ -95,7 +95,7 @@ TEST_F(AnnouncementsTest, RefuseWhatNoRunnerOfThisMachineCanHaveSaid) {
       [](beacon_t& b) { b.scenario = "\x1b[2J"; },
       [](beacon_t& b) { b.scenario = "\xff"; },
       [](beacon_t& b) { b.scenario = "\xc2\x9b"; },
-      [](beacon_t& b) { b.scenario = std::string(Announcements::kMaxTitle + 1, 'x'); },
+      [](beacon_t& b) { b.scenario = std::string(runtime::Announcements::kMaxTitle + 1, 'x'); },
       [](beacon_t& b) { b.url = "udpm://10.0.0.1:7700"; },
       [](beacon_t& b) { b.url = "udpm://239.255.76.67:7700?ttl=32"; },
       [](beacon_t& b) { b.url = "tcpq://192.0.2.1:7700"; },
@@ -119,8 +119,8 @@ TEST_F(AnnouncementsTest, RefuseWhatNoRunnerOfThisMachineCanHaveSaid) {
 
 TEST_F(AnnouncementsTest, RefuseBytesThatAreNotExactlyOneBeacon) {
   std::vector<std::uint8_t> bytes;
-  Encode(Beacon(7), bytes);
-  for (std::size_t size = 0; size < bytes.size(); ++size) Hear(Bytes(bytes).first(size));
+  runtime::Encode(Beacon(7), bytes);
+  for (std::size_t size = 0; size < bytes.size(); ++size) Hear(runtime::Bytes(bytes).first(size));
   EXPECT_EQ(announcements_.refused(), std::ssize(bytes));
   bytes.push_back(0);
   Hear(bytes);
@@ -147,10 +147,10 @@ TEST_F(AnnouncementsTest, LetNoOtherProcessMoveOrEndARun) {
 TEST_F(AnnouncementsTest, AreBoundedAndHideNoRunThatGoesOnSpeaking) {
   // GIVEN a run that has announced itself twice, and a flood of invented runs
   Hear(Beacon(7));
-  now_ += kBeaconEvery;
+  now_ += runtime::kBeaconEvery;
   Hear(Beacon(7));
   for (int i = 0; i < 10'000; ++i) Hear(Beacon(1000 + i));
-  EXPECT_EQ(Runs().size(), Announcements::kMax);
+  EXPECT_EQ(Runs().size(), runtime::Announcements::kMax);
   EXPECT_THAT(Runs(), testing::Contains(7));
 }
 

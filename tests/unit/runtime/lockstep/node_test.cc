@@ -28,10 +28,10 @@ class NodeTest : public testing::Test {
   /// The encoded TRUTH of a step, for tests that change its bytes.
   std::vector<std::uint8_t> Encoded(const truth_t& truth) {
     std::vector<std::uint8_t> bytes;
-    Encode(truth, bytes);
+    runtime::Encode(truth, bytes);
     return bytes;
   }
-  void SayBytes(std::string_view channel, Bytes bytes) {
+  void SayBytes(std::string_view channel, runtime::Bytes bytes) {
     script_.bus().Publish(channel, bytes);
     script_.bus().Drain();
   }
@@ -70,7 +70,7 @@ class NodeTest : public testing::Test {
   std::vector<resend_t>& requests_ = script_.Listen<resend_t>();
   std::vector<driver_command_t>& commands_ = script_.Listen<driver_command_t>();
   std::vector<status_t>& status_ = script_.Listen<status_t>();
-  StepNode<Driver> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<driver::Driver> node_{script_.bus(), Script::kRunId};
   std::size_t served_ = 0;
   Duration later_{};
 };
@@ -112,7 +112,7 @@ TEST_F(NodeTest, CatchesUpManyStepsAtATimeAndInSilence) {
   // GIVEN that it asks at once for as many steps as its ring holds
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
-  EXPECT_EQ(requests_[0].count, kRingSteps - 1);
+  EXPECT_EQ(requests_[0].count, runtime::kRingSteps - 1);
   // WHEN it gets these steps, and all that it asks for next
   AnswerRequests();
   // THEN it reaches the step of the other roles and has asked for each step once
@@ -126,15 +126,15 @@ TEST_F(NodeTest, CatchesUpManyStepsAtATimeAndInSilence) {
   EXPECT_EQ(next, kProgress + 1);
   // AND it publishes only the steps for which the recorder does not answer
   ASSERT_FALSE(commands_.empty());
-  EXPECT_EQ(commands_.front().header.step, kProgress - kRingSteps + 1);
+  EXPECT_EQ(commands_.front().header.step, kProgress - runtime::kRingSteps + 1);
   EXPECT_EQ(commands_.back().header.step, kProgress + 1);
-  EXPECT_EQ(commands_.size(), static_cast<std::size_t>(kRingSteps + 1));
+  EXPECT_EQ(commands_.size(), static_cast<std::size_t>(runtime::kRingSteps + 1));
 }
 
 TEST_F(NodeTest, CountsNoStepAsImpossibleThatIsUnderWayWhileItCatchesUp) {
   script_.SayRun(run_t::GO, 200);
   script_.Say(Truth(200));
-  script_.Say(Truth(200 + kRingSteps));
+  script_.Say(Truth(200 + runtime::kRingSteps));
   script_.Poll(node_, Clock::now() + milliseconds(500));
   EXPECT_EQ(status_.back().out_of_window, 0);
   script_.Say(Truth(1'000'000));
@@ -177,7 +177,7 @@ TEST_F(NodeTest, CountsUnsoundMessagesByKindAndGivesThemNoPlace) {
   script_.SayRun(run_t::GO, -1);
   // WHEN they come before the valid message of their step
   SayUnsound(0);
-  SayBytes("TRUTH", std::vector<std::uint8_t>(kHeaderEnd - 1));
+  SayBytes("TRUTH", std::vector<std::uint8_t>(runtime::kHeaderEnd - 1));
   truth_t infinite = Truth(0);
   infinite.preceding_speed_mps = -std::numeric_limits<double>::infinity();
   script_.Say(infinite);
@@ -209,7 +209,7 @@ TEST_F(NodeTest, TakesNoUnsoundMessageForASecondProducer) {
 
 TEST_F(NodeTest, CountsWhatItRefusesOfRunAndResend) {
   script_.SayRun(run_t::GO, -1);
-  run_t run = MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
+  run_t run = runtime::MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
   run.pace = std::numeric_limits<double>::quiet_NaN();
   script_.Say(run);
   EXPECT_EQ(Status().not_finite, 1);
@@ -232,7 +232,7 @@ TEST_F(NodeTest, CountsWhatItRefusesOfRunAndResend) {
 
 TEST_F(NodeTest, LetsAnOlderWordOfTheRunnerCountForNothing) {
   script_.SayRun(run_t::GO, -1);
-  run_t older = MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
+  run_t older = runtime::MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
   older.sequence = 1;
   script_.Say(older);
   EXPECT_FALSE(node_.left());
@@ -244,10 +244,11 @@ TEST_F(NodeTest, LetsAnOlderWordOfTheRunnerCountForNothing) {
 
 TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioIsThere) {
   Script other;
-  StepNode<Driver> node(other.bus(), std::nullopt);
+  runtime::StepNode<driver::Driver> node(other.bus(), std::nullopt);
   const std::vector<std::string> parts{"{", "}"};
   other.Say(Script::WithDriver(
-      MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, HashOf("{}"), parts, 0), 0));
+      runtime::MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, runtime::HashOf("{}"), parts, 0),
+      0));
   other.SayRun(run_t::PREPARE, -1);
   EXPECT_TRUE(node.Waits());
   other.Poll(node);
@@ -267,23 +268,25 @@ class ExternalNodeTest : public testing::Test {
 
   /// The runner announces which process is the driver.
   void SayHolder(std::int64_t run_id, std::int64_t holder) {
-    const std::vector<std::string> parts = SplitScenario(script_.text());
+    const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
     script_.Say(Script::WithDriver(
-        MakeRunPart(run_id, run_t::PREPARE, 0, HashOf(script_.text()), parts, 0), holder));
+        runtime::MakeRunPart(run_id, run_t::PREPARE, 0, runtime::HashOf(script_.text()), parts, 0),
+        holder));
   }
   std::int64_t instance() const { return status_.back().instance; }
 
   Script script_;
   std::vector<status_t>& status_ = script_.Listen<status_t>();
-  StepNode<Driver> node_{script_.bus(), std::nullopt};
+  runtime::StepNode<driver::Driver> node_{script_.bus(), std::nullopt};
 };
 
 TEST_F(ExternalNodeTest, JoinsNoRunThatHasItsRoleOrStartsItItself) {
   Script other;
   const std::vector<status_t>& said = other.Listen<status_t>();
-  StepNode<Driver> node(other.bus(), std::nullopt);
-  const std::vector<std::string> parts = SplitScenario(other.text());
-  const run_t run = MakeRunPart(Script::kRunId, run_t::PREPARE, 0, HashOf(other.text()), parts, 0);
+  runtime::StepNode<driver::Driver> node(other.bus(), std::nullopt);
+  const std::vector<std::string> parts = runtime::SplitScenario(other.text());
+  const run_t run = runtime::MakeRunPart(Script::kRunId, run_t::PREPARE, 0,
+                                         runtime::HashOf(other.text()), parts, 0);
   for (int i = 0; i < 2; ++i) {
     other.Say(i == 0 ? run : Script::WithDriver(run, 4711));
     other.Poll(node, Clock::now() + milliseconds(300));
@@ -338,7 +341,7 @@ TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
   ASSERT_EQ(prctl(PR_GET_PDEATHSIG, &before), 0);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, SIGKILL), 0);
   Script other;
-  StepNode<Driver> started(other.bus(), Script::kRunId);
+  runtime::StepNode<driver::Driver> started(other.bus(), Script::kRunId);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, before), 0);
   other.SayRun(run_t::GO, -1);
   other.Poll(started);
@@ -349,11 +352,12 @@ TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
 TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
   script_.SayRun(run_t::GO, -1);
   const std::string huge(10'000, 'x');
-  const std::vector<std::string> parts = SplitScenario(huge);
+  const std::vector<std::string> parts = runtime::SplitScenario(huge);
   Script other;
-  StepNode<Driver> node(other.bus(), Script::kRunId);
+  runtime::StepNode<driver::Driver> node(other.bus(), Script::kRunId);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    other.Say(MakeRunPart(Script::kRunId, run_t::PREPARE, 0, HashOf(huge), parts, i));
+    other.Say(
+        runtime::MakeRunPart(Script::kRunId, run_t::PREPARE, 0, runtime::HashOf(huge), parts, i));
   }
   EXPECT_TRUE(node.left());
   EXPECT_LE(node.error().size(), 700U);
@@ -361,26 +365,26 @@ TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
 
 TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {
   script_.SayRun(run_t::GO, -1);
-  for (std::int64_t k = 0; k < kRingSteps; ++k) script_.Say(Truth(k));
+  for (std::int64_t k = 0; k < runtime::kRingSteps; ++k) script_.Say(Truth(k));
   commands_.clear();
   constexpr int kRequests = 200;
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
   // Each step at most once per millisecond, of 12,800 requested messages.
-  EXPECT_GE(commands_.size(), static_cast<std::size_t>(kRingSteps));
-  EXPECT_LE(static_cast<double>(commands_.size()), kRingSteps * (1 + 1000 * took.count()));
+  EXPECT_GE(commands_.size(), static_cast<std::size_t>(runtime::kRingSteps));
+  EXPECT_LE(static_cast<double>(commands_.size()), runtime::kRingSteps * (1 + 1000 * took.count()));
 }
 
 TEST_F(NodeTest, AnswersForTheNewestStepsInAFloodOfRequestsForOldOnes) {
   script_.SayRun(run_t::GO, -1);
-  for (std::int64_t k = 0; k < kRingSteps; ++k) script_.Say(Truth(k));
+  for (std::int64_t k = 0; k < runtime::kRingSteps; ++k) script_.Say(Truth(k));
   // GIVEN that the node has used up its burst of answers
   const TimePoint until = Clock::now() + milliseconds(20);
-  while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, kRingSteps - 3);
+  while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, runtime::kRingSteps - 3);
   commands_.clear();
   // WHEN a role asks for the step for which the run waits
-  script_.AskFor("DRIVER_COMMAND", kRingSteps - 1, 1);
+  script_.AskFor("DRIVER_COMMAND", runtime::kRingSteps - 1, 1);
   EXPECT_EQ(commands_.size(), 1U);
 }
 

@@ -81,7 +81,7 @@ class OnDemandTest : public testing::Test {
   std::vector<resend_t>& requests_ = script_.Listen<resend_t>();
   std::vector<driver_command_t>& commands_ = script_.Listen<driver_command_t>();
   std::vector<status_t>& status_ = script_.Listen<status_t>();
-  StepNode<Echo> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<Echo> node_{script_.bus(), Script::kRunId};
 };
 
 TEST_F(OnDemandTest, IsOfTheStepBeforeWhereItsProducerComesLaterAndAllZeroBeforeTheFirst) {

@@ -16,14 +16,14 @@ run_t RunWith(std::int64_t stall_ms) {
 }
 
 /// Looks at the clock until that time, as often as a process does.
-void AttendUntil(RunnerWatch& watch, int from_ms, int to_ms) {
+void AttendUntil(runtime::RunnerWatch& watch, int from_ms, int to_ms) {
   for (int at_ms = from_ms; at_ms <= to_ms; at_ms += 100) watch.Attend(At(at_ms));
 }
 
 TEST(RunnerWatchTest, WaitsForLongerThanTheRunWaitsForAStep) {
   for (const auto& [stall_ms, gone_ms] :
        {std::pair(0, 19'000), std::pair(4000, 19'000), std::pair(60'000, 75'000)}) {
-    RunnerWatch watch(At(0));
+    runtime::RunnerWatch watch(At(0));
     watch.Heard(RunWith(stall_ms), At(0));
     AttendUntil(watch, 0, gone_ms + 100);
     EXPECT_FALSE(watch.Gone(At(gone_ms)));
@@ -32,7 +32,7 @@ TEST(RunnerWatchTest, WaitsForLongerThanTheRunWaitsForAStep) {
 }
 
 TEST(RunnerWatchTest, HoldsItsOwnPauseAgainstNoRunner) {
-  RunnerWatch watch(At(0));
+  runtime::RunnerWatch watch(At(0));
   watch.Heard(RunWith(4000), At(0));
   watch.Attend(At(100));
   watch.Attend(At(60'100));
@@ -43,7 +43,7 @@ TEST(RunnerWatchTest, HoldsItsOwnPauseAgainstNoRunner) {
 }
 
 TEST(RunnerWatchTest, MissesNoRunnerThatItHasNotHeard) {
-  RunnerWatch watch(At(0));
+  runtime::RunnerWatch watch(At(0));
   AttendUntil(watch, 0, 100'000);
   EXPECT_FALSE(watch.Silent(At(100'000)));
   watch.Heard(RunWith(0), At(100'000));
@@ -54,12 +54,12 @@ TEST(RunnerWatchTest, MissesNoRunnerThatItHasNotHeard) {
 
 TEST(SeatInTest, IsAsTheRunSays) {
   run_t run{};
-  EXPECT_EQ(SeatIn(run, "driver", 5), Seat::kNone);
+  EXPECT_EQ(runtime::SeatIn(run, "driver", 5), runtime::Seat::kNone);
   run.external = {"acc", "driver"};
   run.holder = {5, 0};
-  EXPECT_EQ(SeatIn(run, "driver", 5), Seat::kFree);
-  EXPECT_EQ(SeatIn(run, "acc", 5), Seat::kOurs);
-  EXPECT_EQ(SeatIn(run, "acc", 6), Seat::kTaken);
+  EXPECT_EQ(runtime::SeatIn(run, "driver", 5), runtime::Seat::kFree);
+  EXPECT_EQ(runtime::SeatIn(run, "acc", 5), runtime::Seat::kOurs);
+  EXPECT_EQ(runtime::SeatIn(run, "acc", 6), runtime::Seat::kTaken);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class StepGateTest : public testing::Test {
   const TimePoint now_ = Clock::now();
   Script script_;
   status_t own_{};
-  StepGate gate_{script_.bus(), own_};
+  runtime::StepGate gate_{script_.bus(), own_};
 };
 
 TEST_F(StepGateTest, IsClosedUntilTheRunnerSaysGo) {
@@ -40,30 +40,30 @@ TEST_F(StepGateTest, IsClosedUntilTheRunnerSaysGo) {
 
 TEST_F(StepGateTest, LetsTheWorldRunOnlySoFarAheadOfWhatIsOnDisk) {
   Go(0, -1);
-  EXPECT_TRUE(gate_.Open(kMaxAhead - 1, now_));
-  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
-  own_.header.step = kMaxAhead - 1;
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead - 1, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
+  own_.header.step = runtime::kMaxAhead - 1;
   Recorded(10);
-  EXPECT_TRUE(gate_.Open(kMaxAhead + 10, now_));
-  EXPECT_FALSE(gate_.Open(kMaxAhead + 11, now_));
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 10, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead + 11, now_));
 }
 
 TEST_F(StepGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
   Go(0, -1);
   own_.header.step = 5;
   Recorded(6);
-  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
   EXPECT_EQ(own_.out_of_window, 1);
   // It believes so if an earlier world has begun the step.
   Go(0, 6);
   Recorded(6);
-  EXPECT_TRUE(gate_.Open(kMaxAhead + 6, now_));
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 6, now_));
 }
 
 TEST_F(StepGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {
   Go(0, -1);
   Recorded(10, status_t::FAILED);
-  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
 }
 
 TEST_F(StepGateTest, CountsWhatIsNoStatusOfItsRun) {
@@ -76,7 +76,7 @@ TEST_F(StepGateTest, CountsWhatIsNoStatusOfItsRun) {
   EXPECT_EQ(own_.foreign, 1);
   EXPECT_EQ(own_.wrong_type, 1);
   Go(0, -1);
-  EXPECT_FALSE(gate_.Open(kMaxAhead, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
 }
 
 TEST_F(StepGateTest, HoldsTheWorldToThePace) {

@@ -16,14 +16,14 @@ using std::chrono::microseconds;
 using std::chrono::nanoseconds;
 
 TEST(DurationHistogramTest, KnowsNothingOfNothing) {
-  const DurationHistogram histogram;
+  const runtime::DurationHistogram histogram;
   EXPECT_EQ(histogram.count(), 0);
   EXPECT_EQ(histogram.QuantileUs(0.99), 0);
   EXPECT_EQ(histogram.MaxUs(), 0);
 }
 
 TEST(DurationHistogramTest, IsExactBelow128Microseconds) {
-  DurationHistogram histogram;
+  runtime::DurationHistogram histogram;
   for (int us = 1; us <= 100; ++us) histogram.Add(microseconds(us));
   EXPECT_EQ(histogram.QuantileUs(0), 1);
   EXPECT_EQ(histogram.QuantileUs(0.5), 50);
@@ -33,17 +33,17 @@ TEST(DurationHistogramTest, IsExactBelow128Microseconds) {
 }
 
 TEST(DurationHistogramTest, CountsWhatIsOutsideItsRangeAtItsEnds) {
-  DurationHistogram histogram;
+  runtime::DurationHistogram histogram;
   histogram.Add(microseconds(-5));
   EXPECT_EQ(histogram.QuantileUs(1), 0);
   histogram.Add(std::chrono::hours(10));
-  EXPECT_EQ(histogram.MaxUs(), DurationHistogram::kMaxUs);
-  EXPECT_EQ(histogram.QuantileUs(1), DurationHistogram::kMaxUs);
+  EXPECT_EQ(histogram.MaxUs(), runtime::DurationHistogram::kMaxUs);
+  EXPECT_EQ(histogram.QuantileUs(1), runtime::DurationHistogram::kMaxUs);
   EXPECT_EQ(histogram.count(), 2);
 }
 
 TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
-  DurationHistogram histogram;
+  runtime::DurationHistogram histogram;
   histogram.Add(nanoseconds(1));
   EXPECT_EQ(histogram.MaxUs(), 1);
 }
@@ -51,11 +51,11 @@ TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
 // If a duration is alone in its histogram, the maximum gives its exact value. Below a larger
 // duration it is rounded up within its cell.
 TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
-  for (std::int64_t us = 1; us < DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
-    DurationHistogram histogram;
+  for (std::int64_t us = 1; us < runtime::DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
+    runtime::DurationHistogram histogram;
     histogram.Add(microseconds(us));
     EXPECT_EQ(histogram.QuantileUs(1), us);
-    histogram.Add(microseconds(DurationHistogram::kMaxUs));
+    histogram.Add(microseconds(runtime::DurationHistogram::kMaxUs));
     const std::int64_t median = histogram.QuantileUs(0.5);
     ASSERT_GE(median, us);
     ASSERT_LE(median - us, us / 64) << us;
@@ -64,7 +64,7 @@ TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
 
 TEST(DurationHistogramTest, AgreesWithSorting) {
   const Random random(3, Stream::kRadar);
-  DurationHistogram histogram;
+  runtime::DurationHistogram histogram;
   std::vector<std::int64_t> all;
   for (std::int64_t i = 0; i < 20'000; ++i) {
     // A latency with a long tail: often a factor of e above or below 300 us.

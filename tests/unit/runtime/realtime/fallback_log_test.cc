@@ -36,12 +36,12 @@ class FallbackLogTest : public testing::Test {
   }
   /// The text of the change that this STATUS causes, "" if there is none.
   std::string Add(const status_t& status) {
-    const Fallback* change = log_.Add(status);
+    const runtime::Fallback* change = log_.Add(status);
     return change != nullptr ? change->Text() : "";
   }
 
   static constexpr std::int64_t kSteps = 100'000;
-  FallbackLog log_{kStep_us, 1, kSteps};
+  runtime::FallbackLog log_{kStep_us, 1, kSteps};
 };
 
 TEST_F(FallbackLogTest, SaysWhatIsLostWhoIsToBlameAndWhatIsDone) {
@@ -78,7 +78,7 @@ TEST_F(FallbackLogTest, ForgetsWhatARoleHasLostOnceItIsSilentItself) {
 }
 
 TEST_F(FallbackLogTest, MeasuresSilenceInTheTimeOfPeople) {
-  FallbackLog fast(kStep_us, 20, kSteps);
+  runtime::FallbackLog fast(kStep_us, 20, kSteps);
   fast.Add(Said("fusion", 12, {{"RADAR", kLost}}));
   fast.Add(Said("acc", 40, {{"TRACK", kLost}}));  // 0.14 s later
   EXPECT_EQ(fast.all().back().culprit, "radar");
@@ -115,11 +115,11 @@ TEST_F(FallbackLogTest, ShowsNoTerminalWhatItWouldObey) {
 
 TEST_F(FallbackLogTest, KeepsTheFirstChangesAndCountsTheRest) {
   constexpr std::int64_t kMore = 5;
-  const auto changes = static_cast<std::int64_t>(FallbackLog::kMaxKept) + kMore;
+  const auto changes = static_cast<std::int64_t>(runtime::FallbackLog::kMaxKept) + kMore;
   for (std::int64_t step = 0; step < changes; ++step) {
     EXPECT_NE(Add(Said("fusion", step, {{"RADAR", step % 2 == 0 ? kLost : kOk}})), "");
   }
-  EXPECT_EQ(log_.all().size(), FallbackLog::kMaxKept);
+  EXPECT_EQ(log_.all().size(), runtime::FallbackLog::kMaxKept);
   EXPECT_EQ(log_.all().front().step, 0);
   EXPECT_EQ(log_.left_out(), kMore);
 }

@@ -11,17 +11,17 @@ constexpr HealthSection kSection{.stale_periods = 1.5, .lost_periods = 2.5, .rec
 
 TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
-InputHealth Fresh() { return InputHealth(kSection, kPeriod, kBegan); }
+runtime::InputHealth Fresh() { return runtime::InputHealth(kSection, kPeriod, kBegan); }
 
 // An input of which the steps 0, 1, ... came at 0, 100, ... ms.
-InputHealth Running(std::int64_t steps) {
-  InputHealth health = Fresh();
+runtime::InputHealth Running(std::int64_t steps) {
+  runtime::InputHealth health = Fresh();
   for (std::int64_t k = 0; k < steps; ++k) health.Arrived(k, At(100 * k));
   return health;
 }
 
 TEST(InputHealthTest, IsAwaitedAtFirstAndOkWithTheFirstStep) {
-  InputHealth health = Fresh();
+  runtime::InputHealth health = Fresh();
   EXPECT_EQ(health.Update(At(250)), InputState::kAwaited);
   health.Arrived(17, At(250));
   EXPECT_EQ(health.state(), InputState::kOk);
@@ -29,13 +29,13 @@ TEST(InputHealthTest, IsAwaitedAtFirstAndOkWithTheFirstStep) {
 }
 
 TEST(InputHealthTest, IsLostIfItNeverCame) {
-  InputHealth health = Fresh();
+  runtime::InputHealth health = Fresh();
   EXPECT_EQ(health.Update(At(251)), InputState::kLost);
   EXPECT_EQ(health.newest(), -1);
 }
 
 TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
-  InputHealth health = Running(3);  // the last one at 200 ms
+  runtime::InputHealth health = Running(3);  // the last one at 200 ms
   EXPECT_EQ(health.Update(At(350)), InputState::kOk);
   EXPECT_EQ(health.Update(At(350) + Duration(1)), InputState::kStale);
   EXPECT_EQ(health.Update(At(450)), InputState::kStale);
@@ -43,16 +43,16 @@ TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
 }
 
 TEST(InputHealthTest, FindsASilentInputWithinThreePeriods) {
-  InputHealth health = Running(10);
+  runtime::InputHealth health = Running(10);
   EXPECT_EQ(health.Update(At(900 + 300)), InputState::kLost);
   // The same holds with the scenario's defaults.
-  InputHealth by_default(HealthSection(), kPeriod, kBegan);
+  runtime::InputHealth by_default(HealthSection(), kPeriod, kBegan);
   by_default.Arrived(0, At(0));
   EXPECT_EQ(by_default.Update(At(300)), InputState::kLost);
 }
 
 TEST(InputHealthTest, DoesNotTakeOneMissingStepForALoss) {
-  InputHealth health = Running(5);
+  runtime::InputHealth health = Running(5);
   EXPECT_EQ(health.Update(At(599)), InputState::kStale);
   health.Arrived(6, At(600));
   EXPECT_EQ(health.state(), InputState::kStale);
@@ -61,7 +61,7 @@ TEST(InputHealthTest, DoesNotTakeOneMissingStepForALoss) {
 }
 
 TEST(InputHealthTest, SaysWhenItWantsToBeLookedAt) {
-  InputHealth health = Fresh();
+  runtime::InputHealth health = Fresh();
   EXPECT_EQ(health.NextChange(), At(250) + Duration(1));
   health.Arrived(0, At(0));
   while (health.state() != InputState::kLost) {
@@ -74,13 +74,13 @@ TEST(InputHealthTest, SaysWhenItWantsToBeLookedAt) {
 }
 
 TEST(InputHealthTest, NoticesAGapThatNobodyLookedAt) {
-  InputHealth health = Running(3);
+  runtime::InputHealth health = Running(3);
   health.Arrived(12, At(1200));
   EXPECT_EQ(health.state(), InputState::kLost);
 }
 
 TEST(InputHealthTest, IsOkAgainOnlyAfterStepsInTimeOneAfterTheOther) {
-  InputHealth health = Running(3);
+  runtime::InputHealth health = Running(3);
   health.Update(At(1000));
   // GIVEN two steps in time and then a late one
   health.Arrived(10, At(1000));
@@ -95,7 +95,7 @@ TEST(InputHealthTest, IsOkAgainOnlyAfterStepsInTimeOneAfterTheOther) {
 }
 
 TEST(InputHealthTest, DoesNotTakeABacklogForRecovery) {
-  InputHealth health = Running(3);
+  runtime::InputHealth health = Running(3);
   health.Update(At(2000));
   for (std::int64_t k = 3; k <= 20; ++k) health.Arrived(k, At(2000));
   EXPECT_EQ(health.state(), InputState::kLost);
@@ -106,7 +106,7 @@ TEST(InputHealthTest, DoesNotTakeABacklogForRecovery) {
 }
 
 TEST(InputHealthTest, CountsLateStepsAndDoesNotUseThem) {
-  InputHealth health = Running(5);
+  runtime::InputHealth health = Running(5);
   health.Arrived(2, At(410));
   health.Arrived(3, At(420));
   EXPECT_EQ(health.late(), 2);
@@ -115,7 +115,7 @@ TEST(InputHealthTest, CountsLateStepsAndDoesNotUseThem) {
 }
 
 TEST(InputHealthTest, DoesNotCallAnEqualCopyLate) {
-  InputHealth health = Running(5);
+  runtime::InputHealth health = Running(5);
   health.Arrived(4, At(410));
   EXPECT_EQ(health.late(), 0);
   EXPECT_EQ(health.Age(At(430)), milliseconds(30));
@@ -123,14 +123,14 @@ TEST(InputHealthTest, DoesNotCallAnEqualCopyLate) {
 
 TEST(InputHealthTest, IsNeverLostBeforeItIsStale) {
   const HealthSection crossed{.stale_periods = 3, .lost_periods = 2, .recover_steps = 1};
-  InputHealth health(crossed, kPeriod, kBegan);
+  runtime::InputHealth health(crossed, kPeriod, kBegan);
   health.Arrived(0, At(0));
   EXPECT_EQ(health.Update(At(300)), InputState::kOk);
   EXPECT_EQ(health.Update(At(301)), InputState::kLost);
 }
 
 TEST(InputHealthTest, MeasuresTheRateAndLetsItFallInSilence) {
-  InputHealth health = Fresh();
+  runtime::InputHealth health = Fresh();
   EXPECT_EQ(health.RateHz(At(0)), 0);
   health.Arrived(0, At(0));
   EXPECT_EQ(health.RateHz(At(50)), 0);

@@ -68,7 +68,7 @@ class RealtimeHorizonTest : public testing::Test {
   Script script_{Long()};
   std::vector<track_t>& tracks_ = script_.Listen<track_t>();
   std::vector<status_t>& status_ = script_.Listen<status_t>();
-  StepNode<Fusion> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<fusion::Fusion> node_{script_.bus(), Script::kRunId};
   TimePoint began_{};
   std::int64_t first_ = 0;
   Duration later_{};
@@ -133,7 +133,7 @@ TEST_F(RealtimeHorizonTest,
 TEST_F(RealtimeHorizonTest, ARunWhoseSpeedIsNoneIsRefused) {
   for (const double speed : {1e-300, 0.0005, 1e300}) script_.SayRun(run_t::GO, -1, speed);
   script_.Poll(node_);
-  const auto parts = static_cast<std::int64_t>(SplitScenario(script_.text()).size());
+  const auto parts = static_cast<std::int64_t>(runtime::SplitScenario(script_.text()).size());
   ASSERT_FALSE(status_.empty());
   EXPECT_EQ(status_.back().state, status_t::WAITING);
   later_ += milliseconds(300);
@@ -143,7 +143,7 @@ TEST_F(RealtimeHorizonTest, ARunWhoseSpeedIsNoneIsRefused) {
 
 TEST_F(RealtimeHorizonTest, TheRecorderAsksForStepsOfWhichItHasHeardNothingButThatTheyAre) {
   const test::ScratchFolder folder;
-  Recorder recorder(script_.bus(), Script::kRunId, folder.File("log"));
+  recorder::Recorder recorder(script_.bus(), Script::kRunId, folder.File("log"));
   std::vector<resend_t>& requests = script_.Listen<resend_t>();
   Join(-1);
   ForEachStepChannel([&]<class M>(std::size_t) { script_.Say(Script::Of<M>(0)); });

@@ -46,7 +46,7 @@ class RealtimeRulesTest : public testing::Test {
     return steps;
   }
   /// The node's STATUS one heartbeat later.
-  const status_t& Status(Node& node) {
+  const status_t& Status(runtime::Node& node) {
     later_ += milliseconds(201);
     script_.PollUpTo(node, Clock::now() + later_);
     return status_.back();
@@ -65,7 +65,7 @@ class RealtimeRuleTest : public RealtimeRulesTest {
  protected:
   RealtimeRuleTest() { Go(); }
   std::vector<track_t>& tracks_ = script_.Listen<track_t>();
-  StepNode<Fusion> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<fusion::Fusion> node_{script_.bus(), Script::kRunId};
 };
 
 TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
@@ -142,7 +142,8 @@ class DeadlineRuleTest : public RealtimeRulesTest {
  protected:
   DeadlineRuleTest() : RealtimeRulesTest(Impatient()) { Go(); }
   std::vector<arbitration_t>& commands_ = script_.Listen<arbitration_t>();
-  StepNode<Arbitrator, FailsafeArbitrator> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<arbitrator::Arbitrator, arbitrator::FailsafeArbitrator> node_{script_.bus(),
+                                                                                  Script::kRunId};
 };
 
 TEST_F(DeadlineRuleTest, DecidesAtOnceWhenEverythingIsThere) {
@@ -202,7 +203,7 @@ TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
 class TickRuleTest : public RealtimeRulesTest {
  protected:
   std::vector<truth_t>& truths_ = script_.Listen<truth_t>();
-  StepNode<World, FailsafeWorld> node_{script_.bus(), Script::kRunId};
+  runtime::StepNode<world::World, world::FailsafeWorld> node_{script_.bus(), Script::kRunId};
 };
 
 TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWhoeverAnswers) {
@@ -282,7 +283,7 @@ class RecordRuleTest : public RealtimeRulesTest {
     return std::ranges::count(requests_, channel, &resend_t::channel);
   }
   test::ScratchFolder folder_;
-  Recorder recorder_{script_.bus(), Script::kRunId, folder_.File("log")};
+  recorder::Recorder recorder_{script_.bus(), Script::kRunId, folder_.File("log")};
 };
 
 TEST_F(RecordRuleTest, AsksForWhatIsMissingWhileThereIsHopeAndThenGoesOnWithoutIt) {

@@ -17,7 +17,7 @@ using std::chrono::microseconds;
 constexpr TimePoint kDue{std::chrono::hours(1)};
 
 TEST(RealtimeStatisticsTest, CountsTicksLaterThanFiveMilliseconds) {
-  RealtimeStatistics statistics;
+  runtime::RealtimeStatistics statistics;
   statistics.Tick(kDue, kDue - milliseconds(20));
   statistics.Tick(kDue, kDue + milliseconds(5));
   EXPECT_EQ(statistics.ticks_late(), 0);
@@ -27,7 +27,7 @@ TEST(RealtimeStatisticsTest, CountsTicksLaterThanFiveMilliseconds) {
 }
 
 TEST(RealtimeStatisticsTest, WritesWhatItHasCounted) {
-  RealtimeStatistics statistics;
+  runtime::RealtimeStatistics statistics;
   for (int us = 1; us <= 100; ++us) {
     statistics.Tick(kDue, kDue + microseconds(us));
     statistics.Latency(microseconds(1000 + us));
@@ -48,15 +48,15 @@ TEST(RealtimeStatisticsTest, WritesWhatItHasCounted) {
 }
 
 TEST(RealtimeStatisticsTest, WritesTheInputsAnew) {
-  InputHealth health(HealthSection(), milliseconds(100), kDue);
+  runtime::InputHealth health(HealthSection(), milliseconds(100), kDue);
   for (int k = 0; k < 5; ++k) health.Arrived(k, kDue + k * milliseconds(100));
   health.Arrived(1, kDue + milliseconds(401));
   const TimePoint now = kDue + milliseconds(600);
   health.Update(now);
   status_t status{};
   for (int repeated = 0; repeated < 2; ++repeated) {
-    ClearInputs(status);
-    WriteInput("RADAR", health, now, status);
+    runtime::ClearInputs(status);
+    runtime::WriteInput("RADAR", health, now, status);
   }
   ASSERT_EQ(status.num_inputs, 1);
   EXPECT_EQ(status.input, std::vector<std::string>{"RADAR"});
@@ -68,7 +68,7 @@ TEST(RealtimeStatisticsTest, WritesTheInputsAnew) {
 
 // The recorder is the role with the most inputs. Its texts have their greatest lengths here.
 TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
-  const InputHealth health(HealthSection(), milliseconds(100), kDue);
+  const runtime::InputHealth health(HealthSection(), milliseconds(100), kDue);
   status_t status{};
   status.role = "arbitrator";
   status.host = std::string(64, 'h');  // HOST_NAME_MAX
@@ -77,14 +77,14 @@ TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   status.waiting_for = "FOLLOWER_COMMAND";
   status.fallback = "the automation drives alone: driver (DRIVER_COMMAND lost)";
   ForEachStepChannel([&]<class M>(std::size_t channel) {
-    WriteInput(kChannels[channel].name, health, kDue, status);
+    runtime::WriteInput(kChannels[channel].name, health, kDue, status);
   });
   EXPECT_EQ(status.num_inputs, 9);
   std::vector<std::uint8_t> bytes;
-  Encode(status, bytes);
+  runtime::Encode(status, bytes);
   RecordProperty("bytes", static_cast<int>(bytes.size()));
   // 200 bytes remain for an error text.
-  EXPECT_LE(bytes.size(), kMaxMessageBytes - 200);
+  EXPECT_LE(bytes.size(), runtime::kMaxMessageBytes - 200);
 }
 
 }  // namespace

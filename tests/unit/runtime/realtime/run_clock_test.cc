@@ -18,7 +18,7 @@ class RunClockTest : public testing::Test {
   void Tick(std::int64_t steps) {
     for (std::int64_t k = 0; k < steps; ++k) clock_.Heard(k, At(1000 + 100 * k));
   }
-  RunClock clock_{kPeriod, kBegan};
+  runtime::RunClock clock_{kPeriod, kBegan};
 };
 
 TEST_F(RunClockTest, StandsAtItsBeginningUntilTheFirstTick) {

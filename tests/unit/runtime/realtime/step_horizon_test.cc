@@ -19,7 +19,7 @@ class StepHorizonTest : public testing::Test {
       horizon_.Heard(step, At(100 * step + late_ms));
     }
   }
-  StepHorizon horizon_{kPeriod, kSlack, kRemembered* kPeriod};
+  runtime::StepHorizon horizon_{kPeriod, kSlack, kRemembered* kPeriod};
 };
 
 TEST_F(StepHorizonTest, GoesOnWithTheWallClock) {

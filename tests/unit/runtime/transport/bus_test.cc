@@ -16,10 +16,10 @@ namespace {
 std::vector<std::uint8_t> Payload(int number) { return {static_cast<std::uint8_t>(number)}; }
 
 TEST(BusTest, KeepsABurstFarLongerThanTheQueueOfLcm) {
-  for (const std::string& url : {std::string("memq://"), FreshMulticastUrl()}) {
-    Bus bus(url);
+  for (const std::string& url : {std::string("memq://"), runtime::FreshMulticastUrl()}) {
+    runtime::Bus bus(url);
     std::vector<int> received;
-    bus.Subscribe("BURST", [&received](Bytes bytes) { received.push_back(bytes[0]); });
+    bus.Subscribe("BURST", [&received](runtime::Bytes bytes) { received.push_back(bytes[0]); });
     constexpr int kBurst = 200;
     for (int i = 0; i < kBurst; ++i) bus.Publish("BURST", Payload(i));
     while (received.size() < kBurst && bus.Wait(std::chrono::seconds(5))) {
@@ -30,11 +30,11 @@ TEST(BusTest, KeepsABurstFarLongerThanTheQueueOfLcm) {
 }
 
 TEST(BusTest, TakesChannelNamesLiterally) {
-  Bus bus("memq://");
+  runtime::Bus bus("memq://");
   int literal = 0;
   int other = 0;
-  bus.Subscribe("A.C(1)", [&literal](Bytes) { ++literal; });
-  bus.Subscribe("ABC", [&other](Bytes) { ++other; });
+  bus.Subscribe("A.C(1)", [&literal](runtime::Bytes) { ++literal; });
+  bus.Subscribe("ABC", [&other](runtime::Bytes) { ++other; });
   bus.Publish("A.C(1)", Payload(0));
   bus.Publish("ABC", Payload(0));
   bus.Publish("ABC", Payload(0));
@@ -44,14 +44,15 @@ TEST(BusTest, TakesChannelNamesLiterally) {
 }
 
 TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
-  const std::string url = FreshMulticastUrl();
-  Bus sender(url);
-  Bus bus(url);
+  const std::string url = runtime::FreshMulticastUrl();
+  runtime::Bus sender(url);
+  runtime::Bus bus(url);
   int subscribed = 0;
   std::vector<std::string> watched;
-  bus.Subscribe("BEFORE", [&subscribed](Bytes) { ++subscribed; });
-  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
-  bus.Subscribe("AFTER", [&subscribed](Bytes) { ++subscribed; });
+  bus.Subscribe("BEFORE", [&subscribed](runtime::Bytes) { ++subscribed; });
+  bus.SubscribeAll(
+      [&watched](std::string_view channel, runtime::Bytes) { watched.emplace_back(channel); });
+  bus.Subscribe("AFTER", [&subscribed](runtime::Bytes) { ++subscribed; });
   for (const char* channel : {"BEFORE", "OTHER", "AFTER", "LAST"}) {
     sender.Publish(channel, Payload(0));
   }
@@ -79,10 +80,11 @@ void SendRaw(const std::string& url, std::string_view bytes) {
 
 TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
   using namespace std::string_literals;
-  const std::string url = FreshMulticastUrl();
-  Bus bus(url);
+  const std::string url = runtime::FreshMulticastUrl();
+  runtime::Bus bus(url);
   std::vector<std::string> watched;
-  bus.SubscribeAll([&watched](std::string_view channel, Bytes) { watched.emplace_back(channel); });
+  bus.SubscribeAll(
+      [&watched](std::string_view channel, runtime::Bytes) { watched.emplace_back(channel); });
   // GIVEN a message of 4 bytes as one fragment, which LCM itself would accept
   SendRaw(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
   SendRaw(url, "LC02\0\0\0\2LAST\0abcd"s);
@@ -92,49 +94,49 @@ TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
 }
 
 TEST(BusTest, HandsAnExceptionOfAHandlerToTheCallerOfWait) {
-  Bus bus("memq://");
-  bus.Subscribe("C", [](Bytes) { throw std::runtime_error("from the handler"); });
+  runtime::Bus bus("memq://");
+  bus.Subscribe("C", [](runtime::Bytes) { throw std::runtime_error("from the handler"); });
   bus.Publish("C", Payload(0));
   EXPECT_THROW(bus.Wait(std::chrono::seconds(1)), std::runtime_error);
   EXPECT_FALSE(bus.Wait(Duration::zero()));
 }
 
 TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
-  EXPECT_NE(Bus("udpm://239.255.76.67:23456").url().find("ttl=0"), std::string::npos);
-  EXPECT_NE(FreshMulticastUrl(), FreshMulticastUrl());
+  EXPECT_NE(runtime::Bus("udpm://239.255.76.67:23456").url().find("ttl=0"), std::string::npos);
+  EXPECT_NE(runtime::FreshMulticastUrl(), runtime::FreshMulticastUrl());
 }
 
-SigningKey KeyOf(std::uint8_t byte) {
-  SigningKey::Secret secret{};
+runtime::SigningKey KeyOf(std::uint8_t byte) {
+  runtime::SigningKey::Secret secret{};
   secret.fill(byte);
-  return SigningKey(secret);
+  return runtime::SigningKey(secret);
 }
 
 TEST(BusTest, SendsNothingThatDoesNotFitOneDatagram) {
-  Bus bus("memq://");
-  EXPECT_NO_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes)));
-  EXPECT_THROW(bus.Publish("C", std::vector<std::uint8_t>(kMaxMessageBytes + 1)),
+  runtime::Bus bus("memq://");
+  EXPECT_NO_THROW(bus.Publish("C", std::vector<std::uint8_t>(runtime::kMaxMessageBytes)));
+  EXPECT_THROW(bus.Publish("C", std::vector<std::uint8_t>(runtime::kMaxMessageBytes + 1)),
                std::runtime_error);
 }
 
 TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
-  const std::string url = FreshMulticastUrl();
-  Bus receiver(url);
-  receiver.Secure(MessageSigner(KeyOf(1), Role::kFusion));
+  const std::string url = runtime::FreshMulticastUrl();
+  runtime::Bus receiver(url);
+  receiver.Secure(runtime::MessageSigner(KeyOf(1), Role::kFusion));
   std::vector<int> received;
-  receiver.Subscribe("RADAR", [&received](Bytes bytes) {
+  receiver.Subscribe("RADAR", [&received](runtime::Bytes bytes) {
     EXPECT_EQ(bytes.size(), 1U);
     received.push_back(bytes[0]);
   });
   // GIVEN a sender without a key, one with another key, and one that has the key but may not
   // publish RADAR
-  Bus keyless(url);
-  Bus stranger(url);
-  stranger.Secure(MessageSigner(KeyOf(2), Role::kRadar));
-  Bus lidar(url);
-  lidar.Secure(MessageSigner(KeyOf(1), Role::kLidar));
-  Bus radar(url);
-  radar.Secure(MessageSigner(KeyOf(1), Role::kRadar));
+  runtime::Bus keyless(url);
+  runtime::Bus stranger(url);
+  stranger.Secure(runtime::MessageSigner(KeyOf(2), Role::kRadar));
+  runtime::Bus lidar(url);
+  lidar.Secure(runtime::MessageSigner(KeyOf(1), Role::kLidar));
+  runtime::Bus radar(url);
+  radar.Secure(runtime::MessageSigner(KeyOf(1), Role::kRadar));
   for (int i = 0; i < 3; ++i) keyless.Publish("RADAR", Payload(1));
   for (int i = 0; i < 2; ++i) stranger.Publish("RADAR", Payload(2));
   lidar.Publish("RADAR", Payload(3));
@@ -146,37 +148,38 @@ TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
   EXPECT_EQ(receiver.unverified().badly_signed, 3);
   EXPECT_EQ(receiver.TakeUnverified().badly_signed, 3);
   EXPECT_EQ(receiver.TakeUnverified().badly_signed, 0);
-  EXPECT_EQ(SignatureTrouble(receiver.unverified()),
+  EXPECT_EQ(runtime::SignatureTrouble(receiver.unverified()),
             "3 messages with a wrong signature were refused: do all processes have the same key?");
 }
 
 TEST(BusTest, TakesNoKeyWhereNothingFiltersWhatReachesLcmsParser) {
-  Bus bus("mpudpm://239.255.76.67:23457?ttl=0");
-  EXPECT_THROW(bus.Secure(MessageSigner(KeyOf(1), Role::kFusion)), InputError);
+  runtime::Bus bus("mpudpm://239.255.76.67:23457?ttl=0");
+  EXPECT_THROW(bus.Secure(runtime::MessageSigner(KeyOf(1), Role::kFusion)), InputError);
 }
 
 TEST(BusTest, KnowsThatAKeyIsWanting) {
-  const std::string url = FreshMulticastUrl();
-  Bus keyless(url);
+  const std::string url = runtime::FreshMulticastUrl();
+  runtime::Bus keyless(url);
   bool heard = false;
-  keyless.Subscribe("RADAR",
-                    [&heard](Bytes bytes) { heard = bytes.size() == 1 + kSignatureBytes; });
-  Bus radar(url);
-  radar.Secure(MessageSigner(KeyOf(1), Role::kRadar));
-  EXPECT_EQ(SignatureTrouble(keyless.unverified()), "");
+  keyless.Subscribe("RADAR", [&heard](runtime::Bytes bytes) {
+    heard = bytes.size() == 1 + runtime::kSignatureBytes;
+  });
+  runtime::Bus radar(url);
+  radar.Secure(runtime::MessageSigner(KeyOf(1), Role::kRadar));
+  EXPECT_EQ(runtime::SignatureTrouble(keyless.unverified()), "");
   radar.Publish("RADAR", Payload(4));
   EXPECT_TRUE(keyless.Wait(std::chrono::seconds(5)));
   EXPECT_TRUE(heard) << "it is for the decoder to refuse";
-  EXPECT_EQ(SignatureTrouble(keyless.unverified()),
+  EXPECT_EQ(runtime::SignatureTrouble(keyless.unverified()),
             "traffic on this network is signed; give --key");
 }
 
 TEST(BusTest, HandsLateMessagesOnWhenTheirTimeHasCome) {
-  for (const std::string& url : {std::string("memq://"), FreshMulticastUrl()}) {
-    Bus bus(url);
-    bus.Impair(Faults({.delay_ms = 20}, Role::kAcc));
+  for (const std::string& url : {std::string("memq://"), runtime::FreshMulticastUrl()}) {
+    runtime::Bus bus(url);
+    bus.Impair(runtime::Faults({.delay_ms = 20}, Role::kAcc));
     int received = 0;
-    bus.Subscribe("C", [&received](Bytes) { ++received; });
+    bus.Subscribe("C", [&received](runtime::Bytes) { ++received; });
     const TimePoint began = Clock::now();
     bus.Publish("C", Payload(0));
     while (received == 0 && bus.Wait(std::chrono::seconds(5))) {
@@ -188,10 +191,10 @@ TEST(BusTest, HandsLateMessagesOnWhenTheirTimeHasCome) {
 }
 
 TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
-  Bus bus("memq://");
-  bus.Impair(Faults({.loss = 0.5, .seed = 3}, Role::kAcc));
+  runtime::Bus bus("memq://");
+  bus.Impair(runtime::Faults({.loss = 0.5, .seed = 3}, Role::kAcc));
   int received = 0;
-  bus.Subscribe("C", [&received](Bytes) { ++received; });
+  bus.Subscribe("C", [&received](runtime::Bytes) { ++received; });
   for (int i = 0; i < 200; ++i) bus.Publish("C", Payload(0));
   bus.Drain();
   // The tolerance is five standard deviations.
@@ -199,9 +202,9 @@ TEST(BusTest, LosesMessagesInMemoryWhenItIsToldTo) {
 }
 
 TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
-  EXPECT_THROW(Bus("nonsense"), InputError);
-  EXPECT_THROW(Bus(""), InputError);
-  EXPECT_THROW(Bus("nosuchprovider://"), InputError);
+  EXPECT_THROW(runtime::Bus("nonsense"), InputError);
+  EXPECT_THROW(runtime::Bus(""), InputError);
+  EXPECT_THROW(runtime::Bus("nosuchprovider://"), InputError);
 }
 
 }  // namespace

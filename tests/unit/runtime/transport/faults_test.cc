@@ -28,7 +28,7 @@ int NumberOf(const Message& bytes) { return bytes[0] << 8 | bytes[1]; }
 
 /// The messages that arrive, until a second after the last of `count` messages sent a millisecond
 /// apart.
-std::vector<Message> Arrivals(Faults faults, int count) {
+std::vector<Message> Arrivals(runtime::Faults faults, int count) {
   std::vector<Message> arrived;
   const auto collect = [&](TimePoint now) {
     while (auto message = faults.Due(now)) arrived.push_back(std::move(message->bytes));
@@ -54,20 +54,21 @@ constexpr int kMany = 10'000;
 double Tolerance(double chance) { return 5 * std::sqrt(kMany * chance * (1 - chance)); }
 
 TEST(FaultsTest, ChangeNothingUnlessTheyAreAskedTo) {
-  const std::vector<int> arrived = Numbers(Arrivals(Faults({}, Role::kAcc), 1000));
+  const std::vector<int> arrived = Numbers(Arrivals(runtime::Faults({}, Role::kAcc), 1000));
   ASSERT_EQ(arrived.size(), 1000U);
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(arrived[static_cast<std::size_t>(i)], i);
 }
 
 TEST(FaultsTest, LoseAndDoubleAsManyAsTheyAreAskedTo) {
-  const auto lossy = Arrivals(Faults({.loss = 0.3}, Role::kAcc), kMany);
+  const auto lossy = Arrivals(runtime::Faults({.loss = 0.3}, Role::kAcc), kMany);
   EXPECT_NEAR(static_cast<double>(lossy.size()), 0.7 * kMany, Tolerance(0.3));
-  const auto doubled = Arrivals(Faults({.duplicate = 0.1}, Role::kAcc), kMany);
+  const auto doubled = Arrivals(runtime::Faults({.duplicate = 0.1}, Role::kAcc), kMany);
   EXPECT_NEAR(static_cast<double>(doubled.size()), 1.1 * kMany, Tolerance(0.1));
 }
 
 TEST(FaultsTest, LetLaterMessagesOvertake) {
-  const std::vector<int> arrived = Numbers(Arrivals(Faults({.reorder = 0.1}, Role::kAcc), kMany));
+  const std::vector<int> arrived =
+      Numbers(Arrivals(runtime::Faults({.reorder = 0.1}, Role::kAcc), kMany));
   ASSERT_EQ(arrived.size(), static_cast<std::size_t>(kMany));
   int overtaken = 0;
   for (std::size_t i = 1; i < arrived.size(); ++i) overtaken += arrived[i] < arrived[i - 1] ? 1 : 0;
@@ -77,7 +78,7 @@ TEST(FaultsTest, LetLaterMessagesOvertake) {
 }
 
 TEST(FaultsTest, DelayEveryMessageByTheSame) {
-  Faults faults({.delay_ms = 5}, Role::kAcc);
+  runtime::Faults faults({.delay_ms = 5}, Role::kAcc);
   EXPECT_EQ(faults.NextDue(), TimePoint::max());
   faults.Take("TRUTH", Numbered(1), kNow);
   faults.Take("RADAR", Numbered(2), kNow + milliseconds(1));
@@ -89,7 +90,7 @@ TEST(FaultsTest, DelayEveryMessageByTheSame) {
 }
 
 TEST(FaultsTest, CutMessagesOff) {
-  const auto arrived = Arrivals(Faults({.truncate = 0.2}, Role::kAcc), kMany);
+  const auto arrived = Arrivals(runtime::Faults({.truncate = 0.2}, Role::kAcc), kMany);
   ASSERT_EQ(arrived.size(), static_cast<std::size_t>(kMany));
   int cut = 0;
   for (std::size_t i = 0; i < arrived.size(); ++i) {
@@ -102,7 +103,7 @@ TEST(FaultsTest, CutMessagesOff) {
 }
 
 TEST(FaultsTest, FlipOneBit) {
-  const auto arrived = Arrivals(Faults({.flip = 0.2}, Role::kAcc), kMany);
+  const auto arrived = Arrivals(runtime::Faults({.flip = 0.2}, Role::kAcc), kMany);
   ASSERT_EQ(arrived.size(), static_cast<std::size_t>(kMany));
   int flipped = 0;
   for (std::size_t i = 0; i < arrived.size(); ++i) {
@@ -118,18 +119,18 @@ TEST(FaultsTest, FlipOneBit) {
 }
 
 TEST(FaultsTest, AreTheSameForTheSameSeedAndRoleAndForNoOther) {
-  const FaultRates rates{.loss = 0.3, .duplicate = 0.1, .reorder = 0.1, .flip = 0.1};
-  FaultRates other_seed = rates;
+  const runtime::FaultRates rates{.loss = 0.3, .duplicate = 0.1, .reorder = 0.1, .flip = 0.1};
+  runtime::FaultRates other_seed = rates;
   other_seed.seed = 2;
-  const auto arrived = Arrivals(Faults(rates, Role::kAcc), 200);
-  EXPECT_EQ(Arrivals(Faults(rates, Role::kAcc), 200), arrived);
-  EXPECT_NE(Arrivals(Faults(rates, Role::kRadar), 200), arrived);
-  EXPECT_NE(Arrivals(Faults(other_seed, Role::kAcc), 200), arrived);
+  const auto arrived = Arrivals(runtime::Faults(rates, Role::kAcc), 200);
+  EXPECT_EQ(Arrivals(runtime::Faults(rates, Role::kAcc), 200), arrived);
+  EXPECT_NE(Arrivals(runtime::Faults(rates, Role::kRadar), 200), arrived);
+  EXPECT_NE(Arrivals(runtime::Faults(other_seed, Role::kAcc), 200), arrived);
 }
 
 TEST(FaultsTest, AreReadFromText) {
-  const FaultRates rates =
-      ParseFaults("loss=0.3,duplicate=0.1,reorder=0.2,delay_ms=5,truncate=0.01,flip=0.02,seed=-7");
+  const runtime::FaultRates rates = runtime::ParseFaults(
+      "loss=0.3,duplicate=0.1,reorder=0.2,delay_ms=5,truncate=0.01,flip=0.02,seed=-7");
   EXPECT_EQ(rates.loss, 0.3);
   EXPECT_EQ(rates.duplicate, 0.1);
   EXPECT_EQ(rates.reorder, 0.2);
@@ -138,13 +139,13 @@ TEST(FaultsTest, AreReadFromText) {
   EXPECT_EQ(rates.flip, 0.02);
   EXPECT_EQ(rates.seed, -7);
   EXPECT_TRUE(rates.Damage());
-  EXPECT_FALSE(ParseFaults("loss=0.9").Damage());
+  EXPECT_FALSE(runtime::ParseFaults("loss=0.9").Damage());
 }
 
 TEST(FaultsTest, AreRefusedWithAReason) {
   const auto why = [](std::string_view text) -> std::string {
     try {
-      ParseFaults(text);
+      runtime::ParseFaults(text);
     } catch (const InputError& error) {
       return error.what();
     }

@@ -17,8 +17,8 @@
 namespace fogline {
 namespace {
 
-constexpr LcmSockets::Reach kLoopback = LcmSockets::Reach::kLoopback;
-constexpr LcmSockets::Reach kRoute = LcmSockets::Reach::kRoute;
+constexpr runtime::LcmSockets::Reach kLoopback = runtime::LcmSockets::Reach::kLoopback;
+constexpr runtime::LcmSockets::Reach kRoute = runtime::LcmSockets::Reach::kRoute;
 
 class UdpSocket {
  public:
@@ -37,13 +37,13 @@ sockaddr_in Address(const char* text, std::uint16_t port = 0) {
   return address;
 }
 
-int Bind(LcmSockets& sockets, int socket) {
+int Bind(runtime::LcmSockets& sockets, int socket) {
   const sockaddr_in address = Address("127.0.0.1");
   return sockets.OnBind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
 }
 
 TEST(LcmSocketsTest, KnowWhetherEveryOneThatReceivesIsFiltered) {
-  LcmSockets sockets(ChannelFilter({}), kRoute);
+  runtime::LcmSockets sockets(runtime::ChannelFilter({}), kRoute);
   EXPECT_FALSE(sockets.filtered()) << "there is none";
   const UdpSocket one;
   EXPECT_EQ(Bind(sockets, one), 0);
@@ -55,10 +55,10 @@ TEST(LcmSocketsTest, KnowWhetherEveryOneThatReceivesIsFiltered) {
 }
 
 TEST(LcmSocketsTest, AreFilteredBeforeTheyAreBound) {
-  const LcmSockets sockets(ChannelFilter({{"LCM_SELF_TEST"}}), kRoute);
-  const Bus memory("memq://");
+  const runtime::LcmSockets sockets(runtime::ChannelFilter({{"LCM_SELF_TEST"}}), kRoute);
+  const runtime::Bus memory("memq://");
   EXPECT_TRUE(sockets.receiving().empty());
-  lcm_t* network = lcm_create(FreshMulticastUrl().c_str());
+  lcm_t* network = lcm_create(runtime::FreshMulticastUrl().c_str());
   ASSERT_NE(network, nullptr);
   EXPECT_GE(lcm_get_fileno(network), 0);
   ASSERT_FALSE(sockets.receiving().empty());
@@ -83,7 +83,7 @@ std::string SendsOver(int socket) {
 TEST(LcmSocketsTest, SendOverLoopbackOnlyWhatIsToStayOnThisMachine) {
   for (const auto& [reach, expected] :
        {std::pair(kLoopback, "127.0.0.1"), std::pair(kRoute, "0.0.0.0")}) {
-    const LcmSockets sockets({}, reach);
+    const runtime::LcmSockets sockets({}, reach);
     const UdpSocket socket;
     const unsigned char ttl = 0;
     EXPECT_EQ(setsockopt(socket, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof(ttl)), 0);
@@ -92,10 +92,10 @@ TEST(LcmSocketsTest, SendOverLoopbackOnlyWhatIsToStayOnThisMachine) {
 }
 
 TEST(LcmSocketsTest, ReachAsFarAsTheirUrlSays) {
-  EXPECT_EQ(ReachOf("udpm://239.255.76.67:7700?ttl=0"), kLoopback);
-  EXPECT_EQ(ReachOf("udpm://"), kLoopback) << "LCM's own ttl is 0";
-  EXPECT_EQ(ReachOf("udpm://239.255.76.67:7700?ttl=1"), kRoute);
-  EXPECT_EQ(ReachOf("mpudpm://239.255.76.67:7700?ttl=0"), kRoute);
+  EXPECT_EQ(runtime::ReachOf("udpm://239.255.76.67:7700?ttl=0"), kLoopback);
+  EXPECT_EQ(runtime::ReachOf("udpm://"), kLoopback) << "LCM's own ttl is 0";
+  EXPECT_EQ(runtime::ReachOf("udpm://239.255.76.67:7700?ttl=1"), kRoute);
+  EXPECT_EQ(runtime::ReachOf("mpudpm://239.255.76.67:7700?ttl=0"), kRoute);
 }
 
 }  // namespace

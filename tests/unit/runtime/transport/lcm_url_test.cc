@@ -38,25 +38,25 @@ class EnvironmentUrl {
 TEST(LcmUrlTest, IsTheOneGivenThenThatOfTheEnvironmentThenLcmsOwn) {
   const EnvironmentUrl environment;
   environment.Set("udpm://239.1.2.3:4000");
-  EXPECT_EQ(NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
-  EXPECT_EQ(NetworkUrl(""), "udpm://239.1.2.3:4000");
-  EXPECT_EQ(MeetingUrl(), "udpm://239.1.2.3:4000");
+  EXPECT_EQ(runtime::NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
+  EXPECT_EQ(runtime::NetworkUrl(""), "udpm://239.1.2.3:4000");
+  EXPECT_EQ(runtime::MeetingUrl(), "udpm://239.1.2.3:4000");
   for (const bool empty : {true, false}) {
     if (empty) environment.Set("");
     if (!empty) environment.Unset();
-    EXPECT_EQ(NetworkUrl(""), "udpm://239.255.76.67:7667?ttl=0");
-    EXPECT_EQ(NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
+    EXPECT_EQ(runtime::NetworkUrl(""), "udpm://239.255.76.67:7667?ttl=0");
+    EXPECT_EQ(runtime::NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
   }
 }
 
 TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
-  const MulticastAddress lcms{.group = "239.255.76.67", .port = 7667, .ttl = 0};
-  EXPECT_EQ(ParseMulticastUrl("udpm://"), lcms);
-  EXPECT_EQ(ParseMulticastUrl("udpm://?recv_buf_size=100"), lcms);
-  EXPECT_EQ(ParseMulticastUrl("udpm://:7700?ttl=1"),
-            (MulticastAddress{.group = "239.255.76.67", .port = 7700, .ttl = 1}));
-  EXPECT_EQ(ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"),
-            (MulticastAddress{.group = "224.1.1.1", .port = 7667, .ttl = 3}));
+  const runtime::MulticastAddress lcms{.group = "239.255.76.67", .port = 7667, .ttl = 0};
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://"), lcms);
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://?recv_buf_size=100"), lcms);
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://:7700?ttl=1"),
+            (runtime::MulticastAddress{.group = "239.255.76.67", .port = 7700, .ttl = 1}));
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"),
+            (runtime::MulticastAddress{.group = "224.1.1.1", .port = 7667, .ttl = 3}));
 }
 
 TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
@@ -66,35 +66,36 @@ TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
         "udpm://239.1.1.1:1:2", "udpm://239.1.1.1 :1", "udpm://239.1.1.1?ttl",
         "udpm://?ttl=", "udpm://?ttl=-1", "udpm://?ttl=1x", "udpm://?ttl=1;reboot",
         "udpm://?interface=eth0", "udpm://239.1.1.256", "udpm://239.1.1.1\n"}) {
-    EXPECT_EQ(ParseMulticastUrl(url), std::nullopt) << url;
+    EXPECT_EQ(runtime::ParseMulticastUrl(url), std::nullopt) << url;
   }
 }
 
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
-  EXPECT_TRUE(SameNetwork("udpm://239.255.76.67:7667?ttl=0", "udpm://?recv_buf_size=2097152"));
-  EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.67:7668"));
-  EXPECT_FALSE(SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.68:7667"));
-  EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1:7700", "tcpq://127.0.0.1:7700"));
-  EXPECT_TRUE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7700"));
-  EXPECT_TRUE(SameNetwork("tcpq://", "tcpq://127.0.0.1:7700"));
-  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7701"));
-  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:x", "tcpq://127.0.0.1:y"));
-  EXPECT_FALSE(SameNetwork("tcpq://127.0.0.1:7700", "udpm://"));
+  EXPECT_TRUE(
+      runtime::SameNetwork("udpm://239.255.76.67:7667?ttl=0", "udpm://?recv_buf_size=2097152"));
+  EXPECT_FALSE(runtime::SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.67:7668"));
+  EXPECT_FALSE(runtime::SameNetwork("udpm://239.255.76.67:7667", "udpm://239.255.76.68:7667"));
+  EXPECT_TRUE(runtime::SameNetwork("tcpq://127.0.0.1:7700", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(runtime::SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7700"));
+  EXPECT_TRUE(runtime::SameNetwork("tcpq://", "tcpq://127.0.0.1:7700"));
+  EXPECT_FALSE(runtime::SameNetwork("tcpq://127.0.0.1", "tcpq://127.0.0.1:7701"));
+  EXPECT_FALSE(runtime::SameNetwork("tcpq://127.0.0.1:x", "tcpq://127.0.0.1:y"));
+  EXPECT_FALSE(runtime::SameNetwork("tcpq://127.0.0.1:7700", "udpm://"));
 }
 
 TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
   for (const char* url : {"udpm://239.255.76.67:7700?ttl=0&recv_buf_size=2097152", "udpm://?ttl=1",
                           "tcpq://127.0.0.1:7700", "tcpq://127.1.2.3"}) {
-    EXPECT_TRUE(MayBeAnnounced(url)) << url;
+    EXPECT_TRUE(runtime::MayBeAnnounced(url)) << url;
   }
   for (const std::string url :
        {"", "memq://", "file://x", "mpudpm://239.255.76.67:7700", "udpm://10.0.0.1:7700",
         "udpm://239.255.76.67:0", "udpm://239.255.76.67:7700?ttl=2", "tcpq://localhost:7700",
         "tcpq://192.0.2.1:7700", "tcpq://0.0.0.0:7700", "tcpq://127.0.0.1:0", "tcpq://",
         "tcpq://127.0.0.1:7700?x", "tcpq://127.0.0.1:7700 -x"}) {
-    EXPECT_FALSE(MayBeAnnounced(url)) << url;
+    EXPECT_FALSE(runtime::MayBeAnnounced(url)) << url;
   }
-  EXPECT_FALSE(MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
+  EXPECT_FALSE(runtime::MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
 }
 
 TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
@@ -107,7 +108,7 @@ TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
     std::array<char, INET_ADDRSTRLEN> text{};
     inet_ntop(AF_INET, &address, text.data(), text.size());
     const std::string url = std::string("tcpq://") + text.data() + ":7700";
-    EXPECT_TRUE(MayBeAnnounced(url)) << url;
+    EXPECT_TRUE(runtime::MayBeAnnounced(url)) << url;
     ++tried;
   }
   freeifaddrs(interfaces);

@@ -8,7 +8,7 @@ namespace {
 /// Sends messages at a rate to a process that admits the share that its rate limiter allows.
 class Sender {
  public:
-  explicit Sender(LoadShedder& gate) : gate_(gate) {}
+  explicit Sender(runtime::LoadShedder& gate) : gate_(gate) {}
 
   /// @return messages per second that pass
   double Send(double rate_hz, double seconds) {
@@ -27,21 +27,21 @@ class Sender {
   double share() const { return share_; }
 
  private:
-  LoadShedder& gate_;
+  runtime::LoadShedder& gate_;
   TimePoint now_ = Clock::now();
   double share_ = 1;
   double due_ = 0;
 };
 
 TEST(LoadShedderTest, LetsEverythingInThatIsNoFlood) {
-  LoadShedder gate(3000);
+  runtime::LoadShedder gate(3000);
   Sender sender(gate);
   EXPECT_NEAR(sender.Send(2400, 2), 2400, 1);
   EXPECT_EQ(sender.share(), 1);
 }
 
 TEST(LoadShedderTest, LetsInOfAFloodAboutWhatIsWelcome) {
-  LoadShedder gate(3000);
+  runtime::LoadShedder gate(3000);
   Sender sender(gate);
   sender.Send(20'000, 0.2);
   EXPECT_NEAR(sender.Send(20'000, 1), 3000, 0.2 * 3000);
@@ -50,7 +50,7 @@ TEST(LoadShedderTest, LetsInOfAFloodAboutWhatIsWelcome) {
 }
 
 TEST(LoadShedderTest, LetsEverythingInAgainWhenItIsOver) {
-  LoadShedder gate(3000);
+  runtime::LoadShedder gate(3000);
   Sender sender(gate);
   sender.Send(20'000, 1);
   sender.Send(100, 1);

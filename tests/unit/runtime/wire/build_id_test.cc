@@ -26,33 +26,34 @@ std::string ReadelfOf(const std::string& program) {
 TEST(BuildIdTest, IsTheBeginningOfTheProgramsGnuBuildId) {
   for (const char* name : {"fogline", "fogline-driver"}) {
     const std::string program = test::Program(name);
-    EXPECT_EQ(BuildText(BuildIdOf(program)), ReadelfOf(program)) << name;
+    EXPECT_EQ(runtime::BuildText(runtime::BuildIdOf(program)), ReadelfOf(program)) << name;
   }
-  EXPECT_EQ(OwnBuildId(), BuildIdOf("/proc/self/exe"));
+  EXPECT_EQ(runtime::OwnBuildId(), runtime::BuildIdOf("/proc/self/exe"));
 }
 
 TEST(BuildIdTest, TellsProgramsApart) {
-  EXPECT_NE(BuildIdOf(test::Program("fogline-driver")), kUnknownBuild);
-  EXPECT_NE(BuildIdOf(test::Program("fogline-driver")), BuildIdOf(test::Program("fogline-acc")));
+  EXPECT_NE(runtime::BuildIdOf(test::Program("fogline-driver")), runtime::kUnknownBuild);
+  EXPECT_NE(runtime::BuildIdOf(test::Program("fogline-driver")),
+            runtime::BuildIdOf(test::Program("fogline-acc")));
 }
 
 TEST(BuildIdTest, IsUnknownWhereAFileHasNone) {
-  EXPECT_EQ(BuildIdOf("/no/such/program"), kUnknownBuild);
-  EXPECT_EQ(BuildIdOf("/"), kUnknownBuild);
-  EXPECT_EQ(BuildIdOf(test::SourceDirectory() / "README.md"), kUnknownBuild);
-  EXPECT_EQ(BuildText(kUnknownBuild), "unknown");
+  EXPECT_EQ(runtime::BuildIdOf("/no/such/program"), runtime::kUnknownBuild);
+  EXPECT_EQ(runtime::BuildIdOf("/"), runtime::kUnknownBuild);
+  EXPECT_EQ(runtime::BuildIdOf(test::SourceDirectory() / "README.md"), runtime::kUnknownBuild);
+  EXPECT_EQ(runtime::BuildText(runtime::kUnknownBuild), "unknown");
 }
 
 TEST(BuildIdTest, ReadsNothingBehindTheEndOfAFileThatIsCutAnywhere) {
   const std::vector<std::uint8_t> program = Content(test::Program("fogline-driver"));
-  const BuildId whole = BuildIdIn(program);
+  const runtime::BuildId whole = runtime::BuildIdIn(program);
   constexpr std::size_t kNotesEnd = 4096;
   for (std::size_t size = 0; size < kNotesEnd; ++size) {
     // A separate block, so that a sanitizer sees a read beyond its end.
     const std::vector<std::uint8_t> cut(program.begin(),
                                         program.begin() + static_cast<std::ptrdiff_t>(size));
-    const BuildId id = BuildIdIn(cut);
-    EXPECT_TRUE(id == whole || id == kUnknownBuild) << size << " bytes";
+    const runtime::BuildId id = runtime::BuildIdIn(cut);
+    EXPECT_TRUE(id == whole || id == runtime::kUnknownBuild) << size << " bytes";
   }
 }
 

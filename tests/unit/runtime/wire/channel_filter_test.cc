@@ -25,8 +25,8 @@ std::string Datagram(const std::string& channel, const std::string& data = "1234
 /// A receiving socket behind a filter, and a socket that sends to it.
 class FilteredSocket {
  public:
-  explicit FilteredSocket(const std::vector<Wanted>& wanted)
-      : FilteredSocket(ChannelFilter(wanted)) {}
+  explicit FilteredSocket(const std::vector<runtime::Wanted>& wanted)
+      : FilteredSocket(runtime::ChannelFilter(wanted)) {}
   explicit FilteredSocket(const std::vector<sock_filter>& filter) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -36,7 +36,7 @@ class FilteredSocket {
     EXPECT_EQ(bind(receiver_, where, size), 0);
     EXPECT_EQ(getsockname(receiver_, where, &size), 0);
     EXPECT_EQ(connect(sender_, where, size), 0);
-    EXPECT_TRUE(AttachFilter(receiver_, filter));
+    EXPECT_TRUE(runtime::AttachFilter(receiver_, filter));
   }
   ~FilteredSocket() {
     close(receiver_);
@@ -64,7 +64,7 @@ class FilteredSocket {
 
 TEST(ChannelFilterTest, TakesWhatIsSubscribedWholeAndInOrder) {
   const std::vector<std::string> channels{"FOLLOWER_COMMAND", "A", "TRUTH", "RUN", "RADAR", "AB"};
-  std::vector<Wanted> wanted;
+  std::vector<runtime::Wanted> wanted;
   for (const std::string& channel : channels) wanted.push_back({channel});
   const FilteredSocket socket(wanted);
   for (const std::string& channel : channels) socket.Send(Datagram(channel));
@@ -129,9 +129,9 @@ TEST(ChannelFilterTest, TakesAShareOfAChannelAtRandom) {
 }
 
 TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
-  const FilteredSocket socket(ChannelFilter({}));
+  const FilteredSocket socket(runtime::ChannelFilter({}));
   socket.Send(Datagram("RADAR"));
-  ASSERT_TRUE(AttachFilter(socket.receiver(), ChannelFilter({{"LIDAR"}})));
+  ASSERT_TRUE(runtime::AttachFilter(socket.receiver(), runtime::ChannelFilter({{"LIDAR"}})));
   socket.Send(Datagram("LIDAR"));
   EXPECT_EQ(socket.Receive(), Datagram("LIDAR"));
 }
@@ -139,7 +139,7 @@ TEST(ChannelFilterTest, DropsEverythingWithoutChannels) {
 TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
   const FilteredSocket socket({{"RADAR"}});
   const std::string largest =
-      Datagram("RADAR", std::string(kMaxMessageBytes + kSignatureBytes, 'x'));
+      Datagram("RADAR", std::string(runtime::kMaxMessageBytes + runtime::kSignatureBytes, 'x'));
   socket.Send(Datagram("RADAR", std::string(2000, 'x')));
   socket.Send(Datagram("RADAR", std::string(60'000, 'x')));
   socket.Send(largest);
@@ -149,21 +149,23 @@ TEST(ChannelFilterTest, DropsWhatIsLargerThanAnyMessage) {
 TEST(ChannelFilterTest, RefusesToJumpFurtherThanTheKernelCan) {
   std::vector<std::string> texts;
   for (int i = 0; i < 200; ++i) texts.push_back(std::to_string(i));
-  EXPECT_THROW(ChannelFilter({{"RESEND", {.offset = 4, .texts = texts}}}), std::logic_error);
+  EXPECT_THROW(runtime::ChannelFilter({{"RESEND", {.offset = 4, .texts = texts}}}),
+               std::logic_error);
 }
 
 TEST(AnyChannelFilterTest, TakesEveryWholeMessageWithANameThatEnds) {
-  const FilteredSocket socket(AnyChannelFilter());
+  const FilteredSocket socket(runtime::AnyChannelFilter());
   const std::string longest_name(63, 'N');
   const std::vector<std::string> good{
       Datagram("RADAR"), Datagram(""), Datagram("A", ""), Datagram(longest_name),
-      Datagram(longest_name, std::string(kMaxMessageBytes + kSignatureBytes, 'x'))};
+      Datagram(longest_name,
+               std::string(runtime::kMaxMessageBytes + runtime::kSignatureBytes, 'x'))};
   for (const std::string& datagram : good) socket.Send(datagram);
   for (const std::string& datagram : good) EXPECT_EQ(socket.Receive(), datagram);
 }
 
 TEST(AnyChannelFilterTest, DropsFragmentsAndWhateverIsNoMessageInOneDatagram) {
-  const FilteredSocket socket(AnyChannelFilter());
+  const FilteredSocket socket(runtime::AnyChannelFilter());
   for (const std::string& noise :
        {"LC03\0\0\0\7\0\0\0\x10\0\0\0\0\0\0\0\1RADAR\0 a fragment"s, "LC01\0\0\0\7RADAR\0"s, ""s,
         "LC02"s, "LC02\0\0\0\7"s, "LC02\0\0\0\7no end"s, Datagram(std::string(64, 'N')),
@@ -178,14 +180,14 @@ TEST(AttachFilterTest, SaysThatTheKernelWillNot) {
   const FilteredSocket socket({{"RADAR"}});
   const int locked = 1;
   ASSERT_EQ(setsockopt(socket.receiver(), SOL_SOCKET, SO_LOCK_FILTER, &locked, sizeof(locked)), 0);
-  EXPECT_FALSE(AttachFilter(socket.receiver(), ChannelFilter({})));
-  EXPECT_FALSE(AttachFilter(-1, ChannelFilter({})));
+  EXPECT_FALSE(runtime::AttachFilter(socket.receiver(), runtime::ChannelFilter({})));
+  EXPECT_FALSE(runtime::AttachFilter(-1, runtime::ChannelFilter({})));
 }
 
 TEST(AttachFilterTest, RefusesAProgramLongerThanTheKernelTakes) {
-  std::vector<Wanted> many;
+  std::vector<runtime::Wanted> many;
   for (int i = 0; i < 2000; ++i) many.push_back({std::to_string(i)});
-  EXPECT_THROW((void)AttachFilter(-1, ChannelFilter(many)), std::logic_error);
+  EXPECT_THROW((void)runtime::AttachFilter(-1, runtime::ChannelFilter(many)), std::logic_error);
 }
 
 }  // namespace

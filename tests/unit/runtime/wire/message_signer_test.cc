@@ -18,24 +18,24 @@ namespace {
 
 using test::ScratchFolder;
 using testing::HasSubstr;
-using Verdict = MessageSigner::Verdict;
+using Verdict = runtime::MessageSigner::Verdict;
 using Message = std::vector<std::uint8_t>;
 
 constexpr auto kOwnerAlone =
     std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
 
-SigningKey KeyOf(std::uint8_t byte) {
-  SigningKey::Secret secret{};
+runtime::SigningKey KeyOf(std::uint8_t byte) {
+  runtime::SigningKey::Secret secret{};
   secret.fill(byte);
-  return SigningKey(secret);
+  return runtime::SigningKey(secret);
 }
 
-Message Copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+Message Copy(runtime::Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 template <class M>
 Message PayloadOf(const M& message) {
   Message bytes;
-  Encode(message, bytes);
+  runtime::Encode(message, bytes);
   return bytes;
 }
 
@@ -48,23 +48,26 @@ Message StatusOf(std::string_view role) {
 const Message kRadar = PayloadOf(radar_t{});
 
 /// The verdict of a receiver with the same key on a message that this role has signed.
-Verdict VerdictOn(Role sender, std::string_view channel, Bytes payload) {
-  MessageSigner signer(KeyOf(1), sender);
-  return MessageSigner(KeyOf(1), Role::kWorld).Open(channel, signer.Sign(channel, payload)).verdict;
+Verdict VerdictOn(Role sender, std::string_view channel, runtime::Bytes payload) {
+  runtime::MessageSigner signer(KeyOf(1), sender);
+  return runtime::MessageSigner(KeyOf(1), Role::kWorld)
+      .Open(channel, signer.Sign(channel, payload))
+      .verdict;
 }
 
 TEST(MessageSignerTest, GivesThePayloadBackAsItWas) {
-  MessageSigner radar(KeyOf(1), Role::kRadar);
+  runtime::MessageSigner radar(KeyOf(1), Role::kRadar);
   const Message message = Copy(radar.Sign("RADAR", kRadar));
-  EXPECT_EQ(message.size(), kRadar.size() + kSignatureBytes);
-  const auto [verdict, payload] = MessageSigner(KeyOf(1), Role::kFusion).Open("RADAR", message);
+  EXPECT_EQ(message.size(), kRadar.size() + runtime::kSignatureBytes);
+  const auto [verdict, payload] =
+      runtime::MessageSigner(KeyOf(1), Role::kFusion).Open("RADAR", message);
   EXPECT_EQ(verdict, Verdict::kGood);
   EXPECT_EQ(Copy(payload), kRadar);
-  EXPECT_EQ(Copy(WithoutSignature(message)), kRadar);
+  EXPECT_EQ(Copy(runtime::WithoutSignature(message)), kRadar);
 }
 
 TEST(MessageSignerTest, NoticesEveryBitThatIsWrong) {
-  MessageSigner seal(KeyOf(1), Role::kRadar);
+  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
   Message message = Copy(seal.Sign("RADAR", kRadar));
   for (std::size_t bit = 0; bit < 8 * message.size(); ++bit) {
     const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
@@ -76,17 +79,18 @@ TEST(MessageSignerTest, NoticesEveryBitThatIsWrong) {
 }
 
 TEST(MessageSignerTest, NoticesEveryCut) {
-  MessageSigner seal(KeyOf(1), Role::kRadar);
+  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
   const Message message = Copy(seal.Sign("RADAR", kRadar));
   for (std::size_t size = 0; size < message.size(); ++size) {
-    EXPECT_EQ(seal.Open("RADAR", Bytes(message).first(size)).verdict, Verdict::kNotSigned) << size;
+    EXPECT_EQ(seal.Open("RADAR", runtime::Bytes(message).first(size)).verdict, Verdict::kNotSigned)
+        << size;
   }
 }
 
 TEST(MessageSignerTest, RefusesOtherKeysAndOtherChannels) {
-  MessageSigner seal(KeyOf(1), Role::kWorld);
+  runtime::MessageSigner seal(KeyOf(1), Role::kWorld);
   const Message message = Copy(seal.Sign("TRUTH", kRadar));
-  EXPECT_EQ(MessageSigner(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict,
+  EXPECT_EQ(runtime::MessageSigner(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict,
             Verdict::kBadlySigned);
   EXPECT_EQ(seal.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
 }
@@ -117,11 +121,12 @@ TEST(MessageSignerTest, TakesAStatusFromTheRoleThatItNamesAlone) {
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRecorder, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("nobody")), Verdict::kBadlySigned);
-  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", Bytes(kRadar).first(34)), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", runtime::Bytes(kRadar).first(34)),
+            Verdict::kBadlySigned);
 }
 
 TEST(MessageSignerTest, SignsAsEveryRoleInAProcessThatIsAll) {
-  MessageSigner all(KeyOf(1), std::nullopt);
+  runtime::MessageSigner all(KeyOf(1), std::nullopt);
   for (const ChannelInfo& channel : kChannels) {
     const Message payload = channel.name == "STATUS" ? StatusOf("acc") : kRadar;
     EXPECT_EQ(all.Open(channel.name, all.Sign(channel.name, payload)).verdict, Verdict::kGood)
@@ -130,34 +135,34 @@ TEST(MessageSignerTest, SignsAsEveryRoleInAProcessThatIsAll) {
 }
 
 TEST(MessageSignerTest, LeavesASignedMessageToLcmsOwnDecodersAndNoneToOurs) {
-  MessageSigner seal(KeyOf(1), Role::kRadar);
+  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
   const Message message = Copy(seal.Sign("RADAR", kRadar));
   radar_t decoded{};
   // Calls the generated decoder as LCM's own programs do.
   EXPECT_GE(decoded.decode(message.data(), 0, static_cast<int>(message.size())), 0);
-  EXPECT_FALSE(Decode(message, decoded));
+  EXPECT_FALSE(runtime::Decode(message, decoded));
 }
 
 TEST(SigningKeyTest, IsMadeForItsOwnerAloneAndReadAgain) {
   const ScratchFolder folder;
   const std::string file = folder.File("key");
-  SigningKey::Create(file);
+  runtime::SigningKey::Create(file);
   struct stat info {};
   ASSERT_EQ(stat(file.c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0600U);
-  const SigningKey key = SigningKey::Load(file);
-  SigningKey::Create(folder.File("other"));
-  EXPECT_NE(key.secret(), SigningKey::Load(folder.File("other")).secret());
+  const runtime::SigningKey key = runtime::SigningKey::Load(file);
+  runtime::SigningKey::Create(folder.File("other"));
+  EXPECT_NE(key.secret(), runtime::SigningKey::Load(folder.File("other")).secret());
 }
 
 TEST(SigningKeyTest, IsNeverReplaced) {
   const ScratchFolder folder;
   const std::string file = folder.File("key");
-  SigningKey::Create(file);
-  const SigningKey key = SigningKey::Load(file);
-  EXPECT_THROW(SigningKey::Create(file), InputError);
-  EXPECT_EQ(SigningKey::Load(file).secret(), key.secret());
-  EXPECT_THROW(SigningKey::Create(folder.File("no/folder/key")), InputError);
+  runtime::SigningKey::Create(file);
+  const runtime::SigningKey key = runtime::SigningKey::Load(file);
+  EXPECT_THROW(runtime::SigningKey::Create(file), InputError);
+  EXPECT_EQ(runtime::SigningKey::Load(file).secret(), key.secret());
+  EXPECT_THROW(runtime::SigningKey::Create(folder.File("no/folder/key")), InputError);
 }
 
 TEST(SigningKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
@@ -167,9 +172,9 @@ TEST(SigningKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
   const auto load = [&](const std::string& content) {
     std::ofstream(file) << content;
     std::filesystem::permissions(file, kOwnerAlone);
-    return SigningKey::Load(file).secret();
+    return runtime::SigningKey::Load(file).secret();
   };
-  SigningKey::Secret expected{};
+  runtime::SigningKey::Secret expected{};
   expected.fill(0xaa);
   for (const std::string& good : {digits, digits + "\n", digits + "\r\n", std::string(64, 'A')}) {
     EXPECT_EQ(load(good), expected);
@@ -179,21 +184,21 @@ TEST(SigningKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
         " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32), std::string(64, '0')}) {
     EXPECT_THROW(load(bad), InputError) << bad;
   }
-  EXPECT_THROW(SigningKey::Load(folder.File("none")), InputError);
-  EXPECT_THROW(SigningKey::Load(folder.path()), InputError);
+  EXPECT_THROW(runtime::SigningKey::Load(folder.File("none")), InputError);
+  EXPECT_THROW(runtime::SigningKey::Load(folder.path()), InputError);
 }
 
 TEST(SigningKeyTest, IsNotReadFromAPipeWhichMayHaveNoWriter) {
   const ScratchFolder folder;
   const std::string pipe = folder.File("key");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(SigningKey::Load(pipe), InputError);
+  EXPECT_THROW(runtime::SigningKey::Load(pipe), InputError);
 }
 
 /// The error text for a key file, "" if it is accepted.
 std::string Complaint(const std::string& file) {
   try {
-    SigningKey::Load(file);
+    runtime::SigningKey::Load(file);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -203,7 +208,7 @@ std::string Complaint(const std::string& file) {
 TEST(SigningKeyTest, IsRefusedIfGroupOrOthersCanReadOrChangeItsFile) {
   const ScratchFolder folder;
   const std::string file = folder.File("key");
-  SigningKey::Create(file);
+  runtime::SigningKey::Create(file);
   for (const mode_t mode : {0640U, 0620U, 0604U, 0602U, 0666U}) {
     ASSERT_EQ(chmod(file.c_str(), mode), 0);
     EXPECT_EQ(Complaint(file),
@@ -221,7 +226,7 @@ TEST(SigningKeyTest, IsRefusedIfItsFileBelongsToSomebodyElse) {
   if (geteuid() != 0) return test::MachineLacks("root, to give a file away");
   const ScratchFolder folder;
   const std::string file = folder.File("key");
-  SigningKey::Create(file);
+  runtime::SigningKey::Create(file);
   constexpr uid_t kNobody = 65534;
   ASSERT_EQ(chown(file.c_str(), kNobody, kNobody), 0);
   EXPECT_THAT(Complaint(file), HasSubstr("error: the key belongs to user 65534"));

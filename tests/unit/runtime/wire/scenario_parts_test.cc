@@ -7,18 +7,20 @@ namespace {
 
 std::string LongText() {
   std::string text;
-  for (int i = 0; text.size() < 5 * kPartBytes + 7; ++i) text += std::to_string(i) + ",";
+  for (int i = 0; text.size() < 5 * runtime::kPartBytes + 7; ++i) text += std::to_string(i) + ",";
   return text;
 }
 
 TEST(ScenarioPartsTest, PutsATextTogetherFromPartsInAnyOrderWithRepetitions) {
   const std::string text = LongText();
-  const std::vector<std::string> parts = SplitScenario(text);
-  ScenarioParts inbox;
+  const std::vector<std::string> parts = runtime::SplitScenario(text);
+  runtime::ScenarioParts inbox;
   for (std::size_t i = parts.size(); i-- > 0;) {
     EXPECT_FALSE(inbox.Complete());
-    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
-    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
+    EXPECT_TRUE(
+        inbox.Add(runtime::MakeRunPart(1, run_t::PREPARE, 0, runtime::HashOf(text), parts, i)));
+    EXPECT_TRUE(
+        inbox.Add(runtime::MakeRunPart(1, run_t::PREPARE, 0, runtime::HashOf(text), parts, i)));
     if (i > 0) {
       EXPECT_EQ(inbox.FirstMissing(), 0);
     }
@@ -30,31 +32,32 @@ TEST(ScenarioPartsTest, PutsATextTogetherFromPartsInAnyOrderWithRepetitions) {
 
 TEST(ScenarioPartsTest, NoticesATextThatWasChangedOnItsWay) {
   const std::string text = LongText();
-  std::vector<std::string> parts = SplitScenario(text);
+  std::vector<std::string> parts = runtime::SplitScenario(text);
   parts[2][5] = 'x';
-  ScenarioParts inbox;
+  runtime::ScenarioParts inbox;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i)));
+    EXPECT_TRUE(
+        inbox.Add(runtime::MakeRunPart(1, run_t::PREPARE, 0, runtime::HashOf(text), parts, i)));
   }
   ASSERT_TRUE(inbox.Complete());
   EXPECT_FALSE(inbox.HashHolds());
 }
 
 TEST(ScenarioPartsTest, RefusesPartsThatContradictTheFirst) {
-  const std::vector<std::string> parts = SplitScenario(LongText());
-  ScenarioParts inbox;
-  EXPECT_TRUE(inbox.Add(MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0)));
-  run_t other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
+  const std::vector<std::string> parts = runtime::SplitScenario(LongText());
+  runtime::ScenarioParts inbox;
+  EXPECT_TRUE(inbox.Add(runtime::MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0)));
+  run_t other = runtime::MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
   other.num_parts = 999;
   EXPECT_FALSE(inbox.Add(other));
-  other = MakeRunPart(1, run_t::PREPARE, 0, "another hash", parts, 1);
+  other = runtime::MakeRunPart(1, run_t::PREPARE, 0, "another hash", parts, 1);
   EXPECT_FALSE(inbox.Add(other));
-  other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
+  other = runtime::MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 1);
   other.header.step = other.num_parts;
   EXPECT_FALSE(inbox.Add(other));
   other.header.step = -1;
   EXPECT_FALSE(inbox.Add(other));
-  other = MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0);
+  other = runtime::MakeRunPart(1, run_t::PREPARE, 0, "hash", parts, 0);
   other.text[0] = '#';
   EXPECT_FALSE(inbox.Add(other));
   EXPECT_EQ(inbox.FirstMissing(), 1);
@@ -62,11 +65,12 @@ TEST(ScenarioPartsTest, RefusesPartsThatContradictTheFirst) {
 
 TEST(ScenarioPartsTest, EveryPartFitsIntoOneDatagram) {
   const std::string text = LongText();
-  const std::vector<std::string> parts = SplitScenario(text);
+  const std::vector<std::string> parts = runtime::SplitScenario(text);
   std::vector<std::uint8_t> buffer;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    Encode(MakeRunPart(1, run_t::PREPARE, 0, HashOf(text), parts, i), buffer);
-    EXPECT_LE(buffer.size(), kMaxMessageBytes);
+    runtime::Encode(runtime::MakeRunPart(1, run_t::PREPARE, 0, runtime::HashOf(text), parts, i),
+                    buffer);
+    EXPECT_LE(buffer.size(), runtime::kMaxMessageBytes);
   }
 }
 

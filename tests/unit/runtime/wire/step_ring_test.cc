@@ -5,12 +5,12 @@
 namespace fogline {
 namespace {
 
-using Verdict = StepRing::Verdict;
+using Verdict = runtime::StepRing::Verdict;
 const std::vector<std::uint8_t> kA{1, 2, 3};
 const std::vector<std::uint8_t> kB{1, 2, 4};
 
 TEST(StepRingTest, TakesAStepOnce) {
-  StepRing ring;
+  runtime::StepRing ring;
   EXPECT_EQ(ring.Classify(0, kA, 0), Verdict::kNew);
   ring.Store(0, kA);
   EXPECT_EQ(ring.Classify(0, kA, 0), Verdict::kDuplicate);
@@ -18,32 +18,32 @@ TEST(StepRingTest, TakesAStepOnce) {
 }
 
 TEST(StepRingTest, NamesTheSameStepWithOtherBytesAConflictEvenAfterItWasUsed) {
-  StepRing ring;
+  runtime::StepRing ring;
   ring.Store(5, kA);
   EXPECT_EQ(ring.Classify(5, kB, 5), Verdict::kConflict);
   EXPECT_EQ(ring.Classify(5, kB, 20), Verdict::kConflict);
 }
 
 TEST(StepRingTest, TakesStepsInAnyOrderWithinItsWindow) {
-  StepRing ring;
+  runtime::StepRing ring;
   ring.Store(3, kA);
   EXPECT_EQ(ring.Classify(2, kA, 2), Verdict::kNew);
-  EXPECT_EQ(ring.Classify(2 + kRingSteps - 1, kA, 2), Verdict::kNew);
-  EXPECT_EQ(ring.Classify(2 + kRingSteps, kA, 2), Verdict::kOutOfWindow);
+  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps - 1, kA, 2), Verdict::kNew);
+  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps, kA, 2), Verdict::kOutOfWindow);
   EXPECT_EQ(ring.newest(), 3);
 }
 
 TEST(StepRingTest, CallsWhatIsBehindTheReaderADuplicate) {
-  StepRing ring;
+  runtime::StepRing ring;
   EXPECT_EQ(ring.Classify(4, kA, 5), Verdict::kDuplicate);
 }
 
 TEST(StepRingTest, ForgetsAStepOnlyWhenOneFullRingLaterArrives) {
-  StepRing ring;
+  runtime::StepRing ring;
   ring.Store(1, kA);
-  ring.Store(kRingSteps, kB);
+  ring.Store(runtime::kRingSteps, kB);
   EXPECT_TRUE(ring.Has(1));
-  ring.Store(1 + kRingSteps, kB);
+  ring.Store(1 + runtime::kRingSteps, kB);
   EXPECT_FALSE(ring.Has(1));
 }
 

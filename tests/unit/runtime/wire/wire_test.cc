@@ -21,26 +21,26 @@ ego_t SomeEgo() {
 
 TEST(WireTest, ReadsTheHeaderWhereEveryMessageHasIt) {
   std::vector<std::uint8_t> bytes;
-  Encode(SomeEgo(), bytes);
-  EXPECT_EQ(ReadInt64(bytes, 0), ego_t::getHash());
-  EXPECT_EQ(ReadInt64(bytes, kRunIdOffset), 77);
-  EXPECT_EQ(ReadInt64(bytes, kStepOffset), 12);
-  EXPECT_EQ(ReadInt64(bytes, kStepOffset + 8), 1'200'000);
+  runtime::Encode(SomeEgo(), bytes);
+  EXPECT_EQ(runtime::ReadInt64(bytes, 0), ego_t::getHash());
+  EXPECT_EQ(runtime::ReadInt64(bytes, runtime::kRunIdOffset), 77);
+  EXPECT_EQ(runtime::ReadInt64(bytes, runtime::kStepOffset), 12);
+  EXPECT_EQ(runtime::ReadInt64(bytes, runtime::kStepOffset + 8), 1'200'000);
 }
 
 TEST(WireTest, DecodesOnlyExactlyOneMessageOfTheType) {
   std::vector<std::uint8_t> bytes;
-  Encode(SomeEgo(), bytes);
+  runtime::Encode(SomeEgo(), bytes);
   ego_t ego{};
-  EXPECT_TRUE(Decode(bytes, ego));
+  EXPECT_TRUE(runtime::Decode(bytes, ego));
   EXPECT_EQ(ego.speed_mps, 20.5);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    EXPECT_FALSE(Decode(Bytes(bytes).first(size), ego)) << size << " bytes";
+    EXPECT_FALSE(runtime::Decode(runtime::Bytes(bytes).first(size), ego)) << size << " bytes";
   }
   radar_t radar{};
-  EXPECT_FALSE(Decode(bytes, radar));
+  EXPECT_FALSE(runtime::Decode(bytes, radar));
   bytes.push_back(0);
-  EXPECT_FALSE(Decode(bytes, ego));
+  EXPECT_FALSE(runtime::Decode(bytes, ego));
 }
 
 TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
@@ -49,12 +49,12 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   command.acceleration_mps2 = {0.5};
   command.safe_distance_m = {33};
   std::vector<std::uint8_t> bytes;
-  Encode(command, bytes);
+  runtime::Encode(command, bytes);
   for (const std::uint32_t claim : {0x7fffffffU, 0xffffffffU, 0x80000000U, 1000U, 2U}) {
     for (std::size_t i = 0; i < 4; ++i) {
-      bytes[kHeaderEnd + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
+      bytes[runtime::kHeaderEnd + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
     }
-    EXPECT_FALSE(Decode(bytes, command)) << claim;
+    EXPECT_FALSE(runtime::Decode(bytes, command)) << claim;
   }
 }
 
@@ -66,11 +66,11 @@ TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
   command.safe_distance_m = {33};
   const follower_command_t nobody{};
   std::vector<std::uint8_t> bytes;
-  Encode(nobody, bytes);
-  ASSERT_TRUE(Decode(bytes, command));
+  runtime::Encode(nobody, bytes);
+  ASSERT_TRUE(runtime::Decode(bytes, command));
   EXPECT_TRUE(command.acceleration_mps2.empty());
   EXPECT_TRUE(command.safe_distance_m.empty());
-  EXPECT_EQ(FirstNonFiniteField(command), "");
+  EXPECT_EQ(runtime::FirstNonFiniteField(command), "");
 }
 
 TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
@@ -82,8 +82,8 @@ TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
   status.input_rate_hz = {0, 0};
   status.input_late = {0, 0};
   std::vector<std::uint8_t> bytes;
-  Encode(status, bytes);
-  ASSERT_TRUE(Decode(bytes, status));
+  runtime::Encode(status, bytes);
+  ASSERT_TRUE(runtime::Decode(bytes, status));
   EXPECT_EQ(status.input.at(1), "LIDAR");
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t length = text.find("LIDAR") - 4;
@@ -91,32 +91,32 @@ TEST(WireTest, RefusesATextOfAnArrayThatClaimsAnImpossibleLength) {
     for (std::size_t i = 0; i < 4; ++i) {
       bytes[length + i] = static_cast<std::uint8_t>(claim >> (24 - 8 * i));
     }
-    EXPECT_FALSE(Decode(bytes, status)) << claim;
+    EXPECT_FALSE(runtime::Decode(bytes, status)) << claim;
   }
 }
 
 TEST(WireTest, FindsValuesThatAreNotFinite) {
   ego_t ego = SomeEgo();
-  EXPECT_EQ(FirstNonFiniteField(ego), "");
+  EXPECT_EQ(runtime::FirstNonFiniteField(ego), "");
   ego.acceleration_mps2 = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(FirstNonFiniteField(ego), "acceleration_mps2");
+  EXPECT_EQ(runtime::FirstNonFiniteField(ego), "acceleration_mps2");
   truth_t truth{};
   truth.num_followers = 1;
   truth.follower_position_m = {0};
   truth.follower_speed_mps = {0};
   truth.follower_acceleration_mps2 = {0};
   truth.follower_gap_m = {std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_EQ(FirstNonFiniteField(truth), "follower_gap_m");
+  EXPECT_EQ(runtime::FirstNonFiniteField(truth), "follower_gap_m");
   track_t track{};
   track.covariance[2][1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(FirstNonFiniteField(track), "covariance");
+  EXPECT_EQ(runtime::FirstNonFiniteField(track), "covariance");
 }
 
 TEST(DigestTest, LeavesTheRunIdOutAndNothingElse) {
   std::vector<std::uint8_t> bytes;
   const auto digest_of = [&bytes](const ego_t& ego) {
-    Encode(ego, bytes);
-    Digest digest;
+    runtime::Encode(ego, bytes);
+    runtime::Digest digest;
     digest.Add(bytes);
     return digest.Hex();
   };

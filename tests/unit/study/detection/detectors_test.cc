@@ -91,7 +91,7 @@ TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
   Scenario scenario;
   scenario.radar.range_std_m = 0.3;
   scenario.lidar.range_std_m = 0.4;
-  const ConflictParameters parameters = study::DetectorParameters(scenario);
+  const conflict::ConflictParameters parameters = study::DetectorParameters(scenario);
   // kappa 1/2: both tests look for a shift of one standard deviation of the difference, 0.5 m.
   EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
   EXPECT_EQ(parameters.bin_width_m, 0.4);

@@ -10,8 +10,9 @@
 namespace fogline {
 namespace {
 
-BinnedPair Pair(double difference_m, const ConflictParameters& parameters = {}) {
-  return PairOnBins(Differing(difference_m), parameters);
+conflict::BinnedPair Pair(double difference_m,
+                          const conflict::ConflictParameters& parameters = {}) {
+  return conflict::PairOnBins(Differing(difference_m), parameters);
 }
 
 TEST(BinnedBeliefTest, HasTheTabulatedValues) {
@@ -26,71 +27,73 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
   constexpr double kThreeDigits = 5.1e-4;  // half of the last printed digit
   constexpr double kTwoDigits = 5.1e-3;
   for (const Row& row : kTable) {
-    const BinnedPair pair = Pair(row.d_m);
-    EXPECT_NEAR(DempsterConflict(pair), row.dempster, kThreeDigits) << "d = " << row.d_m;
-    EXPECT_NEAR(JousselmeDistance(pair), row.jousselme, kThreeDigits) << "d = " << row.d_m;
-    EXPECT_NEAR(PignisticDistance(pair), row.pignistic, kTwoDigits) << "d = " << row.d_m;
-    EXPECT_NEAR(CorrelationConflict(pair), row.correlation, kTwoDigits) << "d = " << row.d_m;
-    EXPECT_NEAR(CosineConflict(pair), row.cosine, kTwoDigits) << "d = " << row.d_m;
+    const conflict::BinnedPair pair = Pair(row.d_m);
+    EXPECT_NEAR(conflict::DempsterConflict(pair), row.dempster, kThreeDigits) << "d = " << row.d_m;
+    EXPECT_NEAR(conflict::JousselmeDistance(pair), row.jousselme, kThreeDigits)
+        << "d = " << row.d_m;
+    EXPECT_NEAR(conflict::PignisticDistance(pair), row.pignistic, kTwoDigits) << "d = " << row.d_m;
+    EXPECT_NEAR(conflict::CorrelationConflict(pair), row.correlation, kTwoDigits)
+        << "d = " << row.d_m;
+    EXPECT_NEAR(conflict::CosineConflict(pair), row.cosine, kTwoDigits) << "d = " << row.d_m;
   }
 }
 
 TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
   // GIVEN: four bins. The radar is on an edge, m = (.4, .4, 0, 0). The LiDAR is inside of a bin,
   // (0, 0, .8, 0). Each has 0.2 on the frame.
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.frame_bins = 4;
   parameters.radar_reliability = 0.8;
   parameters.lidar_reliability = 0.8;
-  const BinnedPair pair = PairOnBins(Differing(0.75, 0.01, 0.01), parameters);
+  const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0.75, 0.01, 0.01), parameters);
   // THEN: D(bin, frame) = 1/4 makes c11 = .32 + .04 + .08, c22 = .64 + .04 + .08, c12 = .04 + .08
-  EXPECT_NEAR(CorrelationConflict(pair), 1 - .12 / std::sqrt(.44 * .76), 1e-12);
-  EXPECT_NEAR(JousselmeDistance(pair), std::sqrt((.44 + .76 - .24) / 2), 1e-12);
-  EXPECT_NEAR(CosineConflict(pair), 1 - .04 / std::sqrt(.36 * .68), 1e-12);
-  EXPECT_NEAR(DempsterConflict(pair), .64, 1e-12);
-  EXPECT_NEAR(PignisticDistance(pair), .8, 1e-12);
+  EXPECT_NEAR(conflict::CorrelationConflict(pair), 1 - .12 / std::sqrt(.44 * .76), 1e-12);
+  EXPECT_NEAR(conflict::JousselmeDistance(pair), std::sqrt((.44 + .76 - .24) / 2), 1e-12);
+  EXPECT_NEAR(conflict::CosineConflict(pair), 1 - .04 / std::sqrt(.36 * .68), 1e-12);
+  EXPECT_NEAR(conflict::DempsterConflict(pair), .64, 1e-12);
+  EXPECT_NEAR(conflict::PignisticDistance(pair), .8, 1e-12);
 }
 
 TEST(BinnedBeliefTest, DempsterFindsConflictInEqualEvidence) {
   // The known defect of k: it is not 0 although both sensors give the same value.
-  const BinnedPair pair = PairOnBins(Differing(0, 0.2, 0.2), {});
-  EXPECT_GT(DempsterConflict(pair), 0.3);
-  EXPECT_NEAR(JousselmeDistance(pair), 0, 1e-7);  // square root of rounding errors
-  EXPECT_NEAR(PignisticDistance(pair), 0, 1e-12);
-  EXPECT_NEAR(CorrelationConflict(pair), 0, 1e-12);
-  EXPECT_NEAR(CosineConflict(pair), 0, 1e-12);
+  const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), {});
+  EXPECT_GT(conflict::DempsterConflict(pair), 0.3);
+  EXPECT_NEAR(conflict::JousselmeDistance(pair), 0, 1e-7);  // square root of rounding errors
+  EXPECT_NEAR(conflict::PignisticDistance(pair), 0, 1e-12);
+  EXPECT_NEAR(conflict::CorrelationConflict(pair), 0, 1e-12);
+  EXPECT_NEAR(conflict::CosineConflict(pair), 0, 1e-12);
 }
 
 TEST(BinnedBeliefTest, ReadingsFarApartHaveOnlyTheFrameInCommon) {
-  const ConflictParameters parameters;
-  const BinnedPair pair = Pair(200);
+  const conflict::ConflictParameters parameters;
+  const conflict::BinnedPair pair = Pair(200);
   EXPECT_EQ(pair.common, 0);
-  EXPECT_NEAR(DempsterConflict(pair), 0.95 * 0.95, 1e-12);
-  EXPECT_NEAR(PignisticDistance(pair), 0.95, 1e-9);
+  EXPECT_NEAR(conflict::DempsterConflict(pair), 0.95 * 0.95, 1e-12);
+  EXPECT_NEAR(conflict::PignisticDistance(pair), 0.95, 1e-9);
 }
 
 TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
   // Standard deviations below a bin, of some bins, and wider than the kept bins (64 of 0.5 m).
   for (const double std_m : {0.01, 0.4, 3.0, 40.0}) {
-    const BinnedPair far = PairOnBins(Differing(2000, std_m, std_m), {});
+    const conflict::BinnedPair far = conflict::PairOnBins(Differing(2000, std_m, std_m), {});
     EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // the mass of both: they share nothing
   }
 }
 
 TEST(BinnedBeliefTest, UnequalReliabilityIsADifferenceOfPignisticProbability) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.lidar_reliability = 0.55;
   // GIVEN: the same reading, WHEN: one is discounted by 0.4 more, THEN: that part of it is spread
   // over all 500 bins, and 24 or so of them have some of it anyway.
-  const BinnedPair pair = PairOnBins(Differing(0, 0.2, 0.2), parameters);
-  EXPECT_NEAR(PignisticDistance(pair), 0.4, 0.02);
-  EXPECT_GT(JousselmeDistance(pair), 0.2);
+  const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), parameters);
+  EXPECT_NEAR(conflict::PignisticDistance(pair), 0.4, 0.02);
+  EXPECT_GT(conflict::JousselmeDistance(pair), 0.2);
 }
 
 TEST(BinnedBeliefTest, IsNotMonotoneBetweenMultiplesOfTheWidth) {
   // This is a limit of bins, not of the measures: a reading in the middle of a bin is more certain
   // than a reading on an edge.
-  EXPECT_GT(JousselmeDistance(Pair(0.25)), JousselmeDistance(Pair(0.5)) + 0.05);
+  EXPECT_GT(conflict::JousselmeDistance(Pair(0.25)), conflict::JousselmeDistance(Pair(0.5)) + 0.05);
 }
 
 }  // namespace

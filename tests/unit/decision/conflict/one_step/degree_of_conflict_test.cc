@@ -16,29 +16,30 @@ constexpr double kSlope = 10;  // 1/m, of the paper
 constexpr double kCentre = 1;  // m, of the paper
 
 TEST(DegreeOfConflictTest, HasThePaperValueWithoutConflict) {
-  EXPECT_NEAR(DegreeOfConflict(0, kSlope, kCentre), 4.54e-5, 5e-8);  // the paper prints 0.00005
+  EXPECT_NEAR(conflict::DegreeOfConflict(0, kSlope, kCentre), 4.54e-5,
+              5e-8);  // the paper prints 0.00005
 }
 
 TEST(DegreeOfConflictTest, HasTheTabulatedValues) {
   const std::array<std::pair<double, double>, 6> table{
       {{0.8, 0.119}, {0.9, 0.269}, {1.0, 0.500}, {1.1, 0.731}, {1.22, 0.900}, {1.5, 0.993}}};
   for (const auto& [z, doc] : table) {
-    EXPECT_NEAR(DegreeOfConflict(z, kSlope, kCentre), doc, 5e-4) << "z = " << z;
+    EXPECT_NEAR(conflict::DegreeOfConflict(z, kSlope, kCentre), doc, 5e-4) << "z = " << z;
   }
 }
 
 TEST(DegreeOfConflictTest, IsExactlyOneHalfAtTheCentre) {
-  EXPECT_EQ(DegreeOfConflict(kCentre, kSlope, kCentre), 0.5);
-  EXPECT_EQ(DegreeOfConflict(3, 0.7, 3), 0.5);
+  EXPECT_EQ(conflict::DegreeOfConflict(kCentre, kSlope, kCentre), 0.5);
+  EXPECT_EQ(conflict::DegreeOfConflict(3, 0.7, 3), 0.5);
 }
 
 TEST(DegreeOfConflictTest, StaysWithinZeroAndOneWhereTheExponentialOverflows) {
-  EXPECT_EQ(DegreeOfConflict(0, 1000, 100), 0);
-  EXPECT_EQ(DegreeOfConflict(1000, 1000, 0), 1);
+  EXPECT_EQ(conflict::DegreeOfConflict(0, 1000, 100), 0);
+  EXPECT_EQ(conflict::DegreeOfConflict(1000, 1000, 0), 1);
 }
 
 TEST(ConflictWindowTest, HasNoConflictWhileItIsEmpty) {
-  ConflictWindow window(3);
+  conflict::ConflictWindow window(3);
   EXPECT_EQ(window.Conflict(kAbsolute), 0);
   window.Push(std::nullopt);
   EXPECT_EQ(window.Conflict(kAbsolute), 0);
@@ -46,7 +47,7 @@ TEST(ConflictWindowTest, HasNoConflictWhileItIsEmpty) {
 }
 
 TEST(ConflictWindowTest, AveragesWhatIsThereUntilItIsFull) {
-  ConflictWindow window(4);
+  conflict::ConflictWindow window(4);
   window.Push(1.0);
   EXPECT_EQ(window.Conflict(kAbsolute), 1.0);
   window.Push(2.0);
@@ -57,7 +58,7 @@ TEST(ConflictWindowTest, AveragesWhatIsThereUntilItIsFull) {
 
 TEST(ConflictWindowTest, ForgetsADifferenceExactlyAfterItsLength) {
   constexpr int kLength = 8;
-  ConflictWindow window(kLength);
+  conflict::ConflictWindow window(kLength);
   for (int i = 0; i < kLength; ++i) window.Push(0.0);
   window.Push(8.0);
   for (int age = 0; age < kLength; ++age) {
@@ -68,7 +69,7 @@ TEST(ConflictWindowTest, ForgetsADifferenceExactlyAfterItsLength) {
 }
 
 TEST(ConflictWindowTest, AnEmptyPlaceAgesLikeAnyOther) {
-  ConflictWindow window(3);
+  conflict::ConflictWindow window(3);
   window.Push(6.0);
   window.Push(std::nullopt);
   window.Push(2.0);
@@ -82,14 +83,14 @@ TEST(ConflictWindowTest, AnEmptyPlaceAgesLikeAnyOther) {
 }
 
 TEST(ConflictWindowTest, ReadingsDifferForDifferencesOfAlternatingSign) {
-  ConflictWindow window(4);
+  conflict::ConflictWindow window(4);
   for (const double difference : {1.0, -1.0, 1.0, -1.0}) window.Push(difference);
   EXPECT_EQ(window.Conflict(kAbsolute), 1.0);
   EXPECT_EQ(window.Conflict(kSigned), 0.0);
 }
 
 TEST(ConflictWindowTest, ReadingsAgreeForDifferencesOfOneSign) {
-  ConflictWindow window(2);
+  conflict::ConflictWindow window(2);
   window.Push(-1.0);
   window.Push(-3.0);
   EXPECT_EQ(window.Conflict(kAbsolute), 2.0);
@@ -97,7 +98,7 @@ TEST(ConflictWindowTest, ReadingsAgreeForDifferencesOfOneSign) {
 }
 
 TEST(ConflictWindowTest, OfOneStepIsThatStep) {
-  ConflictWindow window(1);
+  conflict::ConflictWindow window(1);
   window.Push(5.0);
   window.Push(-2.0);
   EXPECT_EQ(window.Conflict(kAbsolute), 2.0);

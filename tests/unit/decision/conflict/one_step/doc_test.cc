@@ -22,7 +22,7 @@ TEST(DocTest, HasTheTabulatedValues) {
   constexpr std::array<std::pair<double, double>, 7> kTable{
       {{0, .00005}, {.8, .119}, {.9, .269}, {1, .5}, {1.1, .731}, {1.22, .9}, {1.5, .993}}};
   for (const auto& [z, doc] : kTable) {
-    Doc measure({});
+    conflict::Doc measure({});
     EXPECT_NEAR(measure.Step(LidarShortBy(z)), doc, z == 0 ? 5e-6 : 5e-4) << "z = " << z;
   }
 }
@@ -32,7 +32,7 @@ TEST(DocTest, MeanAndVarianceOfItsConflictWithoutFaultAreTheQuotedOnes) {
   constexpr int kWindow = 8;
   constexpr int kWindows = 4000;
   const Random random(2, Stream::kRadar);
-  Doc measure({});
+  conflict::Doc measure({});
   double sum = 0;
   double squares = 0;
   for (int i = 0; i < kWindows; ++i) {
@@ -58,9 +58,9 @@ TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
   constexpr int kWindow = 140;
   constexpr double kFloor_m = 0.32;
   for (const auto& [bias_m, share] : {std::pair{10.0, 1.0 / 14}, std::pair{1.5, 0.6}}) {
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.window_steps = kWindow;
-    Doc measure(parameters);
+    conflict::Doc measure(parameters);
     for (int i = 0; i < kWindow; ++i) measure.Step(LidarShortBy(kFloor_m));
     int steps = 1;
     while (measure.Step(LidarShortBy(bias_m)) < 0.5) ++steps;
@@ -69,25 +69,25 @@ TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
 }
 
 TEST(DocTest, ForgetsItsWholeWindowInReset) {
-  Doc measure({});
+  conflict::Doc measure({});
   for (int i = 0; i < 8; ++i) measure.Step(LidarShortBy(2));
   measure.Reset();
   EXPECT_EQ(measure.Step(LidarShortBy(1)), 0.5);
 }
 
 TEST(DocTest, KeepsTheOffsetThatOtherMeasuresTakeOff) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.offset_m = 1;
-  Doc measure(parameters);
+  conflict::Doc measure(parameters);
   EXPECT_EQ(measure.Step(LidarShortBy(1)), 0.5);
 }
 
 TEST(DocTest, DropoutsLookLikeAgreementOnlyWhereTheyAreSkipped) {
   constexpr int kWindow = 8;
   const auto after_dropouts = [](MissingLidar rule) {
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.missing = rule;
-    Doc measure(parameters);
+    conflict::Doc measure(parameters);
     double doc = measure.Step(LidarShortBy(1));
     for (int i = 0; i < kWindow; ++i) doc = measure.Step(WithoutLidar(LidarShortBy(1)));
     return doc;

@@ -13,8 +13,8 @@ namespace fogline {
 namespace {
 
 TEST(NisTest, HasTheWorkedValues) {
-  EXPECT_NEAR(NormalisedSquare(Differing(1)), 6.2, 0.05);
-  EXPECT_NEAR(NormalisedSquare(Differing(2)), 24.6, 0.05);
+  EXPECT_NEAR(conflict::NormalisedSquare(Differing(1)), 6.2, 0.05);
+  EXPECT_NEAR(conflict::NormalisedSquare(Differing(2)), 24.6, 0.05);
 }
 
 TEST(NisTest, LimitsOfChiSquareAreTheQuotedOnes) {
@@ -40,16 +40,16 @@ TEST(NisTest, ExceedsItsFivePercentLimitInFivePercentOfTheSteps) {
   int exceeded = 0;
   for (int step = 0; step < kSteps; ++step) {
     const double d = UnitNoise(random, step).radar.range_m - UnitNoise(random, step).lidar.range_m;
-    if (NormalisedSquare(Differing(d, 0.6, 0.8)) > 3.841) ++exceeded;
+    if (conflict::NormalisedSquare(Differing(d, 0.6, 0.8)) > 3.841) ++exceeded;
   }
   const double deviation = std::sqrt(0.05 * 0.95 / kSteps);
   EXPECT_NEAR(exceeded / double{kSteps}, 0.05, 4 * deviation);
 }
 
 TEST(SignedNisTest, IsTheMeanInUnitsOfItsStandardDeviation) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.window_steps = 4;
-  SignedNis measure(parameters);
+  conflict::SignedNis measure(parameters);
   double score = 0;
   for (const double d : {9.0, 1.0, 2.0, 3.0, 6.0}) score = measure.Step(LidarShortBy(d, 3, 4));
   EXPECT_NEAR(score, 3.0 * std::sqrt(4 / 25.0), 1e-12);  // mean 3 m, S = 25 m2, n = 4
@@ -58,8 +58,8 @@ TEST(SignedNisTest, IsTheMeanInUnitsOfItsStandardDeviation) {
 TEST(SignedNisTest, IsStandardNormalWithoutAFault) {
   constexpr int kWindows = 5000;
   const Random random(7, Stream::kRadar);
-  const int window = ConflictParameters{}.window_steps;
-  SignedNis measure({});
+  const int window = conflict::ConflictParameters{}.window_steps;
+  conflict::SignedNis measure({});
   double sum = 0;
   double squares = 0;
   for (int i = 0; i < kWindows; ++i) {
@@ -75,43 +75,45 @@ TEST(SignedNisTest, IsStandardNormalWithoutAFault) {
 }
 
 TEST(SignedNisTest, ALidarThatIsLongIsTheOppositeOfConflict) {
-  SignedNis measure({});
+  conflict::SignedNis measure({});
   EXPECT_LT(measure.Step(LidarShortBy(-1)), 0);
 }
 
 TEST(WindowedNisTest, IsTheMeanOfTheSquares) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.window_steps = 2;
-  WindowedNis measure(parameters);
+  conflict::WindowedNis measure(parameters);
   EXPECT_EQ(measure.Step(LidarShortBy(5, 3, 4)), 1);
   EXPECT_EQ(measure.Step(LidarShortBy(-10, 3, 4)), 2.5);
   EXPECT_EQ(measure.Step(LidarShortBy(0, 3, 4)), 2);
 }
 
 TEST(WindowedNisTest, AnEmptyPlaceAgesWhereMissingValuesAreSkipped) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.window_steps = 2;
   parameters.missing = MissingLidar::kSkip;
-  WindowedNis measure(parameters);
+  conflict::WindowedNis measure(parameters);
   EXPECT_EQ(measure.Step(LidarShortBy(5, 3, 4)), 1);
   EXPECT_EQ(measure.Step(WithoutLidar(LidarShortBy(5))), 1);
   EXPECT_EQ(measure.Step(WithoutLidar(LidarShortBy(5))), 0);
 }
 
 TEST(DivergenceTest, HasTheWorkedValues) {
-  EXPECT_NEAR(Hellinger(Differing(0)), .71, 5e-3);
-  EXPECT_NEAR(Hellinger(Differing(1)), .945, 5e-4);
-  EXPECT_NEAR(Hellinger(Differing(2)), .999, 5e-4);
+  EXPECT_NEAR(conflict::Hellinger(Differing(0)), .71, 5e-3);
+  EXPECT_NEAR(conflict::Hellinger(Differing(1)), .945, 5e-4);
+  EXPECT_NEAR(conflict::Hellinger(Differing(2)), .999, 5e-4);
 }
 
 TEST(DivergenceTest, PartOfTheMeansIsAQuarterOfNisWithoutTheOffsetOfUnequalPrecision) {
-  EXPECT_EQ(BhattacharyyaOfMeans(Differing(0)), 0);
-  EXPECT_EQ(HellingerOfMeans(Differing(0)), 0);
-  const double offset = Bhattacharyya(Differing(0));
+  EXPECT_EQ(conflict::BhattacharyyaOfMeans(Differing(0)), 0);
+  EXPECT_EQ(conflict::HellingerOfMeans(Differing(0)), 0);
+  const double offset = conflict::Bhattacharyya(Differing(0));
   EXPECT_GT(offset, 0.5);
   for (const double d : {-2.0, 0.3, 1.0}) {
-    EXPECT_EQ(BhattacharyyaOfMeans(Differing(d)), NormalisedSquare(Differing(d)) / 4);
-    EXPECT_NEAR(Bhattacharyya(Differing(d)), BhattacharyyaOfMeans(Differing(d)) + offset, 1e-12);
+    EXPECT_EQ(conflict::BhattacharyyaOfMeans(Differing(d)),
+              conflict::NormalisedSquare(Differing(d)) / 4);
+    EXPECT_NEAR(conflict::Bhattacharyya(Differing(d)),
+                conflict::BhattacharyyaOfMeans(Differing(d)) + offset, 1e-12);
   }
 }
 

@@ -18,8 +18,8 @@ struct RunLength {
 // The number of steps until a CUSUM of either sign exceeds the threshold, with noise of S = 1 m2.
 RunLength TwoSidedRunLength(double threshold, double shift_m, int runs) {
   const Random random(3, Stream::kRadar);
-  Cusum up({});
-  Cusum down({});
+  conflict::Cusum up({});
+  conflict::Cusum down({});
   double sum = 0;
   double squares = 0;
   std::int64_t step = 0;
@@ -61,7 +61,7 @@ TEST(CusumTest, MeanRunLengthAfterAShiftByOneStandardDeviationIsTheQuotedOne) {
 }
 
 TEST(CusumTest, AddsWhatExceedsKappaAndNeverFallsBelowZero) {
-  Cusum measure({});
+  conflict::Cusum measure({});
   EXPECT_EQ(measure.Step(LidarShortBy(-5, 3, 4)), 0);
   EXPECT_EQ(measure.Step(LidarShortBy(10, 3, 4)), 1.5);
   EXPECT_EQ(measure.Step(LidarShortBy(5, 3, 4)), 2);
@@ -69,8 +69,8 @@ TEST(CusumTest, AddsWhatExceedsKappaAndNeverFallsBelowZero) {
 }
 
 TEST(CusumTest, ComesDownFromALongFaultWithinTheCeilingOverKappa) {
-  ConflictParameters parameters;
-  Cusum measure(parameters);
+  conflict::ConflictParameters parameters;
+  conflict::Cusum measure(parameters);
   for (int i = 0; i < 1000; ++i) measure.Step(LidarShortBy(20));
   const int steps = static_cast<int>(parameters.cusum_ceiling / parameters.cusum_kappa);
   double score = parameters.cusum_ceiling;
@@ -79,7 +79,7 @@ TEST(CusumTest, ComesDownFromALongFaultWithinTheCeilingOverKappa) {
 }
 
 TEST(GlrTest, FindsTheJumpWhereverItBegan) {
-  Glr measure({});
+  conflict::Glr measure({});
   double score = 0;
   for (int i = 0; i < 10; ++i) measure.Step(LidarShortBy(0, 3, 4));
   for (int i = 0; i < 6; ++i) score = measure.Step(LidarShortBy(10, 3, 4));
@@ -87,36 +87,37 @@ TEST(GlrTest, FindsTheJumpWhereverItBegan) {
 }
 
 TEST(GlrTest, LooksNoFurtherBackThanItsWindow) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.glr_window_steps = 3;
-  Glr measure(parameters);
+  conflict::Glr measure(parameters);
   double score = 0;
   for (int i = 0; i < 50; ++i) score = measure.Step(LidarShortBy(5, 3, 4));
   EXPECT_NEAR(score, 1.5, 1e-12);
 }
 
 TEST(SprtTest, HasWaldsThresholds) {
-  const SprtBounds bounds = WaldBounds(0.01, 0.05);
+  const conflict::SprtBounds bounds = conflict::WaldBounds(0.01, 0.05);
   EXPECT_NEAR(bounds.accept_conflict, std::log(95.0), 1e-12);
   EXPECT_NEAR(bounds.accept_agreement, std::log(5.0 / 99), 1e-12);
 }
 
 TEST(SprtTest, AddsTheLogLikelihoodRatioOfAStep) {
-  ConflictParameters parameters;  // delta = 0.5 m
-  Sprt measure(parameters);
+  conflict::ConflictParameters parameters;  // delta = 0.5 m
+  conflict::Sprt measure(parameters);
   EXPECT_NEAR(measure.Step(LidarShortBy(1.25, 3, 4)), 0.5 / 25 * (1.25 - 0.25), 1e-15);
   EXPECT_NEAR(measure.Step(LidarShortBy(0.25, 3, 4)), 0.5 / 25 * (1.25 - 0.25), 1e-15);
 }
 
 TEST(SprtTest, ErrsNoMoreOftenThanItsParametersSay) {
   constexpr int kTests = 4000;
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.sprt_delta_m = 1;
-  const SprtBounds bounds = WaldBounds(parameters.sprt_alpha, parameters.sprt_beta);
+  const conflict::SprtBounds bounds =
+      conflict::WaldBounds(parameters.sprt_alpha, parameters.sprt_beta);
   const Random random(4, Stream::kRadar);
   // The share of tests that decide for the conflict.
   const auto accepted = [&](double shift_m) {
-    Sprt measure(parameters);
+    conflict::Sprt measure(parameters);
     std::int64_t step = 0;
     int conflicts = 0;
     for (int i = 0; i < kTests; ++i) {

@@ -16,35 +16,35 @@ namespace {
 
 constexpr double kEven = 1e-12;
 
-std::unique_ptr<BlameMeasure> Make(std::string_view name,
-                                   const ConflictParameters& parameters = {}) {
-  return FindBlameMeasure(name)->make(parameters);
+std::unique_ptr<conflict::BlameMeasure> Make(std::string_view name,
+                                             const conflict::ConflictParameters& parameters = {}) {
+  return conflict::FindBlameMeasure(name)->make(parameters);
 }
 
 class EveryBlameTest : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(EveryBlameTest, FallsOnTheLidarThatLeavesRadarAndPrediction) {
-  const Blame blame = Make(GetParam())->Step(LidarShortBy(5));
+  const conflict::Blame blame = Make(GetParam())->Step(LidarShortBy(5));
   EXPECT_GT(blame.lidar, 0.8);
   EXPECT_LT(blame.radar, 0.55);  // the LiDAR takes part in Murphy's average
 }
 
 TEST_P(EveryBlameTest, FallsOnTheRadarThatLeavesLidarAndPrediction) {
-  const Blame blame = Make(GetParam())->Step(RadarLongBy(5));
+  const conflict::Blame blame = Make(GetParam())->Step(RadarLongBy(5));
   EXPECT_GT(blame.radar, 0.8);
   EXPECT_LT(blame.lidar, 0.55);
 }
 
 TEST_P(EveryBlameTest, FallsOnNobodyWhenAllAgree) {
-  const Blame blame = Make(GetParam())->Step(LidarShortBy(0));
+  const conflict::Blame blame = Make(GetParam())->Step(LidarShortBy(0));
   EXPECT_NEAR(blame.radar, 0, kEven);
   EXPECT_NEAR(blame.lidar, 0, kEven);
 }
 
 TEST_P(EveryBlameTest, FallsOnNobodyWithoutAWitness) {
-  Evidence evidence = LidarShortBy(5);
+  conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
-  EXPECT_EQ(Make(GetParam())->Step(evidence), Blame{});
+  EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
 }
 
 TEST_P(EveryBlameTest, GrowsWithTheErrorOfTheLidar) {
@@ -58,10 +58,10 @@ TEST_P(EveryBlameTest, GrowsWithTheErrorOfTheLidar) {
 
 TEST_P(EveryBlameTest, MissingValueIsHeldSkippedOrBlamed) {
   const auto after_dropout = [](MissingLidar rule) {
-    ConflictParameters parameters;
+    conflict::ConflictParameters parameters;
     parameters.missing = rule;
     const auto measure = Make(GetParam(), parameters);
-    const Blame before = measure->Step(LidarShortBy(0.3));
+    const conflict::Blame before = measure->Step(LidarShortBy(0.3));
     return std::pair{before, measure->Step(WithoutLidar(LidarShortBy(0.3)))};
   };
   const auto [measured, held] = after_dropout(MissingLidar::kHold);
@@ -75,63 +75,63 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryBlameTest, testing::Values("nis", "deng", "mur
 
 TEST(NisBlameTest, IsTheChiSquareProbabilityOfTheResidual) {
   // A residual of 2 standard deviations: 0.9545 of the normal distribution is nearer to the mean.
-  const Evidence evidence{
+  const conflict::Evidence evidence{
       .radar = {true, 10, 0.3}, .lidar = {true, 11, 0.3}, .prediction = {true, 10, 0.4}};
-  NisBlame blame({});
+  conflict::NisBlame blame({});
   EXPECT_EQ(blame.Step(evidence).radar, 0);
   EXPECT_NEAR(blame.Step(evidence).lidar, 0.9545, 5e-5);
   EXPECT_NEAR(blame.largest_square(), 4, 1e-12);
 }
 
 TEST(NisBlameTest, AWindowAddsUpWhatSingleStepsCannotTell) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.blame_window_steps = 9;
-  NisBlame blame(parameters);
+  conflict::NisBlame blame(parameters);
   double last = 0;
   for (int i = 0; i < 9; ++i) last = blame.Step(LidarShortBy(std::hypot(kLidarStd_m, 0.1))).lidar;
   EXPECT_NEAR(last, std::erf(3 / std::sqrt(2.0)), 1e-12);  // T = 1 * sqrt(9)
 }
 
 TEST(NisBlameTest, ALidarThatIsShortAndThenSilentIsNotExcusedByTheSilence) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.blame_window_steps = 2;
   parameters.missing = MissingLidar::kConflict;
-  NisBlame blame(parameters);
+  conflict::NisBlame blame(parameters);
   blame.Step(LidarShortBy(parameters.missing_conflict_m));
   EXPECT_EQ(blame.Step(WithoutLidar(LidarShortBy(0))).lidar, 1);
 }
 
 TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
-  ConflictParameters parameters;
+  conflict::ConflictParameters parameters;
   parameters.offset_m = 0.9;
-  NisBlame blame(parameters);
+  conflict::NisBlame blame(parameters);
   EXPECT_NEAR(blame.Step(RadarLongBy(0.9)).radar, 0, kEven);
 }
 
 TEST(SupportTest, OfTwoSourcesCannotTellWhoIsWrong) {
   // GIVEN: a third body that shares nothing with the others, so it counts as missing
-  const BeliefProducts products{
+  const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.2, .radar_prediction = 0, .lidar_prediction = 0};
-  for (const auto support : {DengSupport, MutualSupport}) {
+  for (const auto support : {conflict::DengSupport, conflict::MutualSupport}) {
     EXPECT_EQ(support(products).radar, 0.5);
     EXPECT_EQ(support(products).lidar, 0.5);
   }
-  EXPECT_EQ(MurphySupport(products).radar, MurphySupport(products).lidar);
+  EXPECT_EQ(conflict::MurphySupport(products).radar, conflict::MurphySupport(products).lidar);
 }
 
 TEST(SupportTest, IsAnEqualShareWhereNothingResemblesAnything) {
-  const BeliefProducts products{
+  const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0, .radar_prediction = 0, .lidar_prediction = 0};
-  EXPECT_EQ(DengSupport(products).radar, 1.0 / 3);
-  EXPECT_EQ(MutualSupport(products).lidar, 1.0 / 3);
+  EXPECT_EQ(conflict::DengSupport(products).radar, 1.0 / 3);
+  EXPECT_EQ(conflict::MutualSupport(products).lidar, 1.0 / 3);
 }
 
 TEST(SupportTest, MutualSupportOfEqualBodiesIsAThirdEach) {
-  const BeliefProducts products{
+  const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.6, .radar_prediction = 0.6, .lidar_prediction = 0.6};
-  EXPECT_NEAR(MutualSupport(products).radar, 1.0 / 3, kEven);
-  EXPECT_NEAR(DengSupport(products).radar, 1.0 / 3, kEven);
-  EXPECT_NEAR(MurphySupport(products).radar, 1, kEven);
+  EXPECT_NEAR(conflict::MutualSupport(products).radar, 1.0 / 3, kEven);
+  EXPECT_NEAR(conflict::DengSupport(products).radar, 1.0 / 3, kEven);
+  EXPECT_NEAR(conflict::MurphySupport(products).radar, 1, kEven);
 }
 
 }  // namespace
