@@ -71,7 +71,7 @@ TEST(PoliciesTest, EveryRowIsAChoiceOfTheScenarioWithItsNameAndText) {
   for (const policies::PolicyRow& row : policies::Policies()) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     const Scenario scenario = ParseScenario(WithPolicy(row.name), "test");
-    EXPECT_EQ(&RowOf(scenario.arbitrator.policy), &row);
+    EXPECT_EQ(&policies::RowOf(scenario.arbitrator.policy), &row);
     EXPECT_EQ(policies::FindPolicy(row.name), scenario.arbitrator.policy);
     const std::string quoted = '"' + std::string(row.name) + '"';
     EXPECT_THAT(PrintScenario(scenario), HasSubstr("\"policy\": " + quoted));

@@ -64,7 +64,7 @@ TEST(CulpritTest, FindsAnEndWhateverIsReported) {
 }
 
 TEST(CulpritTest, SaysWhoAndByWhatItShows) {
-  EXPECT_EQ(Text({Role::kLidar, IndexOf<lidar_t>()}), "lidar (LIDAR lost)");
+  EXPECT_EQ(runtime::Text({Role::kLidar, IndexOf<lidar_t>()}), "lidar (LIDAR lost)");
 }
 
 }  // namespace
