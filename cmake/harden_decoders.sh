@@ -1,0 +1,40 @@
+#!/bin/sh
+# harden_decoders.sh HEADER...: completes the checks of the decoders that lcm-gen has written.
+#
+# LCM's decoders trust lengths that come from the network, and leave parts of an object as they were:
+#
+# 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The check
+#    refuses a length below 0 or above the number of bytes left in the message.
+# 2. A string may lack its terminator, have the length 0 or less, or have a zero before its end. Such a
+#    message, encoded again, would be another message. The check refuses all three.
+# 3. An array of numbers that has no elements is not touched: the object would keep the elements of an earlier message. The
+#    array is cleared first.
+#
+# Each place must get its check; otherwise this lcm-gen writes other code than Debian 12's, and the script
+# fails. No message type needs to be known here.
+set -eu
+
+# count PATTERN FILE: in how many lines of FILE is PATTERN?
+count() { grep -cE -- "$1" "$2" || true; }
+fail() {
+  echo "harden_decoders.sh: error: $1: $2: this lcm-gen writes code that the script does not know" >&2
+  exit 1
+}
+
+for header in "$@"; do
+  arrays=$(count 'this->[a-z0-9_]+[.]resize[(]' "$header")
+  strings=$(count 'const char[*][)]buf' "$header")
+  numbers=$(count 'std::vector< (double|float|u?int[0-9]+_t) > ' "$header")
+
+  sed -i -E 's/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)];/\1if (\3 < 0 || \3 > maxlen) return -1;\n\1\2.resize(static_cast<std::size_t>(\3));/' "$header"
+  # The name of the length of a string in an array lacks the last two underscores.
+  sed -i -E 's/if[(](__[a-z0-9_]+_len(__)?) > maxlen - pos[)] return -1;/if(\1 < 1 || \1 > maxlen - pos) return -1;\n    if(memchr((const char*)buf + offset + pos, 0, \1) != (const char*)buf + offset + pos + \1 - 1) return -1;/' "$header"
+  sed -i -z -E 's/if[(](this->[a-z0-9_]+)[)] [{]\n( *if [(][^\n]*\n *)(this->[a-z0-9_]+)[.]resize/\3.clear();\n    if(\1) {\n\2\3.resize/g' "$header"
+
+  [ "$(count '< 0 [|][|] this->[a-z0-9_]+ > maxlen[)] return -1;' "$header")" -eq "$arrays" ] ||
+    fail "$header" "an array without a check of its length"
+  [ "$(count 'if[(]memchr[(]' "$header")" -eq "$strings" ] ||
+    fail "$header" "a string without a check of its end"
+  [ "$(count 'this->[a-z0-9_]+[.]clear[(][)];' "$header")" -eq "$numbers" ] ||
+    fail "$header" "an array that keeps its elements"
+done
