@@ -14,28 +14,8 @@ function(lcm_add_types target dir)
   add_custom_command(
     OUTPUT ${headers}
     COMMAND "${LCM_GEN}" -x --cpp-std c++11 --cpp-hpath "${out}/cpp" ${lcm_files}
-    # LCM's decoder allocates an array before it checks the array's length: a message of 100 bytes could claim
-    # 16 GB. This check refuses a length larger than the number of bytes left in the message.
-    COMMAND sed -i -E
-            "s/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)]$<SEMICOLON>/\\1if (\\3 < 0 || \\3 > maxlen) return -1$<SEMICOLON>\\n\\1\\2.resize(static_cast<std::size_t>(\\3))$<SEMICOLON>/"
-            ${headers}
-    # LCM's decoder accepts a string without its terminator, one of length 0 or less, and one with a zero
-    # before its end. Encoding the decoded message again would give another message, so this check refuses all
-    # three. (For a string in an array, the name of the length lacks the last two underscores.)
-    COMMAND sed -i -E
-            "s/if[(](__[a-z_]+_len(__)?) > maxlen - pos[)] return -1$<SEMICOLON>/if(\\1 < 1 || \\1 > maxlen - pos) return -1$<SEMICOLON>\\n    if(memchr((const char*)buf + offset + pos, 0, \\1) != (const char*)buf + offset + pos + \\1 - 1) return -1$<SEMICOLON>/"
-            ${headers}
-    # If a message has no elements of an array, LCM's decoder does not change that array: the object would
-    # keep the elements of an earlier message. This command clears the array first.
-    COMMAND sed -i -z -E
-            "s/if[(](this->[a-z0-9_]+)[)] [{]\\n( *if [(][^\\n]*\\n *)(this->[a-z0-9_]+)[.]resize/\\3.clear()$<SEMICOLON>\\n    if(\\1) {\\n\\2\\3.resize/g"
-            ${headers}
-    COMMAND grep -q "_len__ < 1" "${out}/cpp/fogline/resend_t.hpp"
-    COMMAND grep -q "memchr" "${out}/cpp/fogline/resend_t.hpp"
-    COMMAND grep -q "__elem_len < 1" "${out}/cpp/fogline/status_t.hpp"
-    COMMAND grep -q "follower_gap_m.clear()" "${out}/cpp/fogline/truth_t.hpp"
-    COMMAND grep -q "num_followers < 0" "${out}/cpp/fogline/truth_t.hpp"
-    DEPENDS ${lcm_files}
+    COMMAND "${PROJECT_SOURCE_DIR}/cmake/harden_decoders.sh" ${headers}
+    DEPENDS ${lcm_files} "${PROJECT_SOURCE_DIR}/cmake/harden_decoders.sh"
     COMMENT "Generating C++ message types"
     VERBATIM)
   set(fields "${out}/cpp/fogline/fields.hpp")

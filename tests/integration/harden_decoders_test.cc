@@ -22,9 +22,9 @@ class HardenDecodersTest : public testing::Test {
     std::ofstream(folder_.path() / "sample_t.lcm")
         << "package probe;\nstruct sample_t {\n  int32_t num_texts;\n  int32_t num_values;\n"
            "  string name;\n  string texts[num_texts];\n  double values[num_values];\n}\n";
-    const Outcome made = RunCommand({"lcm-gen", "-x", "--cpp-std", "c++11", "--cpp-hpath",
-                                     folder_.path().string(),
-                                     (folder_.path() / "sample_t.lcm").string()});
+    const Outcome made =
+        RunCommand({"lcm-gen", "-x", "--cpp-std", "c++11", "--cpp-hpath", folder_.path().string(),
+                    (folder_.path() / "sample_t.lcm").string()});
     EXPECT_EQ(made.code, 0) << made.err;
     header_ = folder_.path() / "probe" / "sample_t.hpp";
   }
@@ -41,8 +41,8 @@ class HardenDecodersTest : public testing::Test {
     std::ofstream(header_) << text.replace(begin, what.size(), by);
   }
   Outcome Harden() const {
-    return RunCommand({(SourceDirectory() / "cmake" / "harden_decoders.sh").string(),
-                       header_.string()});
+    return RunCommand(
+        {(SourceDirectory() / "cmake" / "harden_decoders.sh").string(), header_.string()});
   }
 
   ScratchFolder folder_;

@@ -87,7 +87,9 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
       arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
-      const auto step = [&](double doc) { return steady.Step(policies::Compare(doc, threshold), doc); };
+      const auto step = [&](double doc) {
+        return steady.Step(policies::Compare(doc, threshold), doc);
+      };
       EXPECT_EQ(step(threshold), 1);
       const double lower = threshold - std::min(band, threshold / 2);
       EXPECT_EQ(step(lower), 1) << threshold << ' ' << band;
