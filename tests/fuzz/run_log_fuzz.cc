@@ -120,12 +120,12 @@ std::vector<Input> Seeds() {
   while (const auto event = reader.Next()) events.push_back(*event);
 
   // The log of signed traffic as lcm-logger writes it.
-  const MemoryFile sealed;
-  runtime::MessageSigner seal(runtime::SigningKey({}), {});
+  const MemoryFile signed_log;
+  runtime::MessageSigner signer(runtime::SigningKey({}), {});
   {
-    log::EventLogWriter writer(sealed.path());
+    log::EventLogWriter writer(signed_log.path());
     for (const log::Event& event : events) {
-      writer.Write(event.channel, event.utime, seal.Sign(event.channel, event.data));
+      writer.Write(event.channel, event.utime, signer.Sign(event.channel, event.data));
     }
   }
   // The same events in reverse order. The scenario's parts still come first.
@@ -138,7 +138,7 @@ std::vector<Input> Seeds() {
     log::EventLogWriter writer(reversed.path());
     for (const log::Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
-  return {log, torn, sealed.Content(), reversed.Content(), WithLogSeal(log)};
+  return {log, torn, signed_log.Content(), reversed.Content(), WithLogSeal(log)};
 }
 
 }  // namespace fogline::fuzz

@@ -92,8 +92,8 @@ TEST_F(TrafficStatisticsTest, CountsNamesThatItDoesNotKnow) {
 }
 
 TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
-  runtime::MessageSigner seal(runtime::SigningKey(runtime::SigningKey::Secret{}), std::nullopt);
-  const runtime::Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
+  runtime::MessageSigner signer(runtime::SigningKey(runtime::SigningKey::Secret{}), std::nullopt);
+  const runtime::Bytes radar = signer.Sign("RADAR", Radar(kRun, 3));
   Add("RADAR", {radar.begin(), radar.end()});
   const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);

@@ -67,32 +67,33 @@ TEST(MessageSignerTest, GivesThePayloadBackAsItWas) {
 }
 
 TEST(MessageSignerTest, NoticesEveryBitThatIsWrong) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  Message message = Copy(signer.Sign("RADAR", kRadar));
   for (std::size_t bit = 0; bit < 8 * message.size(); ++bit) {
     const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
     message[bit / 8] ^= mask;
-    EXPECT_NE(seal.Open("RADAR", message).verdict, Verdict::kGood) << "bit " << bit;
+    EXPECT_NE(signer.Open("RADAR", message).verdict, Verdict::kGood) << "bit " << bit;
     message[bit / 8] ^= mask;
   }
-  EXPECT_EQ(seal.Open("RADAR", message).verdict, Verdict::kGood);
+  EXPECT_EQ(signer.Open("RADAR", message).verdict, Verdict::kGood);
 }
 
 TEST(MessageSignerTest, NoticesEveryCut) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  const Message message = Copy(signer.Sign("RADAR", kRadar));
   for (std::size_t size = 0; size < message.size(); ++size) {
-    EXPECT_EQ(seal.Open("RADAR", runtime::Bytes(message).first(size)).verdict, Verdict::kNotSigned)
+    EXPECT_EQ(signer.Open("RADAR", runtime::Bytes(message).first(size)).verdict,
+              Verdict::kNotSigned)
         << size;
   }
 }
 
 TEST(MessageSignerTest, RefusesOtherKeysAndOtherChannels) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kWorld);
-  const Message message = Copy(seal.Sign("TRUTH", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kWorld);
+  const Message message = Copy(signer.Sign("TRUTH", kRadar));
   EXPECT_EQ(runtime::MessageSigner(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict,
             Verdict::kBadlySigned);
-  EXPECT_EQ(seal.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
+  EXPECT_EQ(signer.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
 }
 
 TEST(MessageSignerTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
@@ -135,8 +136,8 @@ TEST(MessageSignerTest, SignsAsEveryRoleInAProcessThatIsAll) {
 }
 
 TEST(MessageSignerTest, LeavesASignedMessageToLcmsOwnDecodersAndNoneToOurs) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  const Message message = Copy(signer.Sign("RADAR", kRadar));
   radar_t decoded{};
   // Calls the generated decoder as LCM's own programs do.
   EXPECT_GE(decoded.decode(message.data(), 0, static_cast<int>(message.size())), 0);
