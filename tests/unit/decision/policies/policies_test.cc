@@ -138,10 +138,10 @@ TEST(PoliciesTest, NoneIsolateAndOracleStayAutomatedWhateverTheConflict) {
   Situation situation;
   situation.doc = 1;
   for (const char* policy : {"none", "isolate", "oracle"}) {
-    const policies::EngagementRequest wish = Decide(policy, situation);
-    EXPECT_EQ(wish.lambda_human, 0) << policy;
-    EXPECT_EQ(wish.threshold, 0.5) << policy;
-    EXPECT_TRUE(wish.firm) << policy;
+    const policies::EngagementRequest request = Decide(policy, situation);
+    EXPECT_EQ(request.lambda_human, 0) << policy;
+    EXPECT_EQ(request.threshold, 0.5) << policy;
+    EXPECT_TRUE(request.firm) << policy;
   }
 }
 
@@ -158,10 +158,10 @@ TEST(PoliciesTest, BlendSharesInProportionToTheConflict) {
   Situation situation;
   for (const auto& [doc, lambda] : {std::pair{0.1, 0.0}, {0.2, 0.0}, {0.5, 0.5}, {0.9, 1.0}}) {
     situation.doc = doc;
-    const policies::EngagementRequest wish = Decide("blend", situation);
-    EXPECT_NEAR(wish.lambda_human, lambda, 1e-15) << doc;
-    EXPECT_EQ(wish.threshold, 0.5);
-    EXPECT_TRUE(wish.firm);
+    const policies::EngagementRequest request = Decide("blend", situation);
+    EXPECT_NEAR(request.lambda_human, lambda, 1e-15) << doc;
+    EXPECT_EQ(request.threshold, 0.5);
+    EXPECT_TRUE(request.firm);
   }
 }
 

@@ -211,7 +211,7 @@ TEST_F(TakeOverTest, DoesNotWithdrawARequestThatIsNotWantedAnyMore) {
   EXPECT_EQ(state(), kMrmComfort);
 }
 
-TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndTheWishIsGone) {
+TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndIsNotWanted) {
   Begin(Answering(2));
   Step();
   StepWhile(kDemand);
