@@ -53,7 +53,7 @@ class LockstepRule : public FireRule {
   std::int64_t expected_;    // highest step that is known to be under way
   std::int64_t late_;        // last step to catch up with
   std::int64_t asked_ = -1;  // last step whose inputs were asked for
-  RetryTimer patience_;
+  RetryTimer retry_;
 };
 
 }  // namespace fogline::runtime
