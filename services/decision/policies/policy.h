@@ -16,7 +16,7 @@
 
 namespace fogline::policies {
 
-/// Which sensors the fusion uses in this step. The values of a sensor that is not trusted are
+/// Which sensors the fusion uses in this step. The values of a sensor that is not selected are
 /// compared with the prediction, but correct nothing.
 struct SensorSelection {
   bool radar = true;

@@ -100,7 +100,7 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
     };
-    EXPECT_EQ(row.trusts, is({"isolate", "oracle", "availability"})) << row.name;
+    EXPECT_EQ(row.selects_sensors, is({"isolate", "oracle", "availability"})) << row.name;
     EXPECT_EQ(row.needs_true_gap, is({"oracle"})) << row.name;
     EXPECT_EQ(row.needs_surroundings, is({"adaptive", "bayes", "availability"})) << row.name;
     EXPECT_EQ(row.shares, is({"blend"})) << row.name;
@@ -299,8 +299,8 @@ TEST(PoliciesTest, IsolateDropsNobodyWithoutAWitnessAndNeverBoth) {
   EXPECT_EQ(SelectSensors("isolate", {alone, {}}), kBoth);
   conflict::Evidence both_off = kLidarShort;
   both_off.radar.range_m = 80;
-  const policies::SensorSelection trust = SelectSensors("isolate", {both_off, {}});
-  EXPECT_TRUE(trust.radar || trust.lidar);
+  const policies::SensorSelection selection = SelectSensors("isolate", {both_off, {}});
+  EXPECT_TRUE(selection.radar || selection.lidar);
 }
 
 TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
@@ -309,9 +309,9 @@ TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
     scenario.arbitrator.blame = static_cast<BlameChoice>(&row - conflict::BlameMeasures().data());
     scenario.arbitrator.blame_threshold = 0.6;
     const auto policy = policies::RowOf(policies::FindPolicy("isolate").value()).make(scenario);
-    policies::SensorSelection trust;
-    for (int i = 0; i < 5; ++i) trust = policy->SelectSensors({kLidarShort, {}});
-    EXPECT_EQ(trust, kRadarAlone) << row.name;
+    policies::SensorSelection selection;
+    for (int i = 0; i < 5; ++i) selection = policy->SelectSensors({kLidarShort, {}});
+    EXPECT_EQ(selection, kRadarAlone) << row.name;
   }
 }
 
@@ -331,7 +331,7 @@ constexpr policies::PolicyRow kExample =
 
 TEST(ExamplePolicyTest, IsAPolicyLikeAnyOther) {
   const auto policy = kExample.make({});
-  EXPECT_FALSE(kExample.trusts);
+  EXPECT_FALSE(kExample.selects_sensors);
   Situation situation;
   situation.doc = 0.1;
   EXPECT_EQ(policy->Decide(situation.View()).lambda_human, 1) << "no track";

@@ -101,7 +101,7 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
   EXPECT_EQ(Add(next), "step 13: fusion: RADAR ok again");
 }
 
-TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfStrangers) {
+TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfForeignPeers) {
   EXPECT_EQ(Add(Said("recorder", 12, {{"RADAR", kLost}})), "");
   EXPECT_EQ(Add(Said("nobody", 12, {{"RADAR", kLost}})), "");
   EXPECT_EQ(Add(Said("fusion", 12, {{"NO_CHANNEL", kLost}})), "");
