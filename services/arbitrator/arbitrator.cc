@@ -20,11 +20,11 @@ Arbitrator::Arbitrator(const Scenario& scenario)
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
-bool Arbitrator::UsesOptionalInput(const Scenario& scenario) {
+bool Arbitrator::UsesOnDemandInput(const Scenario& scenario) {
   return policies::RowOf(scenario.arbitrator.policy).needs_surroundings;
 }
 
-void Arbitrator::SetOptionalInput(const truth_t& truth) {
+void Arbitrator::SetOnDemandInput(const truth_t& truth) {
   surroundings_.visibility_m = truth.fog_visibility_m;
   surroundings_.followed = truth.num_followers > 0;
   if (!surroundings_.followed) return;

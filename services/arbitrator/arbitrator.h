@@ -29,12 +29,12 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings: SetOptionalInput() is then called before
+  /// Whether the scenario's policy uses the surroundings: SetOnDemandInput() is then called before
   /// every Step().
-  static bool UsesOptionalInput(const Scenario& scenario);
+  static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
   /// meter would give.
-  void SetOptionalInput(const truth_t& truth);
+  void SetOnDemandInput(const truth_t& truth);
 
   /// The host's command for the step that begins here. Call it once per step, in the order of
   /// steps. The result is valid until the next call.

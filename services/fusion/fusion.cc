@@ -47,7 +47,7 @@ Fusion::Fusion(const Scenario& scenario)
   selects_ = gating_ || policy_ != nullptr;
 }
 
-bool Fusion::UsesOptionalInput(const Scenario& scenario) {
+bool Fusion::UsesOnDemandInput(const Scenario& scenario) {
   return policies::RowOf(scenario.arbitrator.policy).needs_true_gap;
 }
 

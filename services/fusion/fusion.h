@@ -33,11 +33,11 @@ class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth: SetOptionalInput() is then called before every
+  /// Whether the scenario's policy needs the truth: SetOnDemandInput() is then called before every
   /// Step().
-  static bool UsesOptionalInput(const Scenario& scenario);
+  static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes only the gap from the truth, for the policy alone.
-  void SetOptionalInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
+  void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Call it once per step, in the order of steps, beginning with the
   /// first. `ego` has the host's acceleration during the step that ended here. The result is valid

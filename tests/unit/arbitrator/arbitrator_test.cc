@@ -228,7 +228,7 @@ TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
 
 TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   for (const policies::PolicyRow& row : policies::Policies()) {
-    EXPECT_EQ(arbitrator::Arbitrator::UsesOptionalInput(WithPolicy(row.name)),
+    EXPECT_EQ(arbitrator::Arbitrator::UsesOnDemandInput(WithPolicy(row.name)),
               row.needs_surroundings)
         << row.name;
   }
@@ -244,7 +244,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
   // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
-  arbitrator.SetOptionalInput(truth);
+  arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
 

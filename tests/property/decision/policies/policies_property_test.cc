@@ -107,8 +107,8 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
     double previous = 0;
     for (std::int64_t k = 0; k < 100; ++k) {
       in.Next(draw, k);
-      arbitrator.SetOptionalInput(in.truth);
-      fusion.SetOptionalInput(in.truth);
+      arbitrator.SetOnDemandInput(in.truth);
+      fusion.SetOnDemandInput(in.truth);
       const track_t& track = fusion.Step(in.ego, in.radar, in.lidar);
       const arbitration_t& out =
           arbitrator.Step(in.ego, in.radar, in.lidar, track, in.automation, in.driver);
@@ -147,8 +147,8 @@ TEST_P(EveryPolicyProperty, DecidesTheSameAgain) {
       Inputs in;
       for (std::int64_t k = 0; k < 50; ++k) {
         in.Next(draw, k);
-        arbitrator.SetOptionalInput(in.truth);
-        fusion.SetOptionalInput(in.truth);
+        arbitrator.SetOnDemandInput(in.truth);
+        fusion.SetOnDemandInput(in.truth);
         const track_t& track = fusion.Step(in.ego, in.radar, in.lidar);
         decisions.push_back(
             arbitrator.Step(in.ego, in.radar, in.lidar, track, in.automation, in.driver));
