@@ -31,7 +31,7 @@ its log, and gives exit code 130. A process that is killed or hangs is started
 again and catches up, and the result is the same. So is that of a run that has
 ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
 are those of the log; transport, pace, key and the roles that are started
-elsewhere are chosen anew. As the roles go on from what the log says, its steps
+elsewhere are given again. As the roles go on from what the log says, its steps
 are computed again and compared, unless --no-verify says otherwise; those of a
 complete log with --verify only. A run has a port of its own unless
 LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without

@@ -41,7 +41,7 @@ void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key)
 Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::LogFront front = log::ReadFront(log);
   if (!front.parts.Complete()) {
-    Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
+    Refuse(log, "the log does not begin with the scenario of a run: start a new run");
   }
   if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
   if (front.realtime) {
