@@ -258,8 +258,8 @@ TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   EXPECT_EQ(Decide("availability", driving).lambda_human, 1) << "he is there";
   Situation calm = followed(20);
   calm.doc = 0.4;
-  EXPECT_EQ(Decide("availability", calm).lambda_human, 0) << "nobody calls him";
-  EXPECT_EQ(Decide("availability", Situation()).lambda_human, 1) << "nobody behind";
+  EXPECT_EQ(Decide("availability", calm).lambda_human, 0) << "DoC below the threshold";
+  EXPECT_EQ(Decide("availability", Situation()).lambda_human, 1) << "no car behind";
 }
 
 // ---- in the fusion ------------------------------------------------------------------------------

@@ -125,7 +125,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse
                                                 .stall_limit = milliseconds(100)});
   BeAtStep(-1);
   hasty.Poll(Clock::now());
-  // GIVEN that everybody waits for somebody
+  // GIVEN that every role waits for another one
   const auto wait = [this](Role who, std::int64_t next, const char* channel, std::int64_t heard) {
     role(who).header.step = next - 1;
     role(who).waiting_for = channel;
@@ -200,9 +200,9 @@ TEST_F(RunCoordinatorTest, CountsWhatItRefusesItself) {
   auto foreign = role(Role::kRadar);
   foreign.header.run_id = Script::kRunId + 1;
   script_.Say(foreign);
-  auto nobody = role(Role::kRadar);
-  nobody.role = "nobody";
-  script_.Say(nobody);
+  auto unknown_role = role(Role::kRadar);
+  unknown_role.role = "pilot";
+  script_.Say(unknown_role);
   script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
   script_.bus().Publish("RESEND", std::vector<std::uint8_t>(100));
   script_.bus().Publish("RESEND", std::vector<std::uint8_t>(3));

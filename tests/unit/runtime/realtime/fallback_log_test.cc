@@ -103,7 +103,7 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
 
 TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfForeignPeers) {
   EXPECT_EQ(Add(Said("recorder", 12, {{"RADAR", kLost}})), "");
-  EXPECT_EQ(Add(Said("nobody", 12, {{"RADAR", kLost}})), "");
+  EXPECT_EQ(Add(Said("pilot", 12, {{"RADAR", kLost}})), "");
   EXPECT_EQ(Add(Said("fusion", 12, {{"NO_CHANNEL", kLost}})), "");
 }
 

@@ -217,7 +217,7 @@ TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWhoeverAnswers) {
   script_.PollUpTo(node_, At(1));
   script_.PollUpTo(node_, At(2.01));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1, 2));
-  EXPECT_EQ(Status(node_).deadline_misses, 2) << "nobody commanded anything";
+  EXPECT_EQ(Status(node_).deadline_misses, 2) << "no command came";
 }
 
 TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {

@@ -121,7 +121,7 @@ TEST(MessageSignerTest, TakesAStatusFromTheRoleThatItNamesAlone) {
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("radar")), Verdict::kGood);
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRecorder, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
-  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("nobody")), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("pilot")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", runtime::Bytes(kRadar).first(34)),
             Verdict::kBadlySigned);
 }
