@@ -186,7 +186,7 @@ class BusyElsewhere {
   TimePoint look_at_{};
 };
 
-/// What a person is warned of while a run goes on, each thing once.
+/// Prints warnings while a run goes on, each one once.
 class Warnings {
  public:
   Warnings(runtime::RunCoordinator& coordinator, Progress& progress)

@@ -26,7 +26,7 @@ const std::filesystem::path& Readable(const std::filesystem::path& log) {
   return log;
 }
 
-/// A log that was sealed is the one that was sealed; its new seal must not make it one.
+/// Refuses a log that was changed since it was sealed: a new seal must not hide the change.
 void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
   while (reader.Next() != nullptr) {

@@ -6,8 +6,8 @@
 //
 // Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
 // computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
-// sends old inputs, their producers send the last ones. The node publishes only outputs that the
-// recorder does not answer for.
+// sends old inputs, their producers send the last ones. The node does not publish old outputs,
+// because the recorder has them.
 #pragma once
 
 #include <cstdint>

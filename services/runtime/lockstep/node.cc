@@ -129,7 +129,7 @@ void Node::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = bus_.failed_sends();
   if (failed.count == status_.sends_failed) return;
   status_at_ = std::min(status_at_, said_at_ + kTellSends);
-  // In real time the others go on without it; who is silent for too long is the runner's to judge.
+  // In real time the other roles go on without it, and the runner judges how long it may be silent.
   if (left_ || realtime_ || !failed.since || !runner_.Stalled(*failed.since, now)) return;
   Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                    failed.error));

@@ -156,7 +156,8 @@ class Node {
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// Has what could not be sent told soon; in lockstep fails if that was everything for too long.
+  /// Sends a STATUS soon after a failed send. In lockstep the node fails if nothing could be sent
+  /// for as long as the run waits for a step.
   void CheckSends(TimePoint now);
   /// Takes a RUN's news about the whole run. @return whether the RUN is newer than all before
   bool TakeNews(const run_t& run, TimePoint now);

@@ -137,8 +137,8 @@ void Bus::Secure(const MessageSigner& signer) {
   }
   if (!filtered_) {
     throw InputError(
-        "error: --key: the kernel takes no socket filter, so strangers reach LCM's parser before "
-        "the signature is looked at; `fogline doctor` says more");
+        "error: --key: the kernel takes no socket filter, so messages reach LCM's parser before "
+        "their signature is checked; `fogline doctor` says more");
   }
   signer_ = signer;
 }

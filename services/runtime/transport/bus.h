@@ -139,10 +139,9 @@ class Bus {
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
-  // Where the group is heard and reached as the route leads, which may change; and when it was seen
-  // to last that it is joined there.
+  // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
-  TimePoint joined_{};
+  TimePoint joined_{};  // when a silent bus last renewed its membership
   FailedSends failed_sends_;
   // With memq only this object publishes: waiting_ counts its messages that wait to be handled.
   bool in_memory_;

@@ -77,7 +77,7 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
   }
   PollUntil(coordinator_, Clock::now() + milliseconds(3900));
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
-  EXPECT_EQ(coordinator_.step(), 40) << "of the run, not of who catches up";
+  EXPECT_EQ(coordinator_.step(), 40) << "the step of the run, not of the role that catches up";
   PollUntil(coordinator_, Clock::now() + milliseconds(4100));
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
