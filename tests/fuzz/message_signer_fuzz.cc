@@ -26,7 +26,7 @@ void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& 
   const runtime::MessageSigner::Opened opened = signer.Open(channel.name, message);
   Demand((opened.verdict == runtime::MessageSigner::Verdict::kNotSigned) ==
              !runtime::LooksSigned(message),
-         "what looks signed is good or badly signed");
+         "a message that looks signed is good or badly signed");
   if (opened.verdict != runtime::MessageSigner::Verdict::kGood) {
     Demand(opened.payload.empty(), "a message that is not good gives no payload");
     return;
@@ -36,7 +36,7 @@ void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& 
     runtime::MessageSigner of_role(Key(1), static_cast<Role>(role));
     signed_by_a_role |= std::ranges::equal(of_role.Sign(channel.name, opened.payload), message);
   }
-  Demand(signed_by_a_role, "what is good was signed");
+  Demand(signed_by_a_role, "a good message was signed");
   Took();
 }
 
@@ -49,7 +49,7 @@ void DemandBinding(runtime::MessageSigner& signer, std::size_t place, Cutter& cu
   const runtime::MessageSigner::Opened opened = signer.Open(channel.name, message);
   Demand(opened.verdict == runtime::MessageSigner::Verdict::kGood &&
              std::ranges::equal(opened.payload, payload),
-         "what is signed is good, and is what it was");
+         "a signed message is good, with the same payload");
   Demand(!IsGood(signer, kChannels[(place + 1) % kNumChannels].name, message),
          "it is not good for another channel");
   Demand(!IsGood(runtime::MessageSigner(Key(2), {}), channel.name, message),
@@ -58,7 +58,7 @@ void DemandBinding(runtime::MessageSigner& signer, std::size_t place, Cutter& cu
   at = at << 8 | cutter.Byte();
   const auto change = static_cast<std::uint8_t>(std::max<int>(1, cutter.Byte()));
   message[at % message.size()] ^= change;
-  Demand(!IsGood(signer, channel.name, message), "altered it is not good");
+  Demand(!IsGood(signer, channel.name, message), "it is not good after a change");
 }
 
 void DemandNoOthersMessages(std::size_t place, std::uint8_t role, runtime::Bytes payload) {

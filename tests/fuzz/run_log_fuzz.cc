@@ -76,7 +76,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     const Reading reading = Read(file.path());
     DemandWholeSteps(reading);
     Demand(!reading.run.altered || (reading.run.seal && !reading.run.complete),
-           "what differs from its seal is not complete");
+           "a log that differs from its seal is not complete");
     if (reading.refused || reading.run.realtime) return;  // a copy would be in lockstep
     const MemoryFile copy;
     Rewrite(reading, copy.path());
@@ -84,7 +84,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     Demand(again.steps == reading.steps, "a copy has the same steps");
     Demand(again.run.scenario_text == reading.run.scenario_text, "a copy has the same scenario");
     Demand(again.run.complete || !reading.run.complete, "a copy of a complete run is complete");
-    Demand(Printable(reading.run.note), "what is said of a log can be printed");
+    Demand(Printable(reading.run.note), "the note about a log can be printed");
     if (!reading.steps.empty()) Took();
   } catch (const InputError&) {
     return;  // not an event log

@@ -166,7 +166,7 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
   EXPECT_FALSE(bus.Wait(milliseconds(1)));
 }
 
-TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
+TEST(RelayTest, IsFoundAgainWhereItWasByItsSubscribers) {
   const auto relay = std::make_unique<Relay>();
   const std::string url = relay->url();
   runtime::Bus bus(url);

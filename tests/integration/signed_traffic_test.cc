@@ -232,7 +232,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
   EXPECT_GT(result["refused"]["not_finite"], 50);
 }
 
-TEST_F(SignedTrafficTest, TellsWhoHasAnotherKeyOrNone) {
+TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
   // GIVEN a run that waits for a driver
   Background run(Run({"--key", key_, "--external", "driver"}));
   const auto driver = [&](const std::vector<std::string>& more) {

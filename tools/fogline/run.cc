@@ -150,7 +150,7 @@ void ApplyOptions(RunArguments& arguments) {
   options.announce = !arguments.quiet;
 }
 
-int RunAnew(RunArguments& arguments) {
+int RunNew(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
@@ -235,7 +235,7 @@ void AddRun(CLI::App& app, cli::Action& action) {
     CheckResume(*verb);
     action = [arguments] {
       ApplyOptions(*arguments);
-      return arguments->resume.empty() ? RunAnew(*arguments) : Resume(*arguments);
+      return arguments->resume.empty() ? RunNew(*arguments) : Resume(*arguments);
     };
   });
 }

@@ -213,7 +213,7 @@ TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
   EXPECT_EQ(out.mode, arbitration_t::HUMAN) << "both have half: his is the mode";
 }
 
-TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
+TEST(ArbitratorTest, ModeNamesTheSideWithMoreAuthorityDuringATransfer) {
   Scenario scenario = WithPolicy("traded");
   scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
   scenario.arbitrator.transfer.duration_s = 1;
@@ -341,7 +341,7 @@ TEST_F(SharedWithTheAskedTest, HeDrivesAloneWhereTheAutomationIsOffOrGone) {
   EXPECT_NEAR(Requesting(0.2).lambda_human, 0.2, 1e-12);
 }
 
-TEST_F(SharedWithTheAskedTest, WhoComesLateDrivesAloneForTheRestOfTheRun) {
+TEST_F(SharedWithTheAskedTest, ALateDriverDrivesAloneForTheRestOfTheRun) {
   readiness_ = 0;
   while (Requesting(0.2).mode != arbitration_t::MRM_COMFORT && step_ < 200) {
   }

@@ -295,7 +295,7 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
   }
 }
 
-TEST(DriverTest, DemandsToKnowWhoDrivesOnlyIfHisAwarenessDependsOnIt) {
+TEST(DriverTest, UsesItsOnDemandInputOnlyIfItsAwarenessDependsOnIt) {
   Scenario scenario;
   EXPECT_FALSE(driver::Driver::UsesOnDemandInput(scenario));
   scenario.human.misjudges = true;

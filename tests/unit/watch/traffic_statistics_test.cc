@@ -71,7 +71,7 @@ TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
   EXPECT_TRUE(view.others.empty());
 }
 
-TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatSomebodyMaySend) {
+TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatAMessageMayHave) {
   // GIVEN two readings with a difference that does not fit into 64 bits
   status_t status = Status("radar", 1, 1);
   status.cpu_ms = std::numeric_limits<std::int64_t>::min();

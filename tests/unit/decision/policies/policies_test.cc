@@ -92,7 +92,7 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
   }
 }
 
-TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
+TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
        {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
@@ -293,7 +293,7 @@ TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
   }
 }
 
-TEST(PoliciesTest, IsolateDropsNobodyWithoutAWitnessAndNeverBoth) {
+TEST(PoliciesTest, IsolateDropsNoSensorWithoutAWitnessAndNeverBoth) {
   conflict::Evidence alone = kLidarShort;
   alone.prediction = {};
   EXPECT_EQ(SelectSensors("isolate", {alone, {}}), kBoth);

@@ -24,7 +24,7 @@ TEST_F(RunCoordinatorTest, SaysPrepareUntilEveryRoleIsReadyAndThenGo) {
   EXPECT_EQ(said_.back().phase, run_t::GO);
 }
 
-TEST_F(RunCoordinatorTest, TellsWhoJoinsHowFarTheRunIs) {
+TEST_F(RunCoordinatorTest, TellsARoleThatJoinsHowFarTheRunIs) {
   BeAtStep(-1);
   BeAtStep(40);
   role(Role::kRecorder).header.step = 48;
@@ -82,7 +82,7 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
-TEST_F(RunCoordinatorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) {
+TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   BeAtStep(-1);
   BeAtStep(40);
   const TimePoint again = Clock::now() + milliseconds(5000);
@@ -119,7 +119,7 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
   EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
 }
 
-TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
+TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
   runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
                                                 .scenario_text = script_.text(),
                                                 .stall_limit = milliseconds(100)});
@@ -134,7 +134,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse
   };
   wait(Role::kWorld, 8, "HOST_COMMAND", 6);
   wait(Role::kArbitrator, 7, "DRIVER_COMMAND", 6);
-  // WHEN it is the driver who lacks what the arbitrator has said before
+  // WHEN the driver lacks a message that the arbitrator has sent before
   wait(Role::kDriver, 7, "HOST_COMMAND", 5);
   hasty.Poll(Clock::now() + milliseconds(150));
   EXPECT_THAT(

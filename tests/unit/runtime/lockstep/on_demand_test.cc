@@ -125,7 +125,7 @@ TEST_F(OnDemandTest, IsNoSignOfAStepToCome) {
   EXPECT_TRUE(requests_.empty()) << "step 0 may be the last";
 }
 
-TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByWhoJoinsLate) {
+TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
   constexpr std::int64_t kProgress = 150;
   script_.SayRun(run_t::GO, kProgress);
   std::size_t served = 0;

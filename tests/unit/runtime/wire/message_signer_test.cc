@@ -108,7 +108,7 @@ TEST(MessageSignerTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
   }
 }
 
-TEST(MessageSignerTest, TakesRunFromTheRunnerAloneAndResendFromEverybody) {
+TEST(MessageSignerTest, TakesRunFromTheRunnerAloneAndResendFromEveryRole) {
   EXPECT_EQ(VerdictOn(Role::kRunner, "RUN", kRadar), Verdict::kGood);
   EXPECT_EQ(VerdictOn(Role::kRunner, "RESEND", kRadar), Verdict::kGood);
   for (const RoleInfo& info : kRoles) {
@@ -223,13 +223,13 @@ TEST(SigningKeyTest, IsRefusedIfGroupOrOthersCanReadOrChangeItsFile) {
   }
 }
 
-TEST(SigningKeyTest, IsRefusedIfItsFileBelongsToSomebodyElse) {
+TEST(SigningKeyTest, IsRefusedIfItsFileBelongsToAnotherUser) {
   if (geteuid() != 0) return test::MachineLacks("root, to give a file away");
   const ScratchFolder folder;
   const std::string file = folder.File("key");
   runtime::SigningKey::Create(file);
-  constexpr uid_t kNobody = 65534;
-  ASSERT_EQ(chown(file.c_str(), kNobody, kNobody), 0);
+  constexpr uid_t kOtherUser = 65534;
+  ASSERT_EQ(chown(file.c_str(), kOtherUser, kOtherUser), 0);
   EXPECT_THAT(Complaint(file), HasSubstr("error: the key belongs to user 65534"));
 }
 
