@@ -26,8 +26,8 @@ class RunSeeker {
 
   /// Whether the role is at the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the run is over, or nothing was heard of it for kPatience. The role then goes back to
-  /// the meeting address.
+  /// Whether the run is over, or nothing was heard of it for kSilentLimit. The role then goes back
+  /// to the meeting address.
   bool InVain(TimePoint now);
   /// Look() does not return the run that was tried last again, until an announcement says that the
   /// run does not wait for the role. Then another process has had the place, and the place may
@@ -41,7 +41,7 @@ class RunSeeker {
  private:
   // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
   // by less than this.
-  static constexpr Duration kPatience = milliseconds(5000);
+  static constexpr Duration kSilentLimit = milliseconds(5000);
   // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;
 
