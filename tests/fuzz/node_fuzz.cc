@@ -118,7 +118,7 @@ class Run {
     auto run = Sample<run_t>(0);
     run.phase = phase;
     run.realtime = realtime_;
-    run.pace = realtime_ ? kMaxSpeed : 0;
+    run.pace = realtime_ ? runtime::kMaxSpeed : 0;
     run.external = {"world", "driver", "recorder"};  // the run waits for all three
     run.holder = {0, 0, 0};
     run.num_external = static_cast<std::int32_t>(run.external.size());

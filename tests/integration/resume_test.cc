@@ -70,7 +70,7 @@ class ResumeTest : public testing::Test {
     // differ. With a key, the last event has a signature.
     const bool is_signed = std::ranges::find(more, "--key") != more.end();
     EXPECT_EQ(std::filesystem::file_size(log_),
-              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? kSignatureBytes : 0));
+              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? runtime::kSignatureBytes : 0));
     return result;
   }
   /// Kills the runner, not its roles, as soon as there are so many bytes in the log.

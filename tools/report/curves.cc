@@ -72,7 +72,7 @@ std::string MissingText(const ReportCurves& curves) {
       seeds - least->si_pct.count, seeds);
 }
 
-json Column(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure,
+json ColumnOf(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure,
             std::optional<double> stats::Summary::*value) {
   json column = json::array();
   for (const ReportCurves::Point& point : curves.points) {
@@ -82,12 +82,12 @@ json Column(const ReportCurves& curves, stats::Summary ReportCurves::Point::*mea
   return column;
 }
 
-json Columns(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure) {
-  return {{"mean", Column(curves, measure, &stats::Summary::mean)},
-          {"deviation", Column(curves, measure, &stats::Summary::deviation)},
-          {"ci95", Column(curves, measure, &stats::Summary::ci95)},
-          {"p5", Column(curves, measure, &stats::Summary::p5)},
-          {"p95", Column(curves, measure, &stats::Summary::p95)}};
+json ColumnsOf(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure) {
+  return {{"mean", ColumnOf(curves, measure, &stats::Summary::mean)},
+          {"deviation", ColumnOf(curves, measure, &stats::Summary::deviation)},
+          {"ci95", ColumnOf(curves, measure, &stats::Summary::ci95)},
+          {"p5", ColumnOf(curves, measure, &stats::Summary::p5)},
+          {"p95", ColumnOf(curves, measure, &stats::Summary::p95)}};
 }
 
 }  // namespace
@@ -195,8 +195,8 @@ std::string CurvesData(const ReportCurves& curves) {
     published.push_back({{"threshold", row.threshold}, {"si", row.si_pct}, {"rhe", row.rhe_pct}});
   }
   const json data{{"thresholds", std::move(thresholds)},
-                  {"si", Columns(curves, &ReportCurves::Point::si_pct)},
-                  {"rhe", Columns(curves, &ReportCurves::Point::rhe_pct)},
+                  {"si", ColumnsOf(curves, &ReportCurves::Point::si_pct)},
+                  {"rhe", ColumnsOf(curves, &ReportCurves::Point::rhe_pct)},
                   {"points", std::move(places)},
                   {"labels", LabelOrder(curves, points)},
                   {"published", std::move(published)}};

@@ -10,7 +10,7 @@
 namespace fogline::report {
 namespace {
 
-constexpr std::string_view kNone = "–";
+constexpr std::string_view kNoNumber = "–";
 constexpr std::string_view kMinus = "−";
 
 /// The character reference for `c`; "" if `c` needs none.
@@ -84,7 +84,7 @@ std::string Fill(std::string_view page,
 }
 
 std::string Decimal(double value, int decimals) {
-  if (!std::isfinite(value)) return std::string(kNone);
+  if (!std::isfinite(value)) return std::string(kNoNumber);
   std::string text = fmt::format("{:.{}f}", std::fabs(value), decimals);
   const bool rounds_to_zero = text.find_first_not_of("0.") == std::string::npos;
   if (value < 0 && !rounds_to_zero) text.insert(0, kMinus);
@@ -92,12 +92,12 @@ std::string Decimal(double value, int decimals) {
 }
 
 std::string DataElement(double value, int decimals) {
-  if (!std::isfinite(value)) return std::string(kNone);
+  if (!std::isfinite(value)) return std::string(kNoNumber);
   return fmt::format("<data value=\"{}\">{}</data>", value, Decimal(value, decimals));
 }
 
 std::string MeasureElement(std::string_view name, double value, std::string_view unit) {
-  if (!std::isfinite(value)) return std::string(kNone);
+  if (!std::isfinite(value)) return std::string(kNoNumber);
   std::string text = MeasureText(name, value, unit);
   if (const std::size_t minus = text.find('-'); minus != std::string::npos) {
     text.replace(minus, 1, kMinus);

@@ -55,7 +55,7 @@ class ColumnPool {
   std::vector<std::string_view> texts_;  // views of the keys of places_
 };
 
-std::string_view TextOf(Hold hold) {
+std::string_view HoldText(Hold hold) {
   switch (hold) {
     case Hold::kLinear:
       return "linear";
@@ -87,7 +87,7 @@ json LengthsOf(Dash dash) {
 json CurveJson(const Curve& curve) {
   return {{"column", curve.column},
           {"label", curve.label},
-          {"hold", TextOf(curve.hold)},
+          {"hold", HoldText(curve.hold)},
           {"colour", curve.colour},
           {"dash", LengthsOf(curve.dash)},
           {"detail", curve.part == Part::kDetail},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +12,11 @@
 
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
+#include "tools/stats/statistics.h"
 
 namespace fogline::report {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPercentDecimals = 2;  // as in the paper
 
 /// A table in a container that scrolls sideways by itself, so that the page never does.
@@ -59,8 +58,9 @@ std::string RowOf(const ReportTable::Row& row, bool with_seed) {
   return fmt::format(
       "<tr><th scope=\"row\"><data value=\"{0}\">{0}</data></th>{1}{2}{3}{4}{5}</tr>\n",
       row.threshold, seed, OwnCells(row.si_pct, row.si_std_pct),
-      PercentCell(row.published_si_pct.value_or(kNone)), OwnCells(row.rhe_pct, row.rhe_std_pct),
-      PercentCell(row.published_rhe_pct.value_or(kNone)));
+      PercentCell(row.published_si_pct.value_or(stats::kMissing)),
+      OwnCells(row.rhe_pct, row.rhe_std_pct),
+      PercentCell(row.published_rhe_pct.value_or(stats::kMissing)));
 }
 
 /// Mean, standard deviation, half of the confidence interval, and percentiles.
@@ -68,7 +68,7 @@ std::string SummaryCells(const stats::Summary& summary) {
   std::string cells;
   for (const std::optional<double>& value :
        {summary.mean, summary.deviation, summary.ci95, summary.p5, summary.p95}) {
-    cells += PercentCell(value.value_or(kNone));
+    cells += PercentCell(value.value_or(stats::kMissing));
   }
   return cells;
 }
@@ -212,7 +212,8 @@ std::string MeasureTable(std::span<const ReportRun> runs) {
     body += fmt::format("<tr><th scope=\"row\">{}</th>", HeadOf(row.measure));
     for (const std::optional<double>& value : row.values) {
       body += fmt::format(
-          "<td>{}</td>", MeasureElement(row.measure.name, value.value_or(kNone), row.measure.unit));
+          "<td>{}</td>",
+          MeasureElement(row.measure.name, value.value_or(stats::kMissing), row.measure.unit));
     }
     body += "</tr>\n";
   }

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace fogline::stats {
+
+/// A number that does not exist: nothing was measured, or nothing can be computed.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean and spread of a sample, in the unit of its values. nullopt means too few values: the mean
 /// needs one, everything else needs two.

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tools/stats/statistics.h"
 
 namespace fogline::study {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTail = 0.025;  // at each end of an interval of 95 %
 
 }  // namespace
@@ -37,16 +35,20 @@ double WeightedMean(std::span<const double> values, std::span<const double> weig
     sum += weights[i] * values[i];
     weight += weights[i];
   }
-  return weight > 0 ? sum / weight : kNone;
+  return weight > 0 ? sum / weight : stats::kMissing;
 }
 
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates) {
-  Estimate estimate{.n = n, .mean = value, .deviation = kNone, .low = kNone, .high = kNone};
+  Estimate estimate{.n = n,
+                    .mean = value,
+                    .deviation = stats::kMissing,
+                    .low = stats::kMissing,
+                    .high = stats::kMissing};
   const bool lacking = std::ranges::any_of(replicates, [](double r) { return std::isnan(r); });
   if (n < 2 || std::isnan(value) || replicates.empty() || lacking) return estimate;
   stats::Statistics statistics;
   for (const double replicate : replicates) statistics.Add(replicate);
-  estimate.deviation = statistics.deviation().value_or(kNone);
+  estimate.deviation = statistics.deviation().value_or(stats::kMissing);
   std::ranges::sort(replicates);
   const auto at = [&](double share) {
     const double place = share * static_cast<double>(replicates.size() - 1);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -12,6 +11,7 @@
 #include "services/metrics/run_metrics.h"
 #include "tools/report/measure_text.h"
 #include "tools/stats/in_order.h"
+#include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
 
 namespace fogline::study {
@@ -67,8 +67,7 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
   const std::vector<Scenario> scenarios = ScenariosOf(context, cases_, variants_);
   const std::size_t measures = ComparedMeasures().size();
   const auto seeds = static_cast<std::size_t>(seeds_);
-  values_.assign(cases_.size() * variants_.size() * measures * seeds,
-                 std::numeric_limits<double>::quiet_NaN());
+  values_.assign(cases_.size() * variants_.size() * measures * seeds, stats::kMissing);
   const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
   const std::size_t block = variants_.size() + 1;
   stats::ComputeInOrder(

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,7 +11,6 @@
 namespace fogline::study {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPercent = 100;
 
 /// Collects the values of an estimate.
@@ -28,11 +26,11 @@ class Collection {
 
   Estimate Result() const {
     const stats::Summary summary = statistics_.Result();
-    const double mean = summary.mean.value_or(kNone);
-    const double half = summary.ci95.value_or(kNone);
+    const double mean = summary.mean.value_or(stats::kMissing);
+    const double half = summary.ci95.value_or(stats::kMissing);
     return {.n = summary.count,
             .mean = mean,
-            .deviation = summary.deviation.value_or(kNone),
+            .deviation = summary.deviation.value_or(stats::kMissing),
             .low = mean - half,
             .high = mean + half,
             .infinite = infinite_};

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 
 #include "services/metrics/event_share.h"
+#include "tools/stats/statistics.h"
 
 namespace fogline::study {
 
@@ -15,10 +15,10 @@ namespace fogline::study {
 /// are not among the n, because a mean cannot include them; they are counted separately.
 struct Estimate {
   std::int64_t n = 0;
-  double mean = std::numeric_limits<double>::quiet_NaN();
-  double deviation = std::numeric_limits<double>::quiet_NaN();
-  double low = std::numeric_limits<double>::quiet_NaN();
-  double high = std::numeric_limits<double>::quiet_NaN();
+  double mean = stats::kMissing;
+  double deviation = stats::kMissing;
+  double low = stats::kMissing;
+  double high = stats::kMissing;
   std::int64_t infinite = 0;
 
   bool has_interval() const { return low <= high; }

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "services/metrics/run_metrics.h"
+#include "tools/stats/statistics.h"
 
 namespace fogline::study {
 namespace {
@@ -18,15 +19,14 @@ void KeepInfinite(metrics::PairMeasures& pair) {
 
 // The values are in the order of ComparedMeasures().
 RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& si_pct) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
-  RunValues values{si_pct.value_or(kNone),
+  RunValues values{si_pct.value_or(stats::kMissing),
                    measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
   metrics::VisitMeasures(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
-          values.push_back(value.value_or(kNone));
+          values.push_back(value.value_or(stats::kMissing));
         } else {
           values.push_back(static_cast<double>(value));
         }

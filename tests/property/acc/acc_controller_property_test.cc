@@ -150,10 +150,10 @@ TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotRever
                       input.relative_speed_mps, input.acceleration_mps2);
     for (const double u : acc.plan()) {
       x = model.phi * x + model.gamma * u;
-      const double speed = preceding - x(kDeltaV);
-      const double gap = x(kDeltaD) + acc::SafeDistance(section, speed);
+      const double speed = preceding - x(acc::kDeltaV);
+      const double gap = x(acc::kDeltaD) + acc::SafeDistance(section, speed);
       EXPECT_GE(gap, section.min_gap_m - kTolerance);
-      EXPECT_GE(speed + section.engine_time_constant_s * x(kOwnAcceleration), -kTolerance);
+      EXPECT_GE(speed + section.engine_time_constant_s * x(acc::kOwnAcceleration), -kTolerance);
       if (gap < section.min_gap_m + 1) ++close;
     }
   });

@@ -81,15 +81,15 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   const VectorXd above = upper - program.constraints() * z;
 
   const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep);
-  const double preceding_mps = kSituation.speed_mps + kSituation.state(kDeltaV);
+  const double preceding_mps = kSituation.speed_mps + kSituation.state(acc::kDeltaV);
   Eigen::Vector3d x = kSituation.state;
   double previous = kSituation.previous_control;
   for (Index j = 0; j < 6; ++j) {
     const double u = z(1 + j);
     x = model.phi * x + model.gamma * u;
-    const double speed = preceding_mps - x(kDeltaV);
-    const double settled = speed + section.engine_time_constant_s * x(kOwnAcceleration);
-    const double gap = x(kDeltaD) + acc::SafeDistance(section, speed);
+    const double speed = preceding_mps - x(acc::kDeltaV);
+    const double settled = speed + section.engine_time_constant_s * x(acc::kOwnAcceleration);
+    const double gap = x(acc::kDeltaD) + acc::SafeDistance(section, speed);
     const Index row = 5 * j;
     // Under the fall-back plan this car stays below its maximum speed. So the maximum speed is the
     // limit.

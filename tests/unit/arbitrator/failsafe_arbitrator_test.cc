@@ -85,8 +85,8 @@ class FailsafeArbitratorTest : public testing::Test {
 
 // The state of an input with such an offer.
 InputState StateOf(arbitrator::Offer offer) {
-  return offer == kThere    ? InputState::kOk
-         : offer == kNotYet ? InputState::kAwaited
+  return offer == arbitrator::kThere    ? InputState::kOk
+         : offer == arbitrator::kNotYet ? InputState::kAwaited
                             : InputState::kLost;
 }
 
@@ -95,22 +95,22 @@ InputState StateOf(arbitrator::Offer offer) {
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const arbitrator::FailsafeRow& row : arbitrator::kFailsafeTable) {
-    for (const arbitrator::Offer automation : {kThere, kNotYet, kGone}) {
-      for (const arbitrator::Offer human : {kThere, kNotYet, kGone}) {
-        for (const arbitrator::Conflict conflict : {kCalm, kDisputed}) {
+    for (const arbitrator::Offer automation : {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
+      for (const arbitrator::Offer human : {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
+        for (const arbitrator::Conflict conflict : {arbitrator::kCalm, arbitrator::kDisputed}) {
           if (!arbitrator::Applies(row, automation, human, conflict)) continue;
           ++cases;
           SCOPED_TRACE("case " + std::to_string(cases));
           arbitrator_ = arbitrator::FailsafeArbitrator(SomeScenario());
           SetAll(InputState::kOk);
-          radar_.range_m = lidar_.range_m + (conflict == kDisputed ? 5 : 0);
+          radar_.range_m = lidar_.range_m + (conflict == arbitrator::kDisputed ? 5 : 0);
           Set(inputs_.automation, StateOf(automation), automation_);
           Set(inputs_.driver, StateOf(human), driver_);
           const arbitration_t& out = Step();
           EXPECT_EQ(arbitrator_.decision(), row.decision);
           switch (row.decision) {
             case arbitrator::Decision::kRegular:
-              conflict == kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
+              conflict == arbitrator::kDisputed ? ExpectHuman(out) : ExpectAutomation(out);
               break;
             case arbitrator::Decision::kAutomation:
               ExpectAutomation(out);

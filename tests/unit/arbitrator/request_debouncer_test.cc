@@ -12,7 +12,7 @@ namespace {
 constexpr double kThreshold = 0.5;
 
 double Step(arbitrator::RequestDebouncer& debouncer, double doc) {
-  return debouncer.Step(Compare(doc, kThreshold), doc);
+  return debouncer.Step(policies::Compare(doc, kThreshold), doc);
 }
 
 TEST(RequestDebouncerTest, WithoutHysteresisIsTheComparison) {
@@ -53,9 +53,9 @@ TEST(RequestDebouncerTest, SprtDecidesWithWaldsBounds) {
 
 TEST(RequestDebouncerTest, SprtStaysFiniteWhereDocOrThresholdIsRoundedToOneOrNought) {
   arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kSprt}, 0.1);
-  EXPECT_EQ(debouncer.Step(Compare(1, 1), 1), 0) << "no evidence either way";
-  EXPECT_EQ(debouncer.Step(Compare(1, 0), 1), 1);
-  EXPECT_EQ(debouncer.Step(Compare(0, 1), 0), 0);
+  EXPECT_EQ(debouncer.Step(policies::Compare(1, 1), 1), 0) << "no evidence either way";
+  EXPECT_EQ(debouncer.Step(policies::Compare(1, 0), 1), 1);
+  EXPECT_EQ(debouncer.Step(policies::Compare(0, 1), 0), 0);
 }
 
 TEST(RequestDebouncerTest, StaysAtLeastItsTime) {
@@ -87,7 +87,9 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
       arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
-      const auto step = [&](double doc) { return debouncer.Step(Compare(doc, threshold), doc); };
+      const auto step = [&](double doc) {
+        return debouncer.Step(policies::Compare(doc, threshold), doc);
+      };
       EXPECT_EQ(step(threshold), 1);
       const double lower = threshold - std::min(band, threshold / 2);
       EXPECT_EQ(step(lower), 1) << threshold << ' ' << band;
@@ -104,7 +106,7 @@ TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
   EXPECT_EQ(Step(debouncer, 0.991), 1);
   for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(debouncer, 0.02), 1);
   EXPECT_EQ(Step(debouncer, 0.009), 0);
-  EXPECT_EQ(debouncer.Step(Compare(0.991, 0.9), 0.991), 0) << "against 0.9 it is less";
+  EXPECT_EQ(debouncer.Step(policies::Compare(0.991, 0.9), 0.991), 0) << "against 0.9 it is less";
 }
 
 }  // namespace

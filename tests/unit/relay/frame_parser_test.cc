@@ -6,7 +6,7 @@
 
 #include "services/runtime/wire/tcpq_frame.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 namespace {
 
 using Buffer = std::vector<std::uint8_t>;
@@ -203,4 +203,4 @@ TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
 }
 
 }  // namespace
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq

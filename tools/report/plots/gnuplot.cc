@@ -40,7 +40,7 @@ File NamelessFile() {
 }
 
 /// The whole content of `file`, without white space at its ends.
-std::string TextOf(std::FILE* file) {
+std::string ContentOf(std::FILE* file) {
   std::string text;
   std::array<char, 4096> part{};
   std::rewind(file);
@@ -112,7 +112,7 @@ constexpr std::array kFormats{
     FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
 };
 
-const FormatRow& RowOf(FigureFormat format) {
+const FormatRow& FormatRowOf(FigureFormat format) {
   return *std::ranges::find(kFormats, format, &FormatRow::format);
 }
 
@@ -132,16 +132,16 @@ void RunGnuplot(const std::string& script, const std::filesystem::path& output) 
   const int status = StatusOfGnuplot(streams);
   // Ctrl-C reaches gnuplot too, so an interrupt is checked before gnuplot's status.
   if (WasInterrupted()) throw Interrupted("interrupted; not all figures are written");
-  if (status != 0) Fail("gnuplot", TextOf(words.get()));
+  if (status != 0) Fail("gnuplot", ContentOf(words.get()));
   picture.Finish();
 }
 
 std::string FigureFile(FigureFormat format, std::string_view name) {
-  return fmt::format("figure-{}.{}", name, RowOf(format).suffix);
+  return fmt::format("figure-{}.{}", name, FormatRowOf(format).suffix);
 }
 
 std::string Terminal(FigureFormat format, double height) {
-  const FormatRow& row = RowOf(format);
+  const FormatRow& row = FormatRowOf(format);
   return fmt::format(
       "set encoding utf8\nset minussign\n"
       "set terminal {} noenhanced size {},{} font '{},20' fontscale {} linewidth {} "

@@ -15,11 +15,11 @@
 #include "tools/report/figures.h"
 #include "tools/report/plots/gnuplot.h"
 #include "tools/report/report.h"
+#include "tools/stats/statistics.h"
 
 namespace fogline::report {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kSi = kPalette[0];
 constexpr std::string_view kRhe = kPalette[1];
 constexpr std::string_view kLight = "d8";  // transparency of the bands, of ff
@@ -38,10 +38,11 @@ std::string Transparent(std::string_view colour, std::string_view alpha) {
 
 /// Mean, ends of its confidence interval, and percentiles.
 std::string Cells(const stats::Summary& of) {
-  const double mean = of.mean.value_or(kNone);
-  const double half = of.ci95.value_or(kNone);
+  const double mean = of.mean.value_or(stats::kMissing);
+  const double half = of.ci95.value_or(stats::kMissing);
   return fmt::format(" {} {} {} {} {}", Number(mean), Number(mean - half), Number(mean + half),
-                     Number(of.p5.value_or(kNone)), Number(of.p95.value_or(kNone)));
+                     Number(of.p5.value_or(stats::kMissing)),
+                     Number(of.p95.value_or(stats::kMissing)));
 }
 
 std::string CurvesBlock(const ReportCurves& curves) {
@@ -115,7 +116,7 @@ std::string Diamonds(std::string_view columns, std::string_view colour) {
       columns, colour);
 }
 
-std::string Key(const std::vector<std::string>& entries) {
+std::string CurveKey(const std::vector<std::string>& entries) {
   return fmt::format(
       "set key outside top center horizontal Left reverse samplen 2 width 1 font ',18' maxrows 2\n"
       "plot {}\n",
@@ -156,7 +157,8 @@ std::string ThresholdRanges(const ReportCurves& curves) {
     thresholds.push_back(point.threshold);
     for (const stats::Summary& of : {point.si_pct, point.rhe_pct}) {
       values.insert(values.end(),
-                    {of.mean.value_or(kNone), of.p5.value_or(kNone), of.p95.value_or(kNone)});
+                    {of.mean.value_or(stats::kMissing), of.p5.value_or(stats::kMissing),
+                     of.p95.value_or(stats::kMissing)});
     }
   }
   return Range('x', thresholds, kLeastThresholdSpan) + Range('y', values, kLeastPercentSpan);
@@ -181,7 +183,8 @@ std::string ThresholdScript(FigureFormat format, const ReportCurves& curves) {
   constexpr int kRheColumn = 7;
   return CurvesBlock(curves) + PublishedBlock(curves) +
          Axes(format, "DoC threshold", "SI, RHE (%)") + ThresholdRanges(curves) +
-         Key({Bands(kSiColumn, kSi), Bands(kRheColumn, kRhe),
+         CurveKey(
+             {Bands(kSiColumn, kSi), Bands(kRheColumn, kRhe),
               fmt::format("$curves using 1:{} with lines linewidth 1.5 linecolor rgb '{}' title "
                           "'safety improvement (SI)'",
                           kSiColumn, kSi),
@@ -206,7 +209,8 @@ std::string FrontScript(FigureFormat format, const ReportCurves& curves) {
   return PointsBlock(points) + PublishedBlock(curves) + Labels(curves, points) +
          Axes(format, "Redundant human engagement (RHE, %)", "Safety improvement (SI, %)") +
          FrontRanges(curves, points) +
-         Key({"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize "
+         CurveKey(
+             {"$points using ($3 == 0 ? $1 : NaN):2 with points pointtype 6 pointsize "
               "1.2*point_scale "
               "linecolor "
               "rgb '#6b757f' title 'another threshold is better'",

@@ -8,11 +8,11 @@
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/follower_metrics.h"
 #include "tools/stats/in_order.h"
+#include "tools/stats/statistics.h"
 
 namespace fogline::study {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // The measurement starts this long before the fog, so that it includes the whole effect of the fog.
@@ -72,12 +72,13 @@ void Add(const StringRun& run, StringOutcome& outcome) {
     car.max_deceleration_mps2.push_back(own_mps2);
     if (place == 0) continue;
     const double ahead_mps2 = run.max_deceleration_mps2[place - 1];
-    car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? kNone : own_mps2 / ahead_mps2);
+    car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? stats::kMissing
+                                                                : own_mps2 / ahead_mps2);
     const bool there = place <= run.followers.size();
     const metrics::FollowerMeasures measures =
         there ? run.followers[place - 1] : metrics::FollowerMeasures{};
-    car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : kNone));
-    car.min_gap_m.push_back(measures.min_gap_m.value_or(kNone));
+    car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : stats::kMissing));
+    car.min_gap_m.push_back(measures.min_gap_m.value_or(stats::kMissing));
   }
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "tools/stats/statistics.h"
 #include "tools/study/bootstrap.h"
 
 namespace fogline::study {
@@ -31,7 +31,7 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   const auto [least, most] = std::ranges::minmax(curve, {}, &CurvePoint::rhe_pct);
   const std::optional<CurvePlace> place =
       BestAt(curve, std::clamp(rhe_pct, least.rhe_pct, most.rhe_pct));
-  return place ? place->gain : std::numeric_limits<double>::quiet_NaN();
+  return place ? place->gain : stats::kMissing;
 }
 
 /// Gain as by BestOfAtMost(). If no point engages so little, the point with the smallest RHE
@@ -39,7 +39,7 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
 double GainOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
   const double least = std::ranges::min(curve, {}, &CurvePoint::rhe_pct).rhe_pct;
   const std::optional<std::size_t> best = BestOfAtMost(curve, std::max(rhe_pct, least));
-  return best ? curve[*best].gain : std::numeric_limits<double>::quiet_NaN();
+  return best ? curve[*best].gain : stats::kMissing;
 }
 
 /// Distance of a point of the curve from the curve of the other points. nullopt at the ends, and

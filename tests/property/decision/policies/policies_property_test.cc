@@ -238,7 +238,7 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
     std::optional<int> last;
     for (int k = 0; k < 300; ++k) {
       const double doc = draw.Uniform(0, 1);
-      const double wanted = debouncer.Step(Compare(doc, draw.Uniform(0.4, 0.6)), doc);
+      const double wanted = debouncer.Step(policies::Compare(doc, draw.Uniform(0.4, 0.6)), doc);
       ASSERT_TRUE(wanted == 0 || wanted == 1);
       if (wanted != previous) {
         if (last) {
@@ -271,7 +271,7 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));
         const double before = debouncer.evidence();
-        if (debouncer.Step(Compare(doc, 0.5), doc) == 1) {
+        if (debouncer.Step(policies::Compare(doc, 0.5), doc) == 1) {
           ++errors;
           break;
         }

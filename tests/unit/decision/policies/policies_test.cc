@@ -71,7 +71,7 @@ TEST(PoliciesTest, EveryRowIsAChoiceOfTheScenarioWithItsNameAndText) {
   for (const policies::PolicyRow& row : policies::Policies()) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     const Scenario scenario = ParseScenario(WithPolicy(row.name), "test");
-    EXPECT_EQ(&RowOf(scenario.arbitrator.policy), &row);
+    EXPECT_EQ(&policies::RowOf(scenario.arbitrator.policy), &row);
     EXPECT_EQ(policies::FindPolicy(row.name), scenario.arbitrator.policy);
     const std::string quoted = '"' + std::string(row.name) + '"';
     EXPECT_THAT(PrintScenario(scenario), HasSubstr("\"policy\": " + quoted));
@@ -119,7 +119,7 @@ TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
       situation.doc = doc;
       const policies::EngagementRequest decided = policy->Decide(situation.View());
       const policies::EngagementRequest rule =
-          row.rule == policies::Rule::kNever ? policies::StayAutomated(0.5) : Compare(doc, 0.5);
+          row.rule == policies::Rule::kNever ? policies::StayAutomated(0.5) : policies::Compare(doc, 0.5);
       EXPECT_EQ(decided.lambda_human, rule.lambda_human) << row.name << ' ' << doc;
       EXPECT_EQ(decided.threshold, rule.threshold) << row.name;
       EXPECT_EQ(decided.firm, rule.firm) << row.name;

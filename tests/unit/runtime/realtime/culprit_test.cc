@@ -64,7 +64,7 @@ TEST(CulpritTest, FindsAnEndWhateverIsReported) {
 }
 
 TEST(CulpritTest, NamesTheRoleAndTheLostChannel) {
-  EXPECT_EQ(Text({Role::kLidar, IndexOf<lidar_t>()}), "lidar (LIDAR lost)");
+  EXPECT_EQ(runtime::Text({Role::kLidar, IndexOf<lidar_t>()}), "lidar (LIDAR lost)");
 }
 
 }  // namespace

@@ -4,25 +4,25 @@
 
 #include "common/errors.h"
 
-namespace fogline::tcpq {
+namespace fogline::runtime::tcpq {
 namespace {
 
 std::string ErrorOf(const std::string& url) {
   try {
-    return "none: " + ResolveUrl(url).Url();
+    return "none: " + runtime::tcpq::ResolveUrl(url).Url();
   } catch (const InputError& error) {
     return error.what();
   }
 }
 
 TEST(TcpqUrlTest, HasLcmsDefaults) {
-  EXPECT_EQ(ResolveUrl("tcpq://").Url(), "tcpq://127.0.0.1:7700");
-  EXPECT_EQ(ResolveUrl("tcpq://10.1.2.3").Url(), "tcpq://10.1.2.3:7700");
-  EXPECT_EQ(ResolveUrl("tcpq://:7701").Url(), "tcpq://127.0.0.1:7701");
+  EXPECT_EQ(runtime::tcpq::ResolveUrl("tcpq://").Url(), "tcpq://127.0.0.1:7700");
+  EXPECT_EQ(runtime::tcpq::ResolveUrl("tcpq://10.1.2.3").Url(), "tcpq://10.1.2.3:7700");
+  EXPECT_EQ(runtime::tcpq::ResolveUrl("tcpq://:7701").Url(), "tcpq://127.0.0.1:7701");
 }
 
 TEST(TcpqUrlTest, ResolvesHostNamesWhichLcmTakesForThisMachine) {
-  EXPECT_EQ(ResolveUrl("tcpq://localhost:7701").Url(), "tcpq://127.0.0.1:7701");
+  EXPECT_EQ(runtime::tcpq::ResolveUrl("tcpq://localhost:7701").Url(), "tcpq://127.0.0.1:7701");
   // RFC 6761: no name below "invalid" exists.
   EXPECT_EQ(ErrorOf("tcpq://no-such-host.invalid:7701")
                 .find("error: tcpq://no-such-host.invalid:7701: no IPv4 address for "
@@ -43,4 +43,4 @@ TEST(TcpqUrlTest, RefusesWhatIsNoPort) {
 }
 
 }  // namespace
-}  // namespace fogline::tcpq
+}  // namespace fogline::runtime::tcpq
