@@ -69,8 +69,8 @@ class ResumeTest : public testing::Test {
     // The resumed log has the same events as the whole one, and no others. Only their run ids
     // differ. With a key, the last event has a signature.
     const bool is_signed = std::ranges::find(more, "--key") != more.end();
-    EXPECT_EQ(std::filesystem::file_size(log_),
-              std::filesystem::file_size(File("whole.lcm")) + (is_signed ? runtime::kSignatureBytes : 0));
+    EXPECT_EQ(std::filesystem::file_size(log_), std::filesystem::file_size(File("whole.lcm")) +
+                                                    (is_signed ? runtime::kSignatureBytes : 0));
     return result;
   }
   /// Kills the runner, not its roles, as soon as there are so many bytes in the log.

@@ -73,7 +73,7 @@ std::string MissingText(const ReportCurves& curves) {
 }
 
 json ColumnOf(const ReportCurves& curves, stats::Summary ReportCurves::Point::*measure,
-            std::optional<double> stats::Summary::*value) {
+              std::optional<double> stats::Summary::*value) {
   json column = json::array();
   for (const ReportCurves::Point& point : curves.points) {
     const std::optional<double>& number = point.*measure.*value;

@@ -87,7 +87,7 @@ class FailsafeArbitratorTest : public testing::Test {
 InputState StateOf(arbitrator::Offer offer) {
   return offer == arbitrator::kThere    ? InputState::kOk
          : offer == arbitrator::kNotYet ? InputState::kAwaited
-                            : InputState::kLost;
+                                        : InputState::kLost;
 }
 
 // For every row of the table, with every combination that the row covers, the decision is that of
@@ -95,8 +95,10 @@ InputState StateOf(arbitrator::Offer offer) {
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const arbitrator::FailsafeRow& row : arbitrator::kFailsafeTable) {
-    for (const arbitrator::Offer automation : {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
-      for (const arbitrator::Offer human : {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
+    for (const arbitrator::Offer automation :
+         {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
+      for (const arbitrator::Offer human :
+           {arbitrator::kThere, arbitrator::kNotYet, arbitrator::kGone}) {
         for (const arbitrator::Conflict conflict : {arbitrator::kCalm, arbitrator::kDisputed}) {
           if (!arbitrator::Applies(row, automation, human, conflict)) continue;
           ++cases;

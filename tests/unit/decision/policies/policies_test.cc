@@ -118,8 +118,9 @@ TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
     for (const double doc : {0.0, 0.3, std::nextafter(0.5, 0), 0.5, 0.9, 1.0}) {
       situation.doc = doc;
       const policies::EngagementRequest decided = policy->Decide(situation.View());
-      const policies::EngagementRequest rule =
-          row.rule == policies::Rule::kNever ? policies::StayAutomated(0.5) : policies::Compare(doc, 0.5);
+      const policies::EngagementRequest rule = row.rule == policies::Rule::kNever
+                                                   ? policies::StayAutomated(0.5)
+                                                   : policies::Compare(doc, 0.5);
       EXPECT_EQ(decided.lambda_human, rule.lambda_human) << row.name << ' ' << doc;
       EXPECT_EQ(decided.threshold, rule.threshold) << row.name;
       EXPECT_EQ(decided.firm, rule.firm) << row.name;
