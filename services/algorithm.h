@@ -1,14 +1,14 @@
 // What the types in an algorithm's Step function say about its role: its inputs and outputs, and,
 // by the graph table, its channels and the role itself.
 //
-// An algorithm may have one more input, which only some scenarios demand:
+// An algorithm may have one more input, on demand: only some scenarios use it.
 //
-//     static bool UsesOptionalInput(const Scenario& scenario);  // whether this scenario does
-//     void SetOptionalInput(const M& message);                    // called before each Step, if so
+//     static bool UsesOnDemandInput(const Scenario& scenario);  // whether this scenario does
+//     void SetOnDemandInput(const M& message);                  // called before each Step, if so
 //
 // M is of the same step if its producer comes before this role in the order of evaluation. If its
 // producer comes after this role, M is of the step before; at step 0 it is all zero. In real time
-// the role does not wait for M: SetOptionalInput gets the newest M that has come, and there is no
+// the role does not wait for M: SetOnDemandInput gets the newest M that has come, and there is no
 // call before the first M has come.
 #pragma once
 
@@ -42,10 +42,10 @@ struct StepSignature<const Out& (A::*)(const In&...)> {
   using Outputs = typename AsTuple<Out>::Type;
 };
 
-template <class HearFunction>
-struct OptionalInputSignature;
+template <class SetFunction>
+struct OnDemandSignature;
 template <class A, class M>
-struct OptionalInputSignature<void (A::*)(const M&)> {
+struct OnDemandSignature<void (A::*)(const M&)> {
   using Inputs = std::tuple<M>;
 };
 
@@ -54,9 +54,9 @@ struct OnDemandInputs {
   using Type = std::tuple<>;
 };
 template <class A>
-requires requires { &A::SetOptionalInput; }
+requires requires { &A::SetOnDemandInput; }
 struct OnDemandInputs<A> {
-  using Type = typename OptionalInputSignature<decltype(&A::SetOptionalInput)>::Inputs;
+  using Type = typename OnDemandSignature<decltype(&A::SetOnDemandInput)>::Inputs;
 };
 
 /// Whether the tuple has exactly the types of the kStep channels that kGraph sends to the role.
@@ -80,7 +80,7 @@ constexpr bool Writes(Role role, std::type_identity<std::tuple<Out...>>) {
 
 /// Whether kGraph lets a role read these types on demand.
 template <class... In>
-constexpr bool MayHear([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
+constexpr bool MayReadOnDemand([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
   return (ChannelOf<In>().on_demand.Has(role) && ...);
 }
 
@@ -95,9 +95,9 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
-  /// The message that it may hear on demand: a tuple of one type, or of none.
+  /// The message that it may read on demand: a tuple of one type, or of none.
   using OnDemand = typename internal::OnDemandInputs<A>::Type;
-  static constexpr bool kHears = std::tuple_size_v<OnDemand> != 0;
+  static constexpr bool kHasOnDemand = std::tuple_size_v<OnDemand> != 0;
   /// Everything that it can read; the input on demand comes last.
   using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
 
@@ -106,10 +106,10 @@ struct AlgorithmTraits {
   /// before.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
 
-  /// Whether it hears its input on demand in this scenario.
-  static bool UsesOptionalInput([[maybe_unused]] const Scenario& scenario) {
-    if constexpr (kHears) {
-      return A::UsesOptionalInput(scenario);
+  /// Whether it reads its input on demand in this scenario.
+  static bool UsesOnDemandInput([[maybe_unused]] const Scenario& scenario) {
+    if constexpr (kHasOnDemand) {
+      return A::UsesOnDemandInput(scenario);
     } else {
       return false;
     }
@@ -120,13 +120,14 @@ struct AlgorithmTraits {
                 "the inputs of Step are not the channels that kGraph sends to this role");
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role");
-  // kGraph may allow an input on demand that this algorithm for the role does not demand.
-  static_assert(internal::MayHear(kRole, std::type_identity<OnDemand>{}),
-                "kGraph does not let this role read on demand what SetOptionalInput takes");
+  // kGraph may allow an input on demand that this algorithm for the role does not have.
+  static_assert(internal::MayReadOnDemand(kRole, std::type_identity<OnDemand>{}),
+                "kGraph does not let this role read the message of SetOnDemandInput on demand");
   static_assert(
-      kHears == requires(const Scenario& scenario) { A::UsesOptionalInput(scenario); },
-      "UsesOptionalInput and SetOptionalInput are only of use together");
-  static_assert(!(kHears && kStarts), "who begins the steps hears nothing on demand");
+      kHasOnDemand == requires(const Scenario& scenario) { A::UsesOnDemandInput(scenario); },
+      "UsesOnDemandInput and SetOnDemandInput are only of use together");
+  static_assert(!(kHasOnDemand && kStarts),
+                "the role that begins the steps has no input on demand");
 };
 
 }  // namespace fogline

@@ -92,7 +92,7 @@ struct Channel {
   Role from;
   RoleSet to;  // roles that use it; the recorder receives every kStep channel, too
   std::string_view what;
-  RoleSet on_demand = {};  // roles that use it only if the scenario demands it
+  RoleSet on_demand = {};  // roles that read it only in scenarios that use it
 };
 
 /// Every channel. The order of the kStep channels is one in which a step can be evaluated.

@@ -40,7 +40,7 @@ class WithoutSignals {
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
     sigset_t both = sigpipe_;
-    sigaddset(&both, SIGTTOU);  // the terminal sends none to who blocks it
+    sigaddset(&both, SIGTTOU);  // the terminal sends none to a process that blocks it
     pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
   ~WithoutSignals() {

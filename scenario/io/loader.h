@@ -24,16 +24,16 @@ struct Diagnostic {
 
 /// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
 /// `file:line:column: error: /pointer: message`: first those of the file in its order, then those
-/// of the overrides, then the number of mistakes. mistakes() has at least one mistake and at most
-/// 1000.
+/// of the overrides, then the number of mistakes. diagnostics() has one for each, at least 1 and at
+/// most 1000.
 class ScenarioError : public InputError {
  public:
-  ScenarioError(const std::string& text, std::vector<Diagnostic> mistakes)
-      : InputError(text), mistakes_(std::move(mistakes)) {}
-  const std::vector<Diagnostic>& mistakes() const { return mistakes_; }
+  ScenarioError(const std::string& text, std::vector<Diagnostic> diagnostics)
+      : InputError(text), diagnostics_(std::move(diagnostics)) {}
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:
-  std::vector<Diagnostic> mistakes_;
+  std::vector<Diagnostic> diagnostics_;
 };
 
 /// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)

@@ -11,7 +11,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
       meter_(scenario),
       rule_(policies::RowOf(scenario.arbitrator.policy).rule),
       shares_(policies::RowOf(scenario.arbitrator.policy).shares),
-      steady_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
+      debouncer_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
       transfer_(scenario.arbitrator.transfer, scenario.step_s),
       easing_per_step_(scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s) {
   out_.threshold = threshold_;
@@ -20,11 +20,11 @@ Arbitrator::Arbitrator(const Scenario& scenario)
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
 }
 
-bool Arbitrator::UsesOptionalInput(const Scenario& scenario) {
+bool Arbitrator::UsesOnDemandInput(const Scenario& scenario) {
   return policies::RowOf(scenario.arbitrator.policy).needs_surroundings;
 }
 
-void Arbitrator::SetOptionalInput(const truth_t& truth) {
+void Arbitrator::SetOnDemandInput(const truth_t& truth) {
   surroundings_.visibility_m = truth.fog_visibility_m;
   surroundings_.followed = truth.num_followers > 0;
   if (!surroundings_.followed) return;
@@ -45,12 +45,12 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.header = ego.header;
   out_.conflict_m = meter_.conflict();
   out_.doc = meter_.DocOf(out_.conflict_m);
-  const policies::EngagementRequest wish =
+  const policies::EngagementRequest request =
       rule_ == policies::Rule::kThreshold ? policies::Compare(out_.doc, threshold_)
       : rule_ == policies::Rule::kNever   ? policies::StayAutomated(threshold_)
                                           : OwnRequest(ego, track, automation, driver);
-  out_.threshold = wish.threshold;
-  const double wanted = steady_.Step(wish, out_.doc);
+  out_.threshold = request.threshold;
+  const double wanted = debouncer_.Step(request, out_.doc);
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
   // The paper's driver is always ready: he gets the wanted authority at once.
   granted_ = wanted;

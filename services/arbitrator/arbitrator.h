@@ -2,8 +2,8 @@
 // the two offers alone; the arbitrator does not judge them.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
-//     DoC, situation -> policy -> wish                            services/decision/policies
-//     wish -> RequestDebouncer -> wanted authority                      request_debouncer.h
+//     DoC, situation -> policy -> engagement request              services/decision/policies
+//     engagement request -> RequestDebouncer -> wanted authority  request_debouncer.h
 //     wanted -> TakeOver, if the driver must be asked -> granted  take_over.h
 //     granted, offers -> Transfer -> authority, command           transfer.h
 #pragma once
@@ -29,12 +29,12 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings: SetOptionalInput() is then called before
+  /// Whether the scenario's policy uses the surroundings: SetOnDemandInput() is then called before
   /// every Step().
-  static bool UsesOptionalInput(const Scenario& scenario);
+  static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
   /// meter would give.
-  void SetOptionalInput(const truth_t& truth);
+  void SetOnDemandInput(const truth_t& truth);
 
   /// The host's command for the step that begins here. Call it once per step, in the order of
   /// steps. The result is valid until the next call.
@@ -72,12 +72,12 @@ class Arbitrator {
   void Overrule(const arbitration_t& sent);
 
  private:
-  /// The wish of a policy with its own rule, for the conflict in out_.
+  /// The engagement request of a policy with its own rule, for the conflict in out_.
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,
                                          const driver_command_t& driver);
-  /// Handles the wish for the human if he must be asked. @return false if the host is in a
-  /// manoeuvre
+  /// Handles an engagement request for a human who must be asked. @return false if the host is in
+  /// a manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 
@@ -86,7 +86,7 @@ class Arbitrator {
   policies::Rule rule_;
   bool shares_;
   std::unique_ptr<policies::EngagementPolicy> policy_;  // none for a simple rule
-  RequestDebouncer steady_;
+  RequestDebouncer debouncer_;
   Transfer transfer_;
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only of a driver who must be asked

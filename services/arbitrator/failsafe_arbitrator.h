@@ -31,11 +31,11 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// As in Arbitrator. If SetOptionalInput() is not called, the last values stay in force.
-  static bool UsesOptionalInput(const Scenario& scenario) {
-    return Arbitrator::UsesOptionalInput(scenario);
+  /// As in Arbitrator. If SetOnDemandInput() is not called, the last values stay in force.
+  static bool UsesOnDemandInput(const Scenario& scenario) {
+    return Arbitrator::UsesOnDemandInput(scenario);
   }
-  void SetOptionalInput(const truth_t& truth) { arbitrator_.SetOptionalInput(truth); }
+  void SetOnDemandInput(const truth_t& truth) { arbitrator_.SetOnDemandInput(truth); }
 
   /// The host's command for the step of `header`. Call it once per decision; steps may be left out.
   /// The result is valid until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK

@@ -28,8 +28,8 @@ RequestDebouncer::RequestDebouncer(const TransferSection& section, double step_s
       dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
       steps_since_change_(dwell_steps_) {}
 
-double RequestDebouncer::PutOff(const policies::EngagementRequest& wish, double doc) {
-  decided_human_ = HumanByHysteresis(wish, doc);
+double RequestDebouncer::PutOff(const policies::EngagementRequest& request, double doc) {
+  decided_human_ = HumanByHysteresis(request, doc);
   ++steps_since_change_;
   if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_) {
     wanted_human_ = decided_human_;
@@ -42,19 +42,19 @@ double RequestDebouncer::LowerThreshold(double threshold) const {
   return threshold - std::min(section_.band, threshold / 2);
 }
 
-bool RequestDebouncer::HumanByHysteresis(const policies::EngagementRequest& wish, double doc) {
+bool RequestDebouncer::HumanByHysteresis(const policies::EngagementRequest& request, double doc) {
   switch (section_.hysteresis) {
     case Hysteresis::kNone:
       break;
     case Hysteresis::kBand:
-      return !(doc < (decided_human_ ? LowerThreshold(wish.threshold) : wish.threshold));
+      return !(doc < (decided_human_ ? LowerThreshold(request.threshold) : request.threshold));
     case Hysteresis::kSprt:
       if (posterior_) evidence_ = 0;
-      evidence_ += LogOdds(doc) - LogOdds(wish.threshold);
+      evidence_ += LogOdds(doc) - LogOdds(request.threshold);
       if (evidence_ < accept_human_ && evidence_ > accept_automation_) return decided_human_;
       return posterior_ ? evidence_ > 0 : std::exchange(evidence_, 0.0) > 0;
   }
-  return wish.lambda_human > 0;
+  return request.lambda_human > 0;
 }
 
 }  // namespace fogline::arbitrator

@@ -1,4 +1,4 @@
-// Debouncer of the policy's wish: hysteresis, and a least time between two changes.
+// Debouncer of the policy's engagement request: hysteresis, and a least time between two changes.
 #pragma once
 
 #include <cstdint>
@@ -8,39 +8,40 @@
 
 namespace fogline::arbitrator {
 
-/// Turns the policy's wish of every step into the wanted authority. The scenario's hysteresis
-/// delays the result of the comparison of DoC and threshold:
+/// Turns the policy's engagement request of every step into the wanted authority. The scenario's
+/// hysteresis delays the result of the comparison of DoC and threshold:
 ///
 ///     none  the human is wanted while DoC >= threshold
-///     band the human is wanted from DoC >= threshold until DoC < threshold - min(band,
-///     threshold/2):
+///     band  the human is wanted from DoC >= threshold
+///           until DoC < threshold - min(band, threshold/2):
 ///           a DoC that falls to 0 always returns authority, also if the threshold moves
-///     sprt Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold); the human is wanted
-///           from L >= ln((1 - beta)/alpha) on, the automation from L <= ln(beta/(1 - alpha)) on;
+///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
+///           the human is wanted from L >= ln((1 - beta)/alpha) on,
+///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           with every decision a new test begins from L = 0
 ///
 /// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities
 /// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
 /// a windowed z is neither, so the test errs more often. If the DoC is a posterior, it already
 /// contains the evidence of all steps: then L = logit(DoC) - logit(threshold), so that no evidence
-/// counts twice. A firm wish passes without delay.
+/// counts twice. A firm request passes without delay.
 class RequestDebouncer {
  public:
   /// @param posterior whether the DoC is a posterior probability of all evidence so far
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
   /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
-  double Step(const policies::EngagementRequest& wish, double doc) {
-    if (wish.firm) return wish.lambda_human;
-    return plain_ ? wish.lambda_human : PutOff(wish, doc);
+  double Step(const policies::EngagementRequest& request, double doc) {
+    if (request.firm) return request.lambda_human;
+    return plain_ ? request.lambda_human : PutOff(request, doc);
   }
 
   /// With hysteresis sprt: L of the current test; if the DoC is a posterior, L of the last step.
   double evidence() const { return evidence_; }
 
  private:
-  double PutOff(const policies::EngagementRequest& wish, double doc);
-  bool HumanByHysteresis(const policies::EngagementRequest& wish, double doc);
+  double PutOff(const policies::EngagementRequest& request, double doc);
+  bool HumanByHysteresis(const policies::EngagementRequest& request, double doc);
   double LowerThreshold(double threshold) const;
 
   TransferSection section_;

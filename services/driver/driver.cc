@@ -49,7 +49,7 @@ Driver::Driver(const Scenario& scenario)
 // In most modes other than AUTOMATION he drives or has been asked to drive, also while the car
 // stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
 // no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
-void Driver::SetOptionalInput(const arbitration_t& host) {
+void Driver::SetOnDemandInput(const arbitration_t& host) {
   const bool monitors = host.mode == arbitration_t::AUTOMATION || models::IsLocked(host.mode);
   task_ = monitors ? models::DriverTask::kMonitors : models::DriverTask::kDrives;
 }

@@ -24,9 +24,9 @@ class Driver {
   explicit Driver(const Scenario& scenario);
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
-  static bool UsesOptionalInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
+  static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
   /// The command of the step that ends with the next Step(): it says who drove.
-  void SetOptionalInput(const arbitration_t& host);
+  void SetOnDemandInput(const arbitration_t& host);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
   /// memory only if he misjudges or loses awareness. The result is valid until the next call.

@@ -4,33 +4,33 @@ namespace fogline::follower {
 
 DriverAssignment AssignmentOf(const Scenario& scenario, std::size_t car) {
   const FollowersSection& followers = scenario.followers;
-  FollowerCar who{.driver = followers.driver, .style = followers.style};
-  if (car < followers.cars.size()) who = followers.cars[car];
+  FollowerCar setting{.driver = followers.driver, .style = followers.style};
+  if (car < followers.cars.size()) setting = followers.cars[car];
 
   const Random random(scenario.seed, Stream::kStyle);
   const auto number = static_cast<std::int64_t>(car);
-  DriverAssignment part;
-  part.has_acc = who.driver == FollowerDriver::kAcc ||
-                 (who.driver == FollowerDriver::kDrawn &&
-                  models::DrawChance(followers.acc_share, random, number));
-  switch (who.style) {
+  DriverAssignment assignment;
+  assignment.has_acc = setting.driver == FollowerDriver::kAcc ||
+                       (setting.driver == FollowerDriver::kDrawn &&
+                        models::DrawChance(followers.acc_share, random, number));
+  switch (setting.style) {
     case FollowerStyle::kAggressive:
-      part.style = models::Style::kAggressive;
+      assignment.style = models::Style::kAggressive;
       break;
     case FollowerStyle::kNormal:
-      part.style = models::Style::kNormal;
+      assignment.style = models::Style::kNormal;
       break;
     case FollowerStyle::kCautious:
-      part.style = models::Style::kCautious;
+      assignment.style = models::Style::kCautious;
       break;
     case FollowerStyle::kDrawn:
-      part.style = models::DrawStyle({.aggressive = followers.aggressive_share,
-                                      .normal = followers.normal_share,
-                                      .cautious = followers.cautious_share},
-                                     random, number);
+      assignment.style = models::DrawStyle({.aggressive = followers.aggressive_share,
+                                            .normal = followers.normal_share,
+                                            .cautious = followers.cautious_share},
+                                           random, number);
       break;
   }
-  return part;
+  return assignment;
 }
 
 }  // namespace fogline::follower

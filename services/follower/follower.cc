@@ -31,8 +31,8 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
 /// The driver of this car: `before`, restarted, if both are an ACC; otherwise a new one.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {
-  const DriverAssignment part = AssignmentOf(scenario, car);
-  if (!part.has_acc) return MakePerson(scenario, car, part.style);
+  const DriverAssignment assignment = AssignmentOf(scenario, car);
+  if (!assignment.has_acc) return MakePerson(scenario, car, assignment.style);
   if (auto* acc = dynamic_cast<AccDriver*>(before.get())) {
     acc->Restart(scenario);
     return before;

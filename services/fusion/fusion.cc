@@ -43,11 +43,11 @@ Fusion::Fusion(const Scenario& scenario)
       initial_speed_variance_(Square(scenario.fusion.initial_speed_std_mps)),
       initial_acceleration_variance_(Square(scenario.fusion.initial_acceleration_std_mps2)) {
   const policies::PolicyRow& policy = policies::RowOf(scenario.arbitrator.policy);
-  if (policy.trusts) policy_ = policy.make(scenario);
+  if (policy.selects_sensors) policy_ = policy.make(scenario);
   selects_ = gating_ || policy_ != nullptr;
 }
 
-bool Fusion::UsesOptionalInput(const Scenario& scenario) {
+bool Fusion::UsesOnDemandInput(const Scenario& scenario) {
   return policies::RowOf(scenario.arbitrator.policy).needs_true_gap;
 }
 
@@ -57,13 +57,13 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
     Record(value, 0, 0, track_t::ABSENT);
   }
   if (started_) ekf_.Predict(ego.acceleration_mps2);
-  if (policy_) trust_ = Judge(radar, lidar);
+  if (policy_) selection_ = Judge(radar, lidar);
   if (started_) {
     if (radar.valid) CorrectByRadar(radar);
     if (lidar.valid) CorrectByLidar(lidar);
-  } else if (radar.valid && trust_.radar && StartFromRadar(radar)) {
+  } else if (radar.valid && selection_.radar && StartFromRadar(radar)) {
     if (lidar.valid) CorrectByLidar(lidar);
-  } else if (lidar.valid && trust_.lidar) {
+  } else if (lidar.valid && selection_.lidar) {
     StartFromLidar(lidar);
   }
   if (started_) Report(ego.acceleration_mps2);
@@ -140,8 +140,8 @@ void Fusion::Correct(Value value, const Comparison& comparison) {
 }
 
 std::int8_t Fusion::UsageOf(Value value, double normalised_innovation_squared) {
-  const bool trusted = value == kLidarRange ? trust_.lidar : trust_.radar;
-  if (!trusted) return track_t::DISTRUSTED;
+  const bool selected = value == kLidarRange ? selection_.lidar : selection_.radar;
+  if (!selected) return track_t::DISTRUSTED;
   if (!gating_ || gates_[value].Admits(normalised_innovation_squared)) return track_t::USED;
   return track_t::GATED;
 }

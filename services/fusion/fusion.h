@@ -27,17 +27,17 @@ namespace fogline::fusion {
 /// when fog deceives it.
 ///
 /// A policy that selects sensors (services/decision/policies) first judges each step's values
-/// against the prediction. The values of a sensor that it does not trust are compared with the
+/// against the prediction. The values of a sensor that it does not select are compared with the
 /// prediction, but correct nothing.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth: SetOptionalInput() is then called before every
+  /// Whether the scenario's policy needs the truth: SetOnDemandInput() is then called before every
   /// Step().
-  static bool UsesOptionalInput(const Scenario& scenario);
+  static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes only the gap from the truth, for the policy alone.
-  void SetOptionalInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
+  void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Call it once per step, in the order of steps, beginning with the
   /// first. `ego` has the host's acceleration during the step that ended here. The result is valid
@@ -60,7 +60,7 @@ class Fusion {
   /// Begin the track with this measurement; return false if the target is too far to the side.
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);
-  /// The policy's trust in the sensors in this step. @pre the filter has predicted
+  /// The policy's selection of sensors in this step. @pre the filter has predicted
   policies::SensorSelection Judge(const radar_t& radar, const lidar_t& lidar);
   void CorrectByRadar(const radar_t& radar);
   void CorrectByLidar(const lidar_t& lidar);
@@ -81,7 +81,7 @@ class Fusion {
   std::unique_ptr<policies::EngagementPolicy>
       policy_;            // none if the policy does not select sensors
   bool selects_ = false;  // whether gate or policy may refuse a value
-  policies::SensorSelection trust_;
+  policies::SensorSelection selection_;
   std::optional<double> true_gap_m_;
   bool started_ = false;
   track_t out_{};

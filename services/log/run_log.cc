@@ -179,12 +179,12 @@ class RunLogReader::Assembler {
 
   void TakeRun(runtime::Bytes data) {
     run_t run{};
-    const bool is_sealed =
+    const bool is_signed =
         runtime::LooksSigned(data) && runtime::Decode(runtime::WithoutSignature(data), run);
-    if (!is_sealed && !runtime::Decode(data, run)) return;
+    if (!is_signed && !runtime::Decode(data, run)) return;
     if (parts_.empty()) {
       run_.run_id = run.header.run_id;
-      sealed_ = is_sealed;
+      is_signed_ = is_signed;
     }
     if (run.header.run_id != run_.run_id) return;
     const bool known = parts_.Complete();
@@ -219,7 +219,7 @@ class RunLogReader::Assembler {
   /// signatures. This reader cannot verify them. In a signed run a message without a signature does
   /// not belong to the run: the result is then empty.
   runtime::Bytes Payload(runtime::Bytes data) const {
-    if (!sealed_) return data;
+    if (!is_signed_) return data;
     return runtime::LooksSigned(data) &&
                    data.size() >= runtime::kHeaderEnd + runtime::kSignatureBytes
                ? runtime::WithoutSignature(data)
@@ -245,8 +245,8 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
-  bool sealed_ = false;   // whether the run's messages are signed
-  std::string conflict_;  // names the first step with two different messages of one channel
+  bool is_signed_ = false;  // whether the run's messages are signed
+  std::string conflict_;    // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool finished_ = false;

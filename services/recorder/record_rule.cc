@@ -6,8 +6,9 @@
 namespace fogline::recorder {
 namespace {
 
-// A message is asked for when it is kPatience periods late: kAsks times, at intervals of kAskEvery.
-constexpr double kPatience = 1.5;
+// A message is asked for when it is kOverduePeriods periods late: kAsks times, at intervals of
+// kAskEvery.
+constexpr double kOverduePeriods = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
 // The most incomplete steps. Producers keep kRingSteps; the other half leaves time for their
@@ -111,10 +112,10 @@ bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
 
 void RecordRule::AskForHoles(TimePoint now) {
   ask_at_ = now + kAskEvery;
-  const auto patience =
-      duration_cast<Duration>(kPatience * std::chrono::duration<double>(period()));
+  const auto overdue =
+      duration_cast<Duration>(kOverduePeriods * std::chrono::duration<double>(period()));
   std::int64_t end = next();  // end of the steps to be asked for
-  while (end <= newest() && now >= OpenAt(end, now).seen + patience) ++end;
+  while (end <= newest() && now >= OpenAt(end, now).seen + overdue) ++end;
   std::int64_t first = next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;
   for (const Input& input : inputs()) {

@@ -28,7 +28,7 @@ constexpr int kLastWords = 6;
 // The most old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
 // In this time the rate limiter allows another 30 answers.
-constexpr Duration kBudgetPatience = milliseconds(1);
+constexpr Duration kLimiterRetry = milliseconds(1);
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
     : runtime::Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
   // In memory no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
-  budget_ = runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  limiter_ = runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
@@ -213,13 +213,13 @@ TimePoint Recorder::AnswerSome(TimePoint now) {
   // New messages are read first. A role repeats a request that waits behind old answers, and if
   // repetitions were not read together, each would get its own answer.
   bus().Drain();
-  for (int i = 0; i < kStepsAtOnce && budget_.Has(now); ++i) {
+  for (int i = 0; i < kStepsAtOnce && limiter_.Has(now); ++i) {
     const auto asked = asked_.Take();
     if (!asked) return TimePoint::max();
     AnswerStep(*asked, now);
   }
   // Returns so that new messages are read. The next call is when the rate limiter allows it.
-  return asked_.empty() ? TimePoint::max() : budget_.Has(now) ? now : now + kBudgetPatience;
+  return asked_.empty() ? TimePoint::max() : limiter_.Has(now) ? now : now + kLimiterRetry;
 }
 
 void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
@@ -227,7 +227,7 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
     const std::size_t channel = ChannelNamed(name);
     const AskedSteps::Channels bit = AskedSteps::Channels{1} << channel;
     if ((asked.channels & bit) == 0) return;
-    if (!budget_.Has(now)) return asked_.Add(asked.step, bit);
+    if (!limiter_.Has(now)) return asked_.Add(asked.step, bit);
     answered_[channel][runtime::RingSlot(asked.step)] = {.step = asked.step, .at = now};
     Answer(name, bytes, now);
   });
@@ -236,7 +236,7 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
 // In real time no role computes old steps again. A restarted world needs the positions of the cars:
 // it is the only role that asks for TRUTH, and the process that produced it is dead.
 void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
-  if (channel != ChannelOf<truth_t>().name || !budget_.Has(now)) return;
+  if (channel != ChannelOf<truth_t>().name || !limiter_.Has(now)) return;
   const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
   bool answered = false;
   for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {

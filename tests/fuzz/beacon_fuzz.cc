@@ -39,7 +39,7 @@ void DemandSoundRuns(runtime::Bytes input) {
     Demand(Printable(line.text), "a line can be written to a terminal");
   }
   Demand(nlohmann::json::accept(watch::AnnouncedJson(runs, true).dump()),
-         "what is said in JSON is JSON");
+         "the JSON text is valid JSON");
 }
 
 Input Seed(const std::vector<beacon_t>& beacons) {

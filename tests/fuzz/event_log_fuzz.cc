@@ -17,7 +17,7 @@ std::vector<log::Event> ReadAll(log::EventLogReader& reader, std::size_t file_si
     Demand(reader.good_bytes() == bytes, "events follow one another without a gap");
   }
   Demand(bytes <= file_size, "no event is larger than the file");
-  Demand(reader.torn().empty() == (bytes == file_size), "what is not read is named");
+  Demand(reader.torn().empty() == (bytes == file_size), "bytes that are not read are named");
   Demand(!reader.Next(), "after the end nothing follows");
   return events;
 }

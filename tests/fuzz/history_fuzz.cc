@@ -18,7 +18,7 @@ constexpr std::int64_t kShortTail = 2500;
 void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
                        std::int64_t file_size) {
   Demand(front.head.bytes <= remains.head.bytes, "steps follow the scenario");
-  Demand(remains.head.bytes <= file_size, "what is kept is in the file");
+  Demand(remains.head.bytes <= file_size, "the kept part is in the file");
   Demand(front.head.bytes <= remains.last && remains.last <= remains.head.bytes,
          "the last step is one of the steps");
   Demand((remains.last < remains.head.bytes) == (remains.steps > 0) || front.realtime,
@@ -28,7 +28,7 @@ void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
   if (front.realtime) return;
   Demand(remains.head.events ==
              front.head.events + remains.steps * static_cast<std::int64_t>(log::kStepChannels),
-         "what is kept is whole steps");
+         "the kept part has whole steps");
 }
 
 /// Checks the log that the recorder goes on with, if it was read from front to back.
@@ -36,7 +36,7 @@ void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& fi
   log::EventLogReader events(file);
   std::int64_t count = 0;
   while (events.Next()) ++count;
-  Demand(count == remains.head.events && events.torn().empty(), "what is kept is whole events");
+  Demand(count == remains.head.events && events.torn().empty(), "the kept part has whole events");
   log::RunLogReader run(file);
   std::int64_t steps = 0;
   try {
@@ -44,7 +44,7 @@ void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& fi
   } catch (const InputError&) {
     return;  // its scenario is not valid
   }
-  Demand(steps == remains.steps, "what is kept is all complete steps");
+  Demand(steps == remains.steps, "the kept part has all complete steps");
 }
 
 /// Checks the messages that the recorder would send again.
@@ -57,9 +57,9 @@ void DemandAllMessages(const log::LogFront& front, const log::Remains& remains,
     history.ForEachMessage(step, [&](std::string_view channel, runtime::Bytes bytes) {
       Demand(channel == log::kStepNames[messages++], "each channel has a message of each step");
       Demand(runtime::ReadInt64(bytes, runtime::kRunIdOffset) == front.run_id,
-             "what is handed out is of the run");
+             "a message that is handed out is of the run");
       Demand(runtime::ReadInt64(bytes, runtime::kStepOffset) == step,
-             "what is handed out is of the step");
+             "a message that is handed out is of the step");
     });
     Demand(messages == log::kStepChannels, "each step has all its messages");
   }

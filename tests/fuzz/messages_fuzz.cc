@@ -25,9 +25,10 @@ void DemandOneMeaning(runtime::Bytes bytes) {
                                            : !whole  ? &status_t::malformed
                                            : !finite ? &status_t::not_finite
                                                      : nullptr;
-  Demand(arrival.Wrong<M>() == expected, "what is refused is refused for what is wrong with it");
+  Demand(arrival.Wrong<M>() == expected, "a refusal names the defect of the message");
   if (!whole) return;
-  Demand(std::ranges::equal(Encoded(message), bytes), "what decodes encodes to the same bytes");
+  Demand(std::ranges::equal(Encoded(message), bytes),
+         "a decoded message encodes to the same bytes");
   M used = Sample<M>(1);
   Demand(runtime::Decode(bytes, used) && std::ranges::equal(Encoded(used), bytes),
          "nothing is left of an earlier message");

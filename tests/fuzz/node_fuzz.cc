@@ -104,7 +104,7 @@ class Run {
 
   void DemandSound() const {
     for (const runtime::Node* node : nodes_) {
-      Demand(node->left() || node->error().empty(), "who fails leaves");
+      Demand(node->left() || node->error().empty(), "a node that fails leaves");
     }
     if (listener_.steps() > 0) Took();
   }

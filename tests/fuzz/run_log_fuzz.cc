@@ -76,7 +76,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     const Reading reading = Read(file.path());
     DemandWholeSteps(reading);
     Demand(!reading.run.altered || (reading.run.seal && !reading.run.complete),
-           "what differs from its seal is not complete");
+           "a log that differs from its seal is not complete");
     if (reading.refused || reading.run.realtime) return;  // a copy would be in lockstep
     const MemoryFile copy;
     Rewrite(reading, copy.path());
@@ -84,7 +84,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     Demand(again.steps == reading.steps, "a copy has the same steps");
     Demand(again.run.scenario_text == reading.run.scenario_text, "a copy has the same scenario");
     Demand(again.run.complete || !reading.run.complete, "a copy of a complete run is complete");
-    Demand(Printable(reading.run.note), "what is said of a log can be printed");
+    Demand(Printable(reading.run.note), "the note about a log can be printed");
     if (!reading.steps.empty()) Took();
   } catch (const InputError&) {
     return;  // not an event log
@@ -120,12 +120,12 @@ std::vector<Input> Seeds() {
   while (const auto event = reader.Next()) events.push_back(*event);
 
   // The log of signed traffic as lcm-logger writes it.
-  const MemoryFile sealed;
-  runtime::MessageSigner seal(runtime::SigningKey({}), {});
+  const MemoryFile signed_log;
+  runtime::MessageSigner signer(runtime::SigningKey({}), {});
   {
-    log::EventLogWriter writer(sealed.path());
+    log::EventLogWriter writer(signed_log.path());
     for (const log::Event& event : events) {
-      writer.Write(event.channel, event.utime, seal.Sign(event.channel, event.data));
+      writer.Write(event.channel, event.utime, signer.Sign(event.channel, event.data));
     }
   }
   // The same events in reverse order. The scenario's parts still come first.
@@ -138,7 +138,7 @@ std::vector<Input> Seeds() {
     log::EventLogWriter writer(reversed.path());
     for (const log::Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
-  return {log, torn, sealed.Content(), reversed.Content(), WithLogSeal(log)};
+  return {log, torn, signed_log.Content(), reversed.Content(), WithLogSeal(log)};
 }
 
 }  // namespace fogline::fuzz

@@ -9,26 +9,27 @@
 namespace fogline::fuzz {
 namespace {
 
-void DemandPlausible(const Diagnostic& mistake, std::string_view text) {
+void DemandPlausible(const Diagnostic& diagnostic, std::string_view text) {
   const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
-  Demand(mistake.line >= 1 && mistake.line <= lines, "the line is in the text");
-  Demand(mistake.column >= 1, "columns count from 1");
+  Demand(diagnostic.line >= 1 && diagnostic.line <= lines, "the line is in the text");
+  Demand(diagnostic.column >= 1, "columns count from 1");
   std::size_t begin = 0;
-  for (int line = 1; line < mistake.line; ++line) begin = text.find('\n', begin) + 1;
+  for (int line = 1; line < diagnostic.line; ++line) begin = text.find('\n', begin) + 1;
   const std::size_t end = std::min(text.find('\n', begin), text.size());
-  Demand(static_cast<std::size_t>(mistake.column) <= end - begin + 1, "the column is in the line");
-  Demand(mistake.pointer.empty() || mistake.pointer[0] == '/', "the pointer is a pointer");
-  Demand(!mistake.rule.empty() && !mistake.message.empty(), "rule and message are there");
+  Demand(static_cast<std::size_t>(diagnostic.column) <= end - begin + 1,
+         "the column is in the line");
+  Demand(diagnostic.pointer.empty() || diagnostic.pointer[0] == '/', "the pointer is a pointer");
+  Demand(!diagnostic.rule.empty() && !diagnostic.message.empty(), "rule and message are there");
 }
 
-void DemandScenarioOrMistakes(std::string_view text) {
+void DemandScenarioOrDiagnostics(std::string_view text) {
   try {
     const std::string printed = PrintScenario(ParseScenario(text));
     Demand(PrintScenario(ParseScenario(printed)) == printed, "printing is canonical");
     Took();
   } catch (const ScenarioError& error) {
-    Demand(!error.mistakes().empty(), "who refuses says why");
-    for (const Diagnostic& mistake : error.mistakes()) DemandPlausible(mistake, text);
+    Demand(!error.diagnostics().empty(), "a refusal names a reason");
+    for (const Diagnostic& diagnostic : error.diagnostics()) DemandPlausible(diagnostic, text);
     Demand(Printable(error.what()), "no control character reaches the terminal");
   }
 }
@@ -43,6 +44,6 @@ std::vector<Input> Seeds() {
 }  // namespace fogline::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fogline::fuzz::DemandScenarioOrMistakes({reinterpret_cast<const char*>(data), size});
+  fogline::fuzz::DemandScenarioOrDiagnostics({reinterpret_cast<const char*>(data), size});
   return 0;
 }

@@ -15,14 +15,15 @@ void DemandPrintable(const runtime::RunCoordinator& coordinator) {
   Demand(Printable(coordinator.error()), "an error can be printed");
   Demand((coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) ==
              !coordinator.error().empty(),
-         "who fails says why");
-  Demand(Printable(coordinator.NotReady()), "who is not ready can be printed");
+         "a failure has an error text");
+  Demand(Printable(coordinator.NotReady()), "the roles that are not ready can be printed");
   const runtime::ForeignPeers& foreign_peers = coordinator.foreign_peers();
-  Demand(foreign_peers.known().size() <= runtime::ForeignPeers::kMax, "strangers fill no memory");
+  Demand(foreign_peers.known().size() <= runtime::ForeignPeers::kMax,
+         "foreign peers fill no memory");
   const std::string text = foreign_peers.Text();
-  Demand(Printable(text), "strangers can be printed");
+  Demand(Printable(text), "foreign peers can be printed");
   Demand(static_cast<std::size_t>(std::ranges::count(text, '\n')) <= runtime::ForeignPeers::kMax,
-         "a stranger takes one line");
+         "a foreign peer takes one line");
   static_cast<void>(coordinator.Refused());
 }
 

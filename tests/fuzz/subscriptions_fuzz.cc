@@ -34,7 +34,7 @@ class Client {
   void Add(std::string_view pattern) {
     const std::string error = subscriptions_.Add(pattern);
     if (patterns_.size() == kMaxSubscriptions) {
-      Demand(!error.empty(), "nobody has more subscriptions than the limit");
+      Demand(!error.empty(), "a subscription beyond the limit is refused");
     }
     if (error.empty()) patterns_.emplace_back(pattern);
     Demand(!IsPlain(pattern) || error.empty() || patterns_.size() == kMaxSubscriptions,

@@ -26,7 +26,7 @@ void DemandShowable(const watch::TrafficView& view) {
   }
   const std::string text = watch::TrafficJson(view, "udpm://239.255.76.67:7667")
                                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  Demand(nlohmann::json::accept(text), "what is said in JSON is JSON");
+  Demand(nlohmann::json::accept(text), "the JSON text is valid JSON");
 }
 
 void DemandBounded(const watch::TrafficView& view) {

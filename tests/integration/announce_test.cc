@@ -258,7 +258,7 @@ void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
   run.Wait();
 }
 
-TEST(AnnounceTest, ARoleWhoseRunnerWasKilledGoesToTheNextRunThatWaitsForIt) {
+TEST(AnnounceTest, ARoleOfAKilledRunnerGoesToTheNextRunThatWaitsForIt) {
   Meeting meeting;
   Background driver(meeting.Command("fogline-driver", {}));
   KillRunner(meeting, {"--transport", "udpm"});

@@ -71,7 +71,7 @@ TEST_F(BadNetworkTest, IsRefusedWhereItCannotBe) {
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     return outcome.err;
   };
-  EXPECT_NE(error({"--faults", "flip=0.1"}).find("truncate and flip want --key"),
+  EXPECT_NE(error({"--faults", "flip=0.1"}).find("truncate and flip need --key"),
             std::string::npos);
   EXPECT_NE(error({"--faults", "los=0.1"}).find("\"los\" is no kind of fault"), std::string::npos);
   EXPECT_NE(error({"--faults", "loss=0.1", "--transport", "direct"}).find("has no messages"),

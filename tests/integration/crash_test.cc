@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Campaign, HangTest, testing::ValuesIn(EveryRole()),
                          [](const auto& role) { return role.param; });
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that stands still for longer than anybody may be silent
+  // GIVEN a runner that stands still for longer than a role may be silent
   WatchedRun watched({"--stall-timeout", "1"}, 3000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);

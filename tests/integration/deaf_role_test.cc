@@ -61,7 +61,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
     EXPECT_THAT(role["last"].get<std::string>(),
                 HasSubstr("s, which the world has published all the while, and was killed"));
     radar = radar || role["role"] == "radar";
-    EXPECT_NE(role["role"], "fusion") << "nobody published what it lacked";
+    EXPECT_NE(role["role"], "fusion") << "no role published the input that it lacked";
   }
   EXPECT_TRUE(radar) << result["restarts"];
   EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);

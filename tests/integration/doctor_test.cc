@@ -84,12 +84,12 @@ TEST(DoctorTest, ExaminesARelay) {
   const std::string url = relay.Out().substr(0, relay.Out().find('\n'));
   const Outcome there = RunCommand({Program("fogline"), "doctor", "--lcm-url", url});
   EXPECT_THAT(there.out, HasSubstr("ok       the relay " + url + " answers\n"));
-  EXPECT_THAT(there.out, HasSubstr("nobody is heard on " + url));
+  EXPECT_THAT(there.out, HasSubstr("no traffic on " + url));
   relay.Signal(SIGTERM);
   EXPECT_EQ(relay.Wait(), 0);
   const Outcome gone = RunCommand({Program("fogline"), "doctor", "--lcm-url", url});
   EXPECT_EQ(gone.code, 1);
-  EXPECT_THAT(gone.out, HasSubstr("problem  nobody listens on "));
+  EXPECT_THAT(gone.out, HasSubstr("problem  no process listens on "));
 }
 
 TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {

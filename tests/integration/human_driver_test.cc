@@ -57,7 +57,7 @@ TEST_P(HumanDriverOnTransportsTest, HasTheSameDigestInOneProcessInMemoryAndOverT
 INSTANTIATE_TEST_SUITE_P(With, HumanDriverOnTransportsTest, testing::ValuesIn(kWeaknesses),
                          [](const auto& weakness) { return weakness.param.name; });
 
-TEST_F(HumanDriverTest, OfWhomAllIsLostNowAndThenHasTheSameDigestOnABadNetwork) {
+TEST_F(HumanDriverTest, WithAllWeaknessesHasTheSameDigestOnABadNetwork) {
   Words all = kWeaknesses.back().fields;
   all.emplace_back("/steps=40");
   const auto good = Run("direct", all);
@@ -70,7 +70,7 @@ TEST_F(HumanDriverTest, OfWhomAllIsLostNowAndThenHasTheSameDigestOnABadNetwork) 
   }
 }
 
-TEST_F(HumanDriverTest, WhoCannotRememberHisReactionTimeIsRefusedBeforeTheRunStarts) {
+TEST_F(HumanDriverTest, WithATooLongReactionTimeIsRefusedBeforeTheRunStarts) {
   const Outcome outcome =
       RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
                   "--set", "/human/misjudges=true", "--set", "/step_s=0.003"});

@@ -113,8 +113,8 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   EXPECT_GT(first["refused"]["foreign"], 500);
   EXPECT_GT(other["refused"]["foreign"], 0);
   EXPECT_EQ(first["strangers"].size(), kRoles.size());
-  for (const auto& stranger : first["strangers"]) {
-    EXPECT_EQ(stranger["host"], lab[GetParam()].name());
+  for (const auto& peer : first["strangers"]) {
+    EXPECT_EQ(peer["host"], lab[GetParam()].name());
   }
 }
 

@@ -70,7 +70,7 @@ struct Log {
     return misses;
   }
 
-  /// The first STATUS from a step on in which somebody has lost a channel.
+  /// The first STATUS from a step on in which a role has lost a channel.
   struct Loss {
     std::int64_t step;  // that was under way
     std::string reporter;
@@ -140,9 +140,9 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// In each step somebody obeys what came for it, or holds on to what was before: because nothing
-/// came, or because it came too late to be used. The log tells what came; how often it came too
-/// late, the process that had to do without it.
+/// In each step a process carries out the message that came for the step, or keeps to the one
+/// before, because no message came or it came too late. The log says which messages came. The
+/// process says how many of them came too late.
 class Obedience {
  public:
   /// @param role that obeys

@@ -281,7 +281,7 @@ void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& 
   const std::int64_t trusted = silence.back + kRecoverSteps - 1;
   ExpectMode(
       log, lost + kInForce, trusted, [](std::int8_t mode) { return mode != arbitration_t::HUMAN; },
-      "nobody but the automation can drive");
+      "only the automation can drive");
   const auto wanted =
       std::find_if(log.command.lower_bound(lost + kInForce), log.command.end(),
                    [](const auto& at) { return at.second.doc >= at.second.threshold; });
@@ -316,8 +316,8 @@ void Judge(const Log& log, const Fault& fault, std::int64_t fault_step) {
   const auto loss = log.FirstLossOf(channel, fault_step);
   if (!loss) {
     // A killed role may be back before another role misses it.
-    ASSERT_EQ(fault.signal, SIGKILL) << "nobody missed it";
-    EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "nobody missed it";
+    ASSERT_EQ(fault.signal, SIGKILL) << "no role missed it";
+    EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "no role missed it";
     ExpectFollowerObeys(log, 1, log.last());
     return ExpectCommandsAreCarriedOut(log, 1, log.last());
   }
@@ -344,7 +344,7 @@ TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) {
     // Steps cannot tell how long the world was silent. This process may hear of it one period
     // later.
     const auto missed = run.WaitForTheWorldToBeMissed();
-    EXPECT_TRUE(missed || fault.signal == SIGKILL) << "nobody missed it";
+    EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";
     if (missed) {
       EXPECT_LE(std::chrono::duration<double>(*missed).count(), (kDetection + 1) * kPeriodS);
     }

@@ -86,7 +86,8 @@ TEST_P(RealtimeUnderLoadTest, MissesNothingAndGrowsNowhere) {
   EXPECT_EQ(realtime["missed_messages"], 0)
       << "the hypervisor took the processors away for " << StolenMs() - stolen_before_ms << " ms";
   EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
-  EXPECT_EQ(result["refused"]["out_of_window"], 0) << "somebody says what cannot be";
+  EXPECT_EQ(result["refused"]["out_of_window"], 0)
+      << "a message names a step that cannot be under way";
   EXPECT_TRUE(realtime["ticks_late"].is_number());
   EXPECT_GT(realtime["latency_p99_us"], 0);
 

@@ -121,7 +121,7 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read: "));
 }
 
-TEST(HostileRelayClientTest, DisconnectsWhoSendsGarbageByNameAndReason) {
+TEST(HostileRelayClientTest, DisconnectsAClientThatSendsGarbageAndNamesTheReason) {
   Relay relay({"--max-subscriptions", "2", "--max-message", "1"});
   runtime::Bus bus(relay.url());
   const std::string http = "GET / HTTP/1.1\r\n\r\n";
@@ -156,7 +156,7 @@ TEST(HostileRelayClientTest, DisconnectsWhoSendsGarbageByNameAndReason) {
   EXPECT_THAT(relay.process().Err(), HasSubstr("6 disconnected; "));
 }
 
-TEST(HostileRelayClientTest, DisconnectsWhoNeverSaysThatItIsAClient) {
+TEST(HostileRelayClientTest, DisconnectsAConnectionThatNeverSaysThatItIsAClient) {
   Relay relay;
   const RawSocket silent(relay.port());
   EXPECT_TRUE(silent.WaitForClose());

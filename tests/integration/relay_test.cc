@@ -139,10 +139,10 @@ TEST(RelayTest, IsMissedByNameOfItsAddress) {
     Relay relay;
     url = relay.url();
   }
-  const Outcome nobody = end_of(url);
-  EXPECT_EQ(nobody.code, 3);
-  EXPECT_EQ(nobody.err, "fogline run: error: nobody listens on " + url.substr(7) +
-                            "; start fogline-relay there\n");
+  const Outcome refused = end_of(url);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(refused.err, "fogline run: error: no process listens on " + url.substr(7) +
+                             "; start fogline-relay there\n");
   const Outcome unknown = end_of("tcpq://no-such-host.invalid:7700");
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("no IPv4 address for \"no-such-host.invalid\""));
@@ -166,7 +166,7 @@ TEST(RelayTest, IsLostOnceAndThenTheBusKeepsStill) {
   EXPECT_FALSE(bus.Wait(milliseconds(1)));
 }
 
-TEST(RelayTest, IsFoundAgainWhereItWasByThoseWhoHadSubscribed) {
+TEST(RelayTest, IsFoundAgainWhereItWasByItsSubscribers) {
   const auto relay = std::make_unique<Relay>();
   const std::string url = relay->url();
   runtime::Bus bus(url);

@@ -304,7 +304,7 @@ TEST_F(ResumeTest, RefusesWhatIsNoLogOfARun) {
   ExpectRefusal({Program("fogline"), "run", "--resume", log_},
                 log_ + ": error: not an LCM event log\n");
   std::ofstream(log_, std::ios::trunc).flush();
-  ExpectRefusal("the log does not begin with the scenario of a run: start the run anew");
+  ExpectRefusal("the log does not begin with the scenario of a run: start a new run");
   EXPECT_TRUE(std::filesystem::exists(log_));
 }
 

@@ -232,7 +232,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
   EXPECT_GT(result["refused"]["not_finite"], 50);
 }
 
-TEST_F(SignedTrafficTest, TellsWhoHasAnotherKeyOrNone) {
+TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
   // GIVEN a run that waits for a driver
   Background run(Run({"--key", key_, "--external", "driver"}));
   const auto driver = [&](const std::vector<std::string>& more) {
@@ -243,10 +243,10 @@ TEST_F(SignedTrafficTest, TellsWhoHasAnotherKeyOrNone) {
   // WHEN two drivers come that cannot take part, THEN each says why
   Background keyless(driver({}));
   EXPECT_TRUE(keyless.WaitForErr("fogline-driver: traffic on this network is signed; give --key"));
-  Background stranger(driver({"--key", other_key_, "--run-id", "7"}));
+  Background other(driver({"--key", other_key_, "--run-id", "7"}));
   EXPECT_TRUE(
-      stranger.WaitForErr("with a wrong signature were refused: do all processes have the "
-                          "same key?"));
+      other.WaitForErr("with a wrong signature were refused: do all processes have the "
+                       "same key?"));
   // AND the runner says so, too: while it waits, and at its end
   EXPECT_TRUE(run.WaitForErr("warning: "));
   run.Signal(SIGINT);

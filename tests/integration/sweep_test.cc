@@ -153,7 +153,7 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.err, File("file.csv") +
                              ":4: error: --out: not the line that this sweep writes there; "
-                             "--force begins anew\n");
+                             "--force starts over\n");
   EXPECT_EQ(Content(File("file.csv")), text);
 }
 
@@ -171,7 +171,7 @@ TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.err, File("file.csv") + ":" + std::to_string(line) +
                              ": error: --out: not the line that this sweep has written there; "
-                             "--force begins anew\n");
+                             "--force starts over\n");
   EXPECT_EQ(Content(File("file.csv")), text);
   // AND without the checksum file the sweep accepts the rows as they are, and checks them from then
   // on

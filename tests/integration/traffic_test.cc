@@ -116,11 +116,11 @@ TEST_F(TrafficTest, IsRefusedByCheckInTheSameWords) {
   more.push_back("--json");
   const Outcome outcome = RunCommand(On("check", more));
   EXPECT_EQ(outcome.code, 2);
-  const auto mistakes = nlohmann::json::parse(outcome.out);
-  ASSERT_EQ(mistakes.size(), 1U);
-  EXPECT_EQ(mistakes[0]["rule"], "impossible");
-  EXPECT_EQ(mistakes[0]["pointer"], "/road/grade/1/position_m");
-  EXPECT_EQ(mistakes[0]["message"],
+  const auto diagnostics = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(diagnostics[0]["rule"], "impossible");
+  EXPECT_EQ(diagnostics[0]["pointer"], "/road/grade/1/position_m");
+  EXPECT_EQ(diagnostics[0]["message"],
             "20 m does not come after 50 m, the place before it; places must increase");
 }
 

@@ -252,8 +252,8 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   ASSERT_TRUE(top.CatchUp("BEGUN"));
   const std::int64_t before = MemoryOf(top.pid());
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
-  const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> stranger(lcm_create(bus.url().c_str()),
-                                                                &lcm_destroy);
+  const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
+                                                                      &lcm_destroy);
   // Of a burst at least what a small socket holds is heard, some 250 names; all are where top has a
   // processor to itself.
   constexpr int kNames = 4000;
@@ -264,7 +264,7 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
     ASSERT_LT(Clock::now(), end) << top.Last()["forgotten"] << " of " << invented;
     for (int i = 0; i < kNames; ++i) {
       const std::string name = "INVENTED_" + std::string(40, 'X') + std::to_string(invented++);
-      lcm_publish(stranger.get(), name.c_str(), "", 1);
+      lcm_publish(foreign_sender.get(), name.c_str(), "", 1);
     }
     ASSERT_TRUE(top.CatchUp("BURST" + std::to_string(burst)));
   }

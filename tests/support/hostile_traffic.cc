@@ -320,7 +320,7 @@ Attacker::Attacker(std::uint64_t seed, const std::string& only) : random_(seed) 
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app{"Throws datagrams at a multicast group that nobody there should take."};
+  CLI::App app{"Throws datagrams at a multicast group that no process there may accept."};
   std::string group = "239.255.76.67";
   int port = 7667;
   int ttl = 0;

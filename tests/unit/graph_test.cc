@@ -36,21 +36,21 @@ TEST(GraphTest, LagsWhereTheProducerComesAfterTheReader) {
 }
 
 template <class... Algorithms>
-void ExpectListsWhoHears() {
-  const auto expect = [](Role role, bool hears) {
+void ExpectListsRolesWithOnDemand() {
+  const auto expect = [](Role role, bool has_on_demand) {
     const bool listed = std::ranges::any_of(
         kChannels, [role](const ChannelInfo& channel) { return channel.on_demand.Has(role); });
-    EXPECT_EQ(listed, hears) << NameOf(role);
+    EXPECT_EQ(listed, has_on_demand) << NameOf(role);
   };
-  (expect(AlgorithmTraits<Algorithms>::kRole, AlgorithmTraits<Algorithms>::kHears), ...);
+  (expect(AlgorithmTraits<Algorithms>::kRole, AlgorithmTraits<Algorithms>::kHasOnDemand), ...);
 }
 
-TEST(GraphTest, ListsThoseOfOurPartsThatHearOnDemandAndNoOthers) {
-  ExpectListsWhoHears<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
-                      driver::Driver, arbitrator::Arbitrator, follower::Follower>();
+TEST(GraphTest, ListsExactlyTheRolesThatHaveAnInputOnDemand) {
+  ExpectListsRolesWithOnDemand<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
+                               driver::Driver, arbitrator::Arbitrator, follower::Follower>();
 }
 
-TEST(GraphTest, SendsNobodyOnDemandWhatItGetsAnyway) {
+TEST(GraphTest, SendsNoRoleAChannelTwice) {
   for (const ChannelInfo& channel : kChannels) {
     for (const RoleInfo& reader : kRoles) {
       if (!channel.on_demand.Has(reader.role)) continue;

@@ -153,12 +153,15 @@ TEST(HouseTest, NoFolderHasMoreThan20Files) {
 /// "NAMESPACE::NAME" of each type that a header defines outside of other types.
 std::set<std::string> TypesOf(const std::string& header) {
   static const std::regex line(
-      "(?:^|\n)(?:namespace ([a-z_:]+) \\{|(?:class|struct|enum class) (\\w+)[^;<\n]*\\{)");
+      "(?:^|\n)(?:namespace ([a-z_:]+) \\{|"
+      "(?:class|struct|enum(?: class)?) (\\w+)[^;<\n]*\\{|using (\\w+) =)");
   std::set<std::string> types;
   std::string space;
   for (std::sregex_iterator at(header.begin(), header.end(), line), end; at != end; ++at) {
     if ((*at)[1].matched) space = (*at)[1];
-    if ((*at)[2].matched) types.insert(space + "::" + (*at)[2].str());
+    for (const int group : {2, 3}) {
+      if ((*at)[group].matched) types.insert(space + "::" + (*at)[group].str());
+    }
   }
   return types;
 }
@@ -178,8 +181,10 @@ TEST(HouseTest, NoTwoHeadersDefineATypeOfTheSameName) {
 TEST(HouseTest, FindsTheTypesOfAHeader) {
   EXPECT_THAT(
       TypesOf("namespace fogline::report {\n\nstruct Window {\n  enum class Kind { kA };\n};\n"
-              "class Later;\nclass Curve final : public Line {\n};\n"),
-      ElementsAre("fogline::report::Curve", "fogline::report::Window"));
+              "class Later;\nclass Curve final : public Line {\n};\n"
+              "enum Side : int { kLeft };\nusing Curves = std::vector<Curve>;\n"),
+      ElementsAre("fogline::report::Curve", "fogline::report::Curves", "fogline::report::Side",
+                  "fogline::report::Window"));
 }
 
 }  // namespace

@@ -108,8 +108,8 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
 /// Whether a file has the form of a scenario; its values may be invalid.
 bool IsScenario(const std::filesystem::path& file) {
   const FileText read = ReadFile(file, kMaxFileBytes);
-  DiagnosticList mistakes;
-  const std::optional<JsonValue> root = ParseJson(read.text, 0, mistakes);
+  DiagnosticList diagnostics;
+  const std::optional<JsonValue> root = ParseJson(read.text, 0, diagnostics);
   const auto* object = root ? root->As<JsonObject>() : nullptr;
   return object != nullptr && FindMember(*object, "version") != nullptr;
 }

@@ -82,8 +82,8 @@ bool IsJson(std::string_view text) {
 }  // namespace
 
 std::string WithValue(std::string_view text, std::string_view pointer, std::string_view json) {
-  DiagnosticList mistakes;
-  const std::optional<JsonValue> root = ParseJson(text, 0, mistakes);
+  DiagnosticList diagnostics;
+  const std::optional<JsonValue> root = ParseJson(text, 0, diagnostics);
   if (!root) throw std::invalid_argument("WithValue: not JSON");
   const JsonValue* at = &*root;
   while (!pointer.empty()) {

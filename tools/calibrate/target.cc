@@ -14,6 +14,7 @@
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
 #include "scenario/io/loader.h"
+#include "scenario/sections/field_text.h"
 
 namespace fogline::calibrate {
 namespace {
@@ -28,8 +29,8 @@ std::optional<double> AsNumber(const JsonValue& value) {
 /// becomes NaN.
 class RowReader {
  public:
-  RowReader(const JsonObject& object, std::string pointer, DiagnosticList& mistakes)
-      : object_(object), pointer_(std::move(pointer)), mistakes_(mistakes) {}
+  RowReader(const JsonObject& object, std::string pointer, DiagnosticList& diagnostics)
+      : object_(object), pointer_(std::move(pointer)), diagnostics_(diagnostics) {}
 
   void Number(std::string_view name, double& field, const NumberSpec& spec) {
     field = std::nan("");
@@ -48,12 +49,12 @@ class RowReader {
 
  private:
   void Add(const JsonValue& value, std::string_view name, std::string message) {
-    mistakes_.Add(value.place, JoinPointer(pointer_, name), "range", std::move(message));
+    diagnostics_.Add(value.place, JoinPointer(pointer_, name), "range", std::move(message));
   }
 
   const JsonObject& object_;
   std::string pointer_;
-  DiagnosticList& mistakes_;
+  DiagnosticList& diagnostics_;
 };
 
 std::optional<double> Present(double value) {
@@ -61,49 +62,49 @@ std::optional<double> Present(double value) {
 }
 
 std::optional<TargetRow> ReadRow(const JsonValue& value, const std::string& pointer,
-                                 DiagnosticList& mistakes) {
+                                 DiagnosticList& diagnostics) {
   const auto* object = value.As<JsonObject>();
   const JsonMember* threshold = object ? FindMember(*object, "threshold") : nullptr;
   if (threshold == nullptr || !AsNumber(threshold->value)) {
-    mistakes.Add(value.place, pointer, "missing-key",
-                 "must be an object with a number \"threshold\"");
+    diagnostics.Add(value.place, pointer, "missing-key",
+                    "must be an object with a number \"threshold\"");
     return std::nullopt;
   }
   PublishedRow row;
-  RowReader reader(*object, pointer, mistakes);
+  RowReader reader(*object, pointer, diagnostics);
   PublishedRow::Fields(row, reader);
   return TargetRow{
       .threshold = row.threshold, .si_pct = Present(row.si_pct), .rhe_pct = Present(row.rhe_pct)};
 }
 
-std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& mistakes) {
+std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& diagnostics) {
   const auto* object = root.As<JsonObject>();
   const JsonMember* rows = object != nullptr ? FindMember(*object, "rows") : nullptr;
   const auto* items = rows != nullptr ? rows->value.As<JsonArray>() : nullptr;
   std::vector<TargetRow> target;
   if (items == nullptr || items->empty()) {
-    mistakes.Add(rows != nullptr ? rows->value.place : root.place, "/rows", "missing-key",
-                 "a target needs a list of rows, each with threshold, si_pct and rhe_pct");
+    diagnostics.Add(rows != nullptr ? rows->value.place : root.place, "/rows", "missing-key",
+                    "a target needs a list of rows, each with threshold, si_pct and rhe_pct");
     return target;
   }
   for (std::size_t i = 0; i < items->size(); ++i) {
     const std::string pointer = fmt::format("/rows/{}", i);
-    if (const auto row = ReadRow((*items)[i], pointer, mistakes)) target.push_back(*row);
+    if (const auto row = ReadRow((*items)[i], pointer, diagnostics)) target.push_back(*row);
   }
   return target;
 }
 
 /// Throws all mistakes, each with its place as in a scenario, but without the hints about fields of
 /// scenarios.
-[[noreturn]] void Throw(DiagnosticList& mistakes, const std::vector<Source>& sources) {
+[[noreturn]] void Throw(DiagnosticList& diagnostics, const std::vector<Source>& sources) {
   std::string text;
   try {
-    mistakes.Throw(sources);
+    diagnostics.Throw(sources);
   } catch (const ScenarioError& error) {
-    for (const Diagnostic& mistake : error.mistakes()) {
-      text += fmt::format("{}{}:{}:{}: error: {}{}{}", text.empty() ? "" : "\n", mistake.file,
-                          mistake.line, mistake.column, mistake.pointer,
-                          mistake.pointer.empty() ? "" : ": ", mistake.message);
+    for (const Diagnostic& diagnostic : error.diagnostics()) {
+      text += fmt::format("{}{}:{}:{}: error: {}{}{}", text.empty() ? "" : "\n", diagnostic.file,
+                          diagnostic.line, diagnostic.column, diagnostic.pointer,
+                          diagnostic.pointer.empty() ? "" : ": ", diagnostic.message);
     }
   }
   throw InputError(text);
@@ -116,10 +117,10 @@ std::vector<TargetRow> ReadTarget(const std::filesystem::path& file) {
   if (!read.error.empty()) {
     throw InputError(fmt::format("{}: error: --target: {}", PathText(file), read.error));
   }
-  DiagnosticList mistakes;
+  DiagnosticList diagnostics;
   std::vector<TargetRow> target;
-  if (const auto root = ParseJson(read.text, 0, mistakes)) target = ReadRows(*root, mistakes);
-  if (!mistakes.empty()) Throw(mistakes, {{.name = file.string(), .text = read.text}});
+  if (const auto root = ParseJson(read.text, 0, diagnostics)) target = ReadRows(*root, diagnostics);
+  if (!diagnostics.empty()) Throw(diagnostics, {{.name = file.string(), .text = read.text}});
   const auto has_number = [](const TargetRow& row) { return row.si_pct || row.rhe_pct; };
   if (std::none_of(target.begin(), target.end(), has_number)) {
     throw InputError(fmt::format("{}: error: /rows: no row has si_pct or rhe_pct", PathText(file)));

@@ -87,7 +87,7 @@ sweep::SeedRange ReadSeeds(const std::string& text);
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
-/// Refuses --json of a verb whose document goes to stdout itself: nothing could tell the two apart.
+/// Refuses --json if the verb's document goes to stdout: the reader could not separate the two.
 /// @param option that says where the document goes, such as "--out"; "" for nowhere
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);

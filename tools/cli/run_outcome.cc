@@ -84,11 +84,9 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
         {{"role", one.role}, {"count", one.count}, {"error", one.error}});
   }
   json["strangers"] = nlohmann::ordered_json::array();
-  for (const runtime::ForeignPeer& stranger : result.foreign_peers) {
-    json["strangers"].push_back({{"role", stranger.role},
-                                 {"pid", stranger.pid},
-                                 {"host", stranger.host},
-                                 {"run_id", stranger.run_id}});
+  for (const runtime::ForeignPeer& peer : result.foreign_peers) {
+    json["strangers"].push_back(
+        {{"role", peer.role}, {"pid", peer.pid}, {"host", peer.host}, {"run_id", peer.run_id}});
   }
   json["restarts"] = nlohmann::ordered_json::array();
   for (const runner::Restarts& role : result.restarts) {

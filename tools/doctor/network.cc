@@ -298,7 +298,7 @@ void ExamineTraffic(const std::string& url, Findings& findings) {
                         "fogline top shows more; another port keeps a run apart"});
   }
   if (view.runs.empty() && view.others.empty()) {
-    findings.push_back({"other_runs", Level::kOk, fmt::format("nobody is heard on {}", url), ""});
+    findings.push_back({"other_runs", Level::kOk, fmt::format("no traffic on {}", url), ""});
   }
 }
 

@@ -89,10 +89,9 @@ Finding AssessRole(const Process& role, bool has_runner) {
             fmt::format("kill -CONT {}", role.pid)};
   }
   if (role.replaced) {
-    return {
-        "processes", Level::kWarning,
-        fmt::format("{}{} runs a program that has been built anew since", role.Describe(), where),
-        fmt::format("kill {}, and start it again", role.pid)};
+    return {"processes", Level::kWarning,
+            fmt::format("{}{} runs a program that has been rebuilt since", role.Describe(), where),
+            fmt::format("kill {}, and start it again", role.pid)};
   }
   return {"processes", Level::kOk, fmt::format("{}{} runs by itself", role.Describe(), where), ""};
 }

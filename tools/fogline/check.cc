@@ -27,14 +27,15 @@ struct CheckOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json ToJson(const Diagnostic& mistake) {
-  return {{"file", mistake.file},       {"line", mistake.line}, {"column", mistake.column},
-          {"pointer", mistake.pointer}, {"rule", mistake.rule}, {"message", mistake.message}};
+nlohmann::ordered_json ToJson(const Diagnostic& diagnostic) {
+  return {{"file", diagnostic.file},     {"line", diagnostic.line},
+          {"column", diagnostic.column}, {"pointer", diagnostic.pointer},
+          {"rule", diagnostic.rule},     {"message", diagnostic.message}};
 }
 
 int CheckFiles(const CheckOptions& options) {
   int code = cli::kDone;
-  nlohmann::ordered_json mistakes = nlohmann::ordered_json::array();
+  nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     try {
       const Scenario scenario = LoadScenario(file, options.overrides);
@@ -46,11 +47,12 @@ int CheckFiles(const CheckOptions& options) {
       }
     } catch (const ScenarioError& error) {
       code = cli::kBadInput;
-      for (const Diagnostic& mistake : error.mistakes()) mistakes.push_back(ToJson(mistake));
+      for (const Diagnostic& diagnostic : error.diagnostics())
+        diagnostics.push_back(ToJson(diagnostic));
       if (!options.json) Complain(error.what());
     }
   }
-  if (options.json) cli::PrintJson(mistakes);
+  if (options.json) cli::PrintJson(diagnostics);
   return code;
 }
 

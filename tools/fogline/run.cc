@@ -31,7 +31,7 @@ its log, and gives exit code 130. A process that is killed or hangs is started
 again and catches up, and the result is the same. So is that of a run that has
 ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
 are those of the log; transport, pace, key and the roles that are started
-elsewhere are chosen anew. As the roles go on from what the log says, its steps
+elsewhere are given again. As the roles go on from what the log says, its steps
 are computed again and compared, unless --no-verify says otherwise; those of a
 complete log with --verify only. A run has a port of its own unless
 LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without
@@ -150,7 +150,7 @@ void ApplyOptions(RunArguments& arguments) {
   options.announce = !arguments.quiet;
 }
 
-int RunAnew(RunArguments& arguments) {
+int RunNew(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (const double period_s = scenario.step_s / arguments.speed;
@@ -235,7 +235,7 @@ void AddRun(CLI::App& app, cli::Action& action) {
     CheckResume(*verb);
     action = [arguments] {
       ApplyOptions(*arguments);
-      return arguments->resume.empty() ? RunAnew(*arguments) : Resume(*arguments);
+      return arguments->resume.empty() ? RunNew(*arguments) : Resume(*arguments);
     };
   });
 }

@@ -20,9 +20,9 @@ namespace asio = boost::asio;
 enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3 };
 
 constexpr const char* kFooter =
-    R"(Prints its URL on stdout, whom it disconnects and why on stderr, and a summary
-at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Nothing checks who connects: listen
-on 127.0.0.1 or on a network that you trust.
+    R"(Prints its URL on stdout. Prints on stderr which clients it disconnects and why,
+and a summary at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Any program may
+connect: listen on 127.0.0.1 or on a network that you trust.
 
 Exit codes: 0 stopped, 2 bad usage, 3 cannot listen.
 

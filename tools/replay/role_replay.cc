@@ -34,7 +34,7 @@ class ReplayOf final : public RoleReplay {
   explicit ReplayOf(const log::RunLog& run)
       : algorithm_(run.scenario),
         run_id_(run.run_id),
-        hears_(Traits::UsesOptionalInput(run.scenario)) {}
+        uses_on_demand_(Traits::UsesOnDemandInput(run.scenario)) {}
 
   std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
                                  const log::StepMessages& before) override {
@@ -43,8 +43,8 @@ class ReplayOf final : public RoleReplay {
     }
     WithIndex<kInputs>([&]<std::size_t I> { Read<I>(step, messages, before); });
     try {
-      if constexpr (Traits::kHears) {
-        if (hears_) SetOptionalInput(step, messages, before);
+      if constexpr (Traits::kHasOnDemand) {
+        if (uses_on_demand_) PassOnDemandInput(step, messages, before);
       }
       return Compare(step, Compute(std::make_index_sequence<kInputs>{}), messages);
     } catch (const InputError&) {
@@ -77,12 +77,12 @@ class ReplayOf final : public RoleReplay {
                                  ChannelOf<M>().name));
   }
 
-  void SetOptionalInput(std::int64_t step, const log::StepMessages& messages,
-                        const log::StepMessages& before) {
+  void PassOnDemandInput(std::int64_t step, const log::StepMessages& messages,
+                         const log::StepMessages& before) {
     using M = std::tuple_element_t<kInputs, AllInputs>;
     // Before the run the message is all zero (services/algorithm.h).
     if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
-    algorithm_.SetOptionalInput(std::get<kInputs>(inputs_));
+    algorithm_.SetOnDemandInput(std::get<kInputs>(inputs_));
   }
 
   template <std::size_t... I>
@@ -108,7 +108,7 @@ class ReplayOf final : public RoleReplay {
 
   Algorithm algorithm_;
   std::int64_t run_id_;
-  bool hears_;  // whether the role hears its extra input in this scenario
+  bool uses_on_demand_;  // whether the role reads its input on demand in this scenario
   AllInputs inputs_{};
   std::vector<std::uint8_t> encoded_;
 };

@@ -168,15 +168,15 @@ class BusyElsewhere {
     look_at_ = now + kLookForExternal;
     const std::vector<Role> awaited = coordinator.Awaited(now);
     if (awaited.empty()) return;
-    for (const runtime::ForeignPeer& stranger : coordinator.foreign_peers().known()) {
-      const std::string who = Describe(stranger);
-      const bool is_awaited = std::ranges::any_of(
-          awaited, [&stranger](Role role) { return NameOf(role) == stranger.role; });
-      if (!is_awaited || !told_.insert(who).second) continue;
+    for (const runtime::ForeignPeer& peer : coordinator.foreign_peers().known()) {
+      const std::string description = Describe(peer);
+      const bool is_awaited =
+          std::ranges::any_of(awaited, [&peer](Role role) { return NameOf(role) == peer.role; });
+      if (!is_awaited || !told_.insert(description).second) continue;
       say_(
           fmt::format("{} is not free: it comes when that run is over, or when its runner has "
                       "been silent for {:g} s",
-                      who, Seconds(runtime::RunnerWatch::kSilent)));
+                      description, Seconds(runtime::RunnerWatch::kSilent)));
     }
   }
 
@@ -186,7 +186,7 @@ class BusyElsewhere {
   TimePoint look_at_{};
 };
 
-/// What a person is warned of while a run goes on, each thing once.
+/// Prints warnings while a run goes on, each one once.
 class Warnings {
  public:
   Warnings(runtime::RunCoordinator& coordinator, Progress& progress)

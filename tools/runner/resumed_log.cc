@@ -26,7 +26,7 @@ const std::filesystem::path& Readable(const std::filesystem::path& log) {
   return log;
 }
 
-/// A log that was sealed is the one that was sealed; its new seal must not make it one.
+/// Refuses a log that was changed since it was sealed: a new seal must not hide the change.
 void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
   while (reader.Next() != nullptr) {
@@ -41,7 +41,7 @@ void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key)
 Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::LogFront front = log::ReadFront(log);
   if (!front.parts.Complete()) {
-    Refuse(log, "the log does not begin with the scenario of a run: start the run anew");
+    Refuse(log, "the log does not begin with the scenario of a run: start a new run");
   }
   if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
   if (front.realtime) {

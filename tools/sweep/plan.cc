@@ -66,10 +66,10 @@ void CheckSetting(const std::string& argument, const std::string& base, const st
   try {
     ParseScenario(base, "scenario", {fmt::format("{}={}", pointer, value)});
   } catch (const ScenarioError& error) {
-    const Diagnostic& mistake = error.mistakes().front();
+    const Diagnostic& diagnostic = error.diagnostics().front();
     throw InputError(fmt::format("error: {}: {}{}", argument,
-                                 mistake.pointer == pointer ? "" : mistake.pointer + ": ",
-                                 mistake.message));
+                                 diagnostic.pointer == pointer ? "" : diagnostic.pointer + ": ",
+                                 diagnostic.message));
   }
 }
 

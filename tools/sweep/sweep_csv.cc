@@ -165,7 +165,7 @@ void SweepFile::Resume(const Shard& shard) {
     if (!has_key || verdict == RowChecker::Verdict::kOther) {
       throw InputError(
           fmt::format("{}:{}: error: --out: not the line that this sweep {} there; "
-                      "--force begins anew",
+                      "--force starts over",
                       PathText(path_), row + 2, has_key ? "has written" : "writes"));
     }
     position += static_cast<std::int64_t>(line.size()) + 1;
@@ -221,7 +221,7 @@ void SweepFile::RequireInPlace() const {
   }
   throw std::runtime_error(
       fmt::format("{}: the file was removed or replaced while the sweep wrote it, and its rows are "
-                  "lost; call it again to begin anew",
+                  "lost; call it again to start over",
                   PathText(path_)));
 }
 

@@ -19,9 +19,9 @@ class SweepFile {
  public:
   /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. What is
   /// incomplete at its end is cut off. With `force` what is there is replaced.
-  /// @throws InputError if the file is there and is not of the same sweep, if somebody is writing
-  ///     it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error when the
-  ///     disk is full
+  /// @throws InputError if the file is there and is not of the same sweep, if another process is
+  ///     writing it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error
+  ///     when the disk is full
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 

@@ -16,7 +16,7 @@
 
 namespace fogline::policies {
 
-/// Which sensors the fusion uses in this step. The values of a sensor that is not trusted are
+/// Which sensors the fusion uses in this step. The values of a sensor that is not selected are
 /// compared with the prediction, but correct nothing.
 struct SensorSelection {
   bool radar = true;
@@ -65,8 +65,8 @@ struct ArbitratorView {
 struct EngagementRequest {
   double lambda_human = 0;  // wanted, in [0, 1]
   double threshold = 1;     // in force: the DoC from which on the human is wanted
-  /// true: the wish passes without delay. false: the wish is the result of the comparison of DoC
-  /// and threshold, and a hysteresis may delay it.
+  /// true: the request passes without delay. false: the request is the result of the comparison of
+  /// DoC and threshold, and a hysteresis may delay it.
   bool firm = true;
 };
 
@@ -97,8 +97,8 @@ class EngagementPolicy {
   /// constants.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether the policy shares authority: its wishes can lie between 0 and 1. A driver who must be
-  /// asked is asked for any share, and has this share after he has taken over.
+  /// Whether the policy shares authority: its requests can lie between 0 and 1. A driver who must
+  /// be asked is asked for any share, and has this share after he has taken over.
   static constexpr bool kShares = false;
   /// Whether its decisions depend on the scenario's threshold. A policy with a rule of its own that
   /// does not depend on it redefines this constant.

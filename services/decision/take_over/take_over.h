@@ -1,5 +1,5 @@
-// Take-over on request: the policy's wish for the human becomes a request to the driver. He may
-// answer late or never; then a manoeuvre stops the car.
+// Take-over on request: the policy's engagement request for the human becomes a request to the
+// driver. He may answer late or never; then a manoeuvre stops the car.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace fogline::take_over {
 
 /// Inputs of the decision of a step.
 struct TakeOverInputs {
-  bool human_wanted = false;   // the policy's wish
+  bool human_wanted = false;   // the policy's engagement request
   double automation_mps2 = 0;  // the automation's offer
   double human_mps2 = 0;       // the driver's
   double readiness = 0;        // the driver's, in [0, 1]

@@ -77,16 +77,14 @@ using Row = TakeOverRow;
 
 /// The rows of a state are tried in this order. If no row applies, state and authority stay.
 /// Sources, by paragraph of UN R157:
-///   - Only deactivation or the manoeuvre ends a request (5.4.4); a change of the policy's wish
-///   does
-///     not.
+///   - Only deactivation or the manoeuvre ends a request to take over (5.4.4); a change of the
+///     policy's engagement request does not.
 ///   - No manoeuvre within lead_s of the request (5.4.4.1) unless it is severe (5.4.4.1.1).
 ///   - A driver who is late ends the manoeuvre, in either stage, as long as the car moves (5.5.2,
 ///     5.5.3): a driver who is there and able may always drive. SUMO's ToC device has the same
 ///     rule.
 ///   - After any manoeuvre, also one that the driver has ended, the automation is not activated
-///   again
-///     before the next run cycle (5.5.5). A car that stands stays: driving off (5.5.4) is a new
+///     again before the next run cycle (5.5.5). A car that stands stays: driving off (5.5.4) is a new
 ///     run.
 ///   - The manoeuvre only escalates (Autoware's mrm_handler).
 inline constexpr std::array kTakeOverTable{

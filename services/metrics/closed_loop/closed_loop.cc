@@ -3,7 +3,7 @@
 namespace fogline::metrics {
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
-    : demands_(scenario),
+    : on_demand_(scenario),
       world_(scenario),
       radar_(scenario),
       lidar_(scenario),
@@ -14,7 +14,7 @@ ClosedLoop::ClosedLoop(const Scenario& scenario)
       follower_(scenario) {}
 
 void ClosedLoop::Restart(const Scenario& scenario) {
-  demands_ = UsesOptionalInput(scenario);
+  on_demand_ = OnDemandRoles(scenario);
   acc_.Restart(scenario);
   follower_.Restart(scenario);
   world_ = world::World(scenario);

@@ -70,12 +70,12 @@ class ClosedLoop {
       const auto& [truth, ego] = *made;
       const radar_t& radar = radar_.Step(truth);
       const lidar_t& lidar = lidar_.Step(truth);
-      SetOptionalInput(demands_.fusion, fusion_, truth);
+      PassOnDemandInput(on_demand_.fusion, fusion_, truth);
       const track_t& track = fusion_.Step(ego, radar, lidar);
       const accel_command_t& acc = acc_.Step(ego, track);
-      SetOptionalInput(demands_.driver, driver_, *last);
+      PassOnDemandInput(on_demand_.driver, driver_, *last);
       const driver_command_t& driver = driver_.Step(truth);
-      SetOptionalInput(demands_.arbitrator, arbitrator_, truth);
+      PassOnDemandInput(on_demand_.arbitrator, arbitrator_, truth);
       const arbitration_t& host = arbitrator_.Step(ego, radar, lidar, track, acc, driver);
       const follower_command_t& follower = follower_.Step(truth);
       visit(StepView{truth, ego, radar, lidar, track, acc, driver, host, follower});
@@ -86,26 +86,26 @@ class ClosedLoop {
   }
 
  private:
-  /// Which roles receive their channels on demand in this scenario (services/algorithm.h).
-  struct UsesOptionalInput {
-    explicit UsesOptionalInput(const Scenario& scenario)
-        : fusion(AlgorithmTraits<fusion::Fusion>::UsesOptionalInput(scenario)),
-          driver(AlgorithmTraits<driver::Driver>::UsesOptionalInput(scenario)),
-          arbitrator(AlgorithmTraits<arbitrator::Arbitrator>::UsesOptionalInput(scenario)) {}
+  /// Which roles use their inputs on demand in this scenario (services/algorithm.h).
+  struct OnDemandRoles {
+    explicit OnDemandRoles(const Scenario& scenario)
+        : fusion(AlgorithmTraits<fusion::Fusion>::UsesOnDemandInput(scenario)),
+          driver(AlgorithmTraits<driver::Driver>::UsesOnDemandInput(scenario)),
+          arbitrator(AlgorithmTraits<arbitrator::Arbitrator>::UsesOnDemandInput(scenario)) {}
     bool fusion;
     bool driver;
     bool arbitrator;
   };
 
   template <class A, class M>
-  static void SetOptionalInput([[maybe_unused]] bool demanded, [[maybe_unused]] A& algorithm,
-                               [[maybe_unused]] const M& message) {
-    if constexpr (AlgorithmTraits<A>::kHears) {
-      if (demanded) algorithm.SetOptionalInput(message);
+  static void PassOnDemandInput([[maybe_unused]] bool is_used, [[maybe_unused]] A& algorithm,
+                                [[maybe_unused]] const M& message) {
+    if constexpr (AlgorithmTraits<A>::kHasOnDemand) {
+      if (is_used) algorithm.SetOnDemandInput(message);
     }
   }
 
-  UsesOptionalInput demands_;
+  OnDemandRoles on_demand_;
   world::World world_;
   radar::Radar radar_;
   lidar::Lidar lidar_;

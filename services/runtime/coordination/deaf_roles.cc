@@ -47,7 +47,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
                       age >= ear.age + std::min(since, kSteady) / 2;
     const Role from = kChannels[channel].from;
-    // To a role that is ahead all that is genuine comes late: it hears it, and takes none of it.
+    // If this role is ahead of the producer, all messages of the producer come late: the role hears
+    // them but cannot use them.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
     if (!aged || late) {
       ear.missed = ear.unsure = {};
@@ -55,7 +56,7 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
       ear.unsure = {};
     } else {
       if (since <= kSteady) ear.unsure += since;
-      // Behind its last step nothing is missed.
+      // Nothing is missing after the last step that the producer has computed.
       const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
       if (computed) ear.missed += std::exchange(ear.unsure, {});
     }

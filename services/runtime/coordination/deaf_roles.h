@@ -49,19 +49,19 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    Duration unsure{};  // since its producer was heard to have computed a step; to be added then
+    Duration unsure{};  // time to add to `missed` when its producer reports a further step
   };
   struct Speaker {
     TimePoint heard{};
     std::int64_t step = -1;
-    TimePoint advanced{};  // when it was first heard that it had computed `step`
+    TimePoint advanced{};  // when a STATUS first showed `step`
     std::array<Ear, kNumChannels> ears{};
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
   /// Whether the role computes step after step, by its STATUS.
   bool Computes(Role role, TimePoint now) const;
-  /// A step is further than the role can be that should have computed it.
+  /// Whether `step` is further than the role can have computed by now.
   bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;
 
   Duration period_;

@@ -19,16 +19,15 @@ std::string PrintableHost(const std::string& name) { return Printable(name.subst
 
 }  // namespace
 
-std::string Describe(const ForeignPeer& stranger) {
-  return fmt::format("{} (pid {} on {}) of run {}", stranger.role, stranger.pid, stranger.host,
-                     stranger.run_id);
+std::string Describe(const ForeignPeer& peer) {
+  return fmt::format("{} (pid {} on {}) of run {}", peer.role, peer.pid, peer.host, peer.run_id);
 }
 
 void ForeignPeers::Hear(const status_t& status) {
   if (std::ranges::find(kRoles, status.role, &RoleInfo::name) == kRoles.end()) return;
   const auto known = std::ranges::find_if(watched_, [&status](const Watched& one) {
-    return one.stranger.run_id == status.header.run_id && one.stranger.pid == status.pid &&
-           one.stranger.role == status.role && one.stranger.host == PrintableHost(status.host);
+    return one.peer.run_id == status.header.run_id && one.peer.pid == status.pid &&
+           one.peer.role == status.role && one.peer.host == PrintableHost(status.host);
   });
   if (known != watched_.end()) {
     ++known->heard;
@@ -39,10 +38,10 @@ void ForeignPeers::Hear(const status_t& status) {
     watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));
     forgotten_ = true;
   }
-  watched_.push_back({.stranger = {.role = status.role,
-                                   .pid = status.pid,
-                                   .host = PrintableHost(status.host),
-                                   .run_id = status.header.run_id},
+  watched_.push_back({.peer = {.role = status.role,
+                               .pid = status.pid,
+                               .host = PrintableHost(status.host),
+                               .run_id = status.header.run_id},
                       .heard = 1});
 }
 
@@ -53,14 +52,14 @@ std::vector<ForeignPeer> ForeignPeers::known() const {
   told.resize(std::min(told.size(), kMax));
   std::ranges::sort(told);  // by their places in watched_
   std::vector<ForeignPeer> known;
-  for (const Watched* one : told) known.push_back(one->stranger);
+  for (const Watched* one : told) known.push_back(one->peer);
   return known;
 }
 
 std::string ForeignPeers::Text() const {
   std::string text;
-  for (const ForeignPeer& stranger : known()) {
-    text += fmt::format("{}ignored: {}", text.empty() ? "" : "\n", Describe(stranger));
+  for (const ForeignPeer& peer : known()) {
+    text += fmt::format("{}ignored: {}", text.empty() ? "" : "\n", Describe(peer));
   }
   if (watched_.size() > kMax || forgotten_) text += "\nignored: more processes of other runs";
   return text;

@@ -19,7 +19,7 @@ struct ForeignPeer {
 };
 
 /// "fusion (pid 4711 on lab2) of run 123"
-std::string Describe(const ForeignPeer& stranger);
+std::string Describe(const ForeignPeer& peer);
 
 /// The foreign processes that were heard most often. A flood of invented names does not fill the
 /// memory. It does not hide a process that continues to speak either: a name that was heard once is
@@ -44,7 +44,7 @@ class ForeignPeers {
 
  private:
   struct Watched {
-    ForeignPeer stranger;
+    ForeignPeer peer;
     std::int64_t heard;
   };
   std::vector<Watched> watched_;  // in the order in which they were first heard

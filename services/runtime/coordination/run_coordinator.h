@@ -129,12 +129,13 @@ class RunCoordinator {
     std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    std::optional<TimePoint> undead;  // one that is dead speaks, since then; and when last
+    // An instance that counts as dead speaks since `undead`; it was last heard at `undead_heard`.
+    std::optional<TimePoint> undead;
     std::int64_t undead_instance = 0;
     TimePoint undead_heard{};
-    std::string hindrance;  // why it cannot be started again for now
-    int replaced = 0;       // times that an external role was started again, and when last
-    TimePoint replaced_at{};
+    std::string hindrance;    // why it cannot be started again for now
+    int replaced = 0;         // number of times that an external role was started again
+    TimePoint replaced_at{};  // when this last happened
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 

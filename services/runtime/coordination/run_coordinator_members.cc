@@ -66,7 +66,7 @@ void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) 
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;
   }
-  announce_at_ = now;  // that another one has its place
+  announce_at_ = now;  // tells the process that another one has its place
   const bool speaks_on = member.undead && member.undead_instance == status.instance &&
                          HeldAgainst(member.undead_heard, now) <= kSilent;
   if (!speaks_on) member.undead = now;

@@ -82,7 +82,7 @@ BeaconListener::BeaconListener(const std::string& meeting_url) : announcements_(
   bus_.emplace(meeting_url);
   bus_->Subscribe(kBeaconChannel, [this](Bytes bytes) {
     const TimePoint now = Clock::now();
-    if (const auto share = gate_.Count(now)) bus_->SetSampleRate(kBeaconChannel, *share);
+    if (const auto share = shedder_.Count(now)) bus_->SetSampleRate(kBeaconChannel, *share);
     announcements_.Hear(bytes, now, WallMicroseconds());
   });
 }

@@ -63,7 +63,7 @@ class BeaconListener {
   std::optional<Bus> bus_;
   Announcements announcements_;
   // The limit, in beacons per second: many times what the runs of one machine send.
-  LoadShedder gate_{3000};
+  LoadShedder shedder_{3000};
 };
 
 }  // namespace fogline::runtime

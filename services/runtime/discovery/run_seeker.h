@@ -26,21 +26,22 @@ class RunSeeker {
 
   /// Whether the role is at the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the run is over, or nothing was heard of it for kPatience. The role then goes back to
-  /// the meeting address.
+  /// Whether the run is over, or nothing was heard of it for kSilentLimit. The role then goes back
+  /// to the meeting address.
   bool InVain(TimePoint now);
-  /// The run that was gone to last is not tried again, unless it has had the role meanwhile: then
-  /// its place was taken, and may be free again.
+  /// Look() does not return the run that was tried last again, until an announcement says that the
+  /// run does not wait for the role. Then another process has had the place, and the place may
+  /// become free.
   void GiveUp();
-  /// This run, which the role has a part in, is not to be tried.
+  /// Look() does not return this run, in which the role already takes part.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
-  /// The role is at the network of this run, and has no part in it any more.
+  /// The role has left this run, and is still at its network.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
   // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
   // by less than this.
-  static constexpr Duration kPatience = milliseconds(5000);
+  static constexpr Duration kSilentLimit = milliseconds(5000);
   // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;
 

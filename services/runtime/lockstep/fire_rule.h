@@ -1,5 +1,5 @@
-// When a node computes a step, and what it does about missing inputs (a step gate). This is all
-// that differs between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
+// When a node computes a step, and what it does about missing inputs. This is all that differs
+// between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
 #pragma once
 
 #include <cstdint>

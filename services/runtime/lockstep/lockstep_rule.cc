@@ -23,7 +23,7 @@ StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, B
 
 void LockstepRule::OnInput(std::size_t /*input*/, std::int64_t step, TimePoint time) {
   Expect(step);
-  if (CatchingUp()) patience_.Arrived(time);
+  if (CatchingUp()) retry_.Arrived(time);
   Advance(time);
 }
 
@@ -41,16 +41,16 @@ void LockstepRule::OnAskedAhead(std::int64_t step, TimePoint now) {
   // A request may name a wrong step, so its effect is limited.
   Expect(std::min(step, next() + kRingSteps - 1));
   // A node that catches up has already asked for its inputs.
-  if (!CatchingUp() && now - patience_.asked() >= kMinBetweenAsks) AskForMissing(now);
+  if (!CatchingUp() && now - retry_.asked() >= kMinBetweenAsks) AskForMissing(now);
 }
 
 void LockstepRule::WriteStatus(TimePoint now) {
-  const Input* missing = patience_.since() ? FirstMissing() : nullptr;
+  const Input* missing = retry_.since() ? FirstMissing() : nullptr;
   if (missing == nullptr) return;
   status().waiting_for = kChannels[missing->channel].name;
   status().last_heard_step = missing->ring.newest();
   status().last_heard_ms = status().last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
-  status().waiting_ms = Milliseconds(now - *patience_.since());
+  status().waiting_ms = Milliseconds(now - *retry_.since());
 }
 
 const LockstepRule::Input* LockstepRule::FirstMissing() const {
@@ -66,26 +66,26 @@ std::int64_t LockstepRule::FirstNeeded(const Input& input) const {
 void LockstepRule::Advance(TimePoint now) {
   while (Running() && InputsReady() && MayCompute(next(), now)) {
     if (!Compute(next())) return;
-    patience_.Computed(now);
+    retry_.Computed(now);
   }
 }
 
 TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + kHeartbeat;
-  const TimePoint ask_at = patience_.Wait(now);
+  const TimePoint ask_at = retry_.Wait(now);
   // The step has not been asked for yet, so none of its inputs can be on their way.
   if (CatchingUp() && next() > asked_) {
     AskForMissing(now);
-    patience_.AskedForMany(now);
+    retry_.AskedForMany(now);
   } else if (now >= ask_at) {
     AskForMissing(now);
-    patience_.AskedInVain(now);
+    retry_.AskedInVain(now);
   }
-  return patience_.Wait(now);
+  return retry_.Wait(now);
 }
 
 void LockstepRule::AskForMissing(TimePoint now) {
-  patience_.Asked(now);
+  retry_.Asked(now);
   // Up to the newest step that is known to be under way, but no more steps than the rings can hold.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : inputs()) {

@@ -6,8 +6,8 @@
 //
 // Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
 // computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
-// sends old inputs, their producers send the last ones. The node publishes only outputs that the
-// recorder does not answer for.
+// sends old inputs, their producers send the last ones. The node does not publish old outputs,
+// because the recorder has them.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ class LockstepRule : public FireRule {
   std::int64_t expected_;    // highest step that is known to be under way
   std::int64_t late_;        // last step to catch up with
   std::int64_t asked_ = -1;  // last step whose inputs were asked for
-  RetryTimer patience_;
+  RetryTimer retry_;
 };
 
 }  // namespace fogline::runtime

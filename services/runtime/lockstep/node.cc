@@ -23,11 +23,11 @@ constexpr Duration kAnswerHolds = milliseconds(1);
 // A run waits for its newest steps. Requests for this many of them are always answered.
 constexpr std::int64_t kNewest = 2;
 // A missing part of the scenario is asked for at this interval.
-constexpr Duration kPartPatience = milliseconds(20);
+constexpr Duration kPartRetry = milliseconds(20);
 // The longest error text: it must fit into a STATUS with everything else.
 constexpr std::size_t kMaxErrorBytes = 700;
 // Repeated announcements are answered at most at this interval.
-constexpr Duration kAnnouncedPatience = milliseconds(20);
+constexpr Duration kAnnouncedRetry = milliseconds(20);
 // A failed send is reported within this time after the last STATUS, because a run may be over
 // before the next heartbeat.
 constexpr Duration kTellSends = milliseconds(20);
@@ -117,7 +117,7 @@ TimePoint Node::Poll(TimePoint now) {
   } else if (status_.state == status_t::WAITING && bound_) {
     if (now >= part_at_) {
       Ask(ChannelOf<run_t>().name, {.first = parts_.FirstMissing(), .count = 1});
-      part_at_ = now + kPartPatience;
+      part_at_ = now + kPartRetry;
     }
     next = std::min(next, part_at_);
   }
@@ -129,7 +129,7 @@ void Node::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = bus_.failed_sends();
   if (failed.count == status_.sends_failed) return;
   status_at_ = std::min(status_at_, said_at_ + kTellSends);
-  // In real time the others go on without it; who is silent for too long is the runner's to judge.
+  // In real time the other roles go on without it, and the runner judges how long it may be silent.
   if (left_ || realtime_ || !failed.since || !runner_.Stalled(*failed.since, now)) return;
   Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                    failed.error));
@@ -214,7 +214,7 @@ void Node::Emit(std::size_t channel, std::int64_t step, Bytes bytes) {
 }
 
 void Node::Answer(std::string_view channel, Bytes bytes, TimePoint now) {
-  if (!budget_.Take(now)) return;
+  if (!limiter_.Take(now)) return;
   bus_.Publish(channel, bytes);
   ++status_.repairs_served;
 }
@@ -279,7 +279,7 @@ bool Node::TakeNews(const run_t& run, TimePoint now) {
   } else if (!chosen_ && SeatIn(run, status_.role, status_.instance) == Seat::kTaken) {
     Release(fmt::format("another process is the {} of run {}", status_.role, run.header.run_id));
   } else if (status_.state != status_t::WAITING && run.phase == run_t::PREPARE &&
-             run.header.step == 0 && now >= announced_at_ + kAnnouncedPatience) {
+             run.header.step == 0 && now >= announced_at_ + kAnnouncedRetry) {
     announced_at_ = now;
     PublishStatus();  // the announcement is repeated: the runner may not have heard this node
   }
@@ -364,7 +364,7 @@ void Node::OnResend(Bytes bytes) {
   if (step < 0 || step > kMaxStep) return Refuse(&status_t::out_of_window);
   if (!Running()) return;
   if (resend.channel == ChannelOf<status_t>().name) {
-    if (budget_.Take(now)) OnStatusAsked(step, now);
+    if (limiter_.Take(now)) OnStatusAsked(step, now);
     return;
   }
   const StepRange steps{.first = step,
@@ -381,7 +381,7 @@ void Node::AnswerFrom(Output& output, StepRange steps, TimePoint now) {
   for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {
     TimePoint& answered = output.answered[RingSlot(step)];
     if (!output.ring.Has(step) || now - answered < kAnswerHolds) continue;
-    if (step < next_ - kNewest && !budget_.Take(now)) continue;
+    if (step < next_ - kNewest && !limiter_.Take(now)) continue;
     answered = now;
     bus_.Publish(output.topic, output.ring.Get(step));
     ++status_.repairs_served;

@@ -117,7 +117,7 @@ class Node {
   void SetState(std::int8_t state);
   void PublishStatus();
   void Ask(std::string_view channel, StepRange steps) { Ask(*run_id_, channel, steps); }
-  /// Publishes a requested message again, unless the rate limiter (budget_) refuses.
+  /// Publishes a requested message again, unless the rate limiter (limiter_) refuses.
   void Answer(std::string_view channel, Bytes bytes, TimePoint now);
   /// A predecessor has done the steps before this one. Call it in Configure().
   void StartAt(std::int64_t step);
@@ -144,7 +144,7 @@ class Node {
 
   /// A rate limiter for answers about older steps, in messages per second and per burst. Repairs on
   /// a network that loses a third of the messages take a few hundred a second.
-  RateLimiter budget_{2000, 500};
+  RateLimiter limiter_{2000, 500};
 
  private:
   void Read(std::size_t channel, bool on_demand);
@@ -156,7 +156,8 @@ class Node {
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// Has what could not be sent told soon; in lockstep fails if that was everything for too long.
+  /// Sends a STATUS soon after a failed send. In lockstep the node fails if nothing could be sent
+  /// for as long as the run waits for a step.
   void CheckSends(TimePoint now);
   /// Takes a RUN's news about the whole run. @return whether the RUN is newer than all before
   bool TakeNews(const run_t& run, TimePoint now);

@@ -5,8 +5,8 @@
 namespace fogline::runtime {
 namespace {
 
-constexpr Duration kFirstPatience = milliseconds(20);
-constexpr Duration kMaxPatience = milliseconds(500);
+constexpr Duration kFirstRetryInterval = milliseconds(20);
+constexpr Duration kMaxRetryInterval = milliseconds(500);
 // Three years: an upper limit for the time when a step is due, at any pace.
 constexpr double kLongest_s = 1e8;
 
@@ -63,18 +63,18 @@ std::optional<std::int64_t> StepGate::WantsRecorded(std::int64_t next, TimePoint
     return std::nullopt;
   }
   if (!ask_at_) {
-    patience_ = kFirstPatience;
-    ask_at_ = now + patience_;
+    retry_interval_ = kFirstRetryInterval;
+    ask_at_ = now + retry_interval_;
   }
   if (now < *ask_at_) return std::nullopt;
-  patience_ = std::min(2 * patience_, kMaxPatience);
-  ask_at_ = now + patience_;
+  retry_interval_ = std::min(2 * retry_interval_, kMaxRetryInterval);
+  ask_at_ = now + retry_interval_;
   return Needed(next);
 }
 
 TimePoint StepGate::NextPoll(std::int64_t next, TimePoint now) const {
-  if (!started_) return now + kMaxPatience;
-  TimePoint at = now + kMaxPatience;
+  if (!started_) return now + kMaxRetryInterval;
+  TimePoint at = now + kMaxRetryInterval;
   if (ask_at_) at = std::min(at, *ask_at_);
   if (const TimePoint due = Due(next); due > now) at = std::min(at, due);
   return at;

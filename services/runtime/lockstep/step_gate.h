@@ -56,7 +56,7 @@ class StepGate {
   std::int64_t begun_before_ = -1;
   std::optional<std::int64_t> final_;
   std::optional<TimePoint> ask_at_;
-  Duration patience_{};
+  Duration retry_interval_{};
 };
 
 }  // namespace fogline::runtime

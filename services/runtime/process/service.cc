@@ -27,7 +27,7 @@ enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 1
 // roles, then the rest of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
-// A network that cannot be joined is tried again so often; it is away until somebody mends it.
+// A network that cannot be joined is tried again at this interval, until a person has repaired it.
 constexpr Duration kTryAgain = milliseconds(500);
 
 struct Arguments {

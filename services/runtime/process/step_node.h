@@ -53,14 +53,14 @@ class StepNode final : public Node {
   struct Nothing {};
   using InRealtime = std::conditional_t<kFailsafe, Failsafe, Nothing>;
   static_assert(
-      !kFailsafe || Traits::kHears == requires { &InRealtime::SetOptionalInput; },
-      "what stands in for an algorithm hears what that does");
+      !kFailsafe || Traits::kHasOnDemand == requires { &InRealtime::SetOnDemandInput; },
+      "an algorithm and its failsafe have the same input on demand");
 
   void Configure(const Scenario& scenario) override {
     algorithm_ = std::make_unique<Algorithm>(scenario);
-    if constexpr (Traits::kHears) {
-      hears_ = Traits::UsesOptionalInput(scenario);
-      if (hears_) ReadOnDemand(IndexOf<std::tuple_element_t<kInputs, AllInputs>>());
+    if constexpr (Traits::kHasOnDemand) {
+      uses_on_demand_ = Traits::UsesOnDemandInput(scenario);
+      if (uses_on_demand_) ReadOnDemand(IndexOf<std::tuple_element_t<kInputs, AllInputs>>());
     }
     if constexpr (kFailsafe) {
       if (realtime()) failsafe_ = std::make_unique<Failsafe>(scenario);
@@ -115,7 +115,7 @@ class StepNode final : public Node {
     if constexpr (Traits::kStarts) {
       if (step == 0) return Publish(step, algorithm_->Start(run_id()));
     }
-    SetOptionalInput(*algorithm_, step);
+    PassOnDemandInput(*algorithm_, step);
     Publish(step, Step(step, std::make_index_sequence<kInputs>{}));
   }
 
@@ -124,15 +124,15 @@ class StepNode final : public Node {
     return algorithm_->Step(std::get<I>(rings_)[RingSlot(step - kLag<I>)]...);
   }
 
-  /// Passes the input on demand to the algorithm before each step, if the scenario demands it.
+  /// Passes the input on demand to the algorithm before each step, if the scenario uses it.
   template <class A>
-  void SetOptionalInput(A& algorithm, std::int64_t step) {
-    if constexpr (Traits::kHears) {
-      if (!hears_) return;
+  void PassOnDemandInput(A& algorithm, std::int64_t step) {
+    if constexpr (Traits::kHasOnDemand) {
+      if (!uses_on_demand_) return;
       static const std::tuple_element_t<kInputs, AllInputs> kBeforeTheRun{};
       const auto* newest = NewestOf<kInputs>(step - kLag<kInputs>);
       if (newest == nullptr && !realtime()) newest = &kBeforeTheRun;
-      if (newest != nullptr) algorithm.SetOptionalInput(*newest);
+      if (newest != nullptr) algorithm.SetOnDemandInput(*newest);
     }
   }
 
@@ -167,7 +167,7 @@ class StepNode final : public Node {
   }
 
   const typename Traits::Output& StepFailsafe(std::int64_t step) {
-    SetOptionalInput(*failsafe_, step);
+    PassOnDemandInput(*failsafe_, step);
     return [&]<std::size_t... I>(std::index_sequence<I...>)->const typename Traits::Output& {
       if constexpr (Traits::kStarts) {
         return failsafe_->Step({HeardBy<I>(step - kLag<I>)...});
@@ -237,7 +237,7 @@ class StepNode final : public Node {
   std::unique_ptr<Algorithm> algorithm_;
   std::unique_ptr<InRealtime> failsafe_;  // in real time, if Failsafe is not void
   InputRings rings_;
-  bool hears_ = false;  // whether the input on demand is read in this scenario
+  bool uses_on_demand_ = false;  // whether the input on demand is read in this scenario
   std::vector<std::uint8_t> encoded_;
   std::optional<StepGate> gate_;  // only for the role that begins the steps
 };

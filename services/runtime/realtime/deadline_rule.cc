@@ -6,8 +6,8 @@ namespace fogline::runtime {
 
 DeadlineRule::DeadlineRule(Node& node, const Scenario& scenario, double speed)
     : RealtimeRule(node, scenario, speed),
-      patience_(duration_cast<Duration>(scenario.health.deadline_share *
-                                        std::chrono::duration<double>(period()))) {}
+      until_deadline_(duration_cast<Duration>(scenario.health.deadline_share *
+                                              std::chrono::duration<double>(period()))) {}
 
 TimePoint DeadlineRule::Fire(TimePoint now) {
   const Input& tick = inputs()[tick_input()];
@@ -27,7 +27,7 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
     if (!there && (StateOf(i) != InputState::kLost || Speaks(i, now))) complete = false;
     if (there) due = std::max(due, inputs()[i].heard);
   }
-  const TimePoint deadline = tick.heard + patience_;
+  const TimePoint deadline = tick.heard + until_deadline_;
   if (!complete && now < deadline) return deadline;
   if (!complete) statistics().Miss();
   ComputeDue(step, complete ? due : deadline, now);

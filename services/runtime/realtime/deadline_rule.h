@@ -19,7 +19,7 @@ class DeadlineRule final : public RealtimeRule {
   /// Decides with the inputs that are there.
   void Decide(std::int64_t step, TimePoint now);
 
-  Duration patience_;  // from the tick to the deadline
+  Duration until_deadline_;  // from the tick to the deadline
 };
 
 }  // namespace fogline::runtime

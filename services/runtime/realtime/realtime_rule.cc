@@ -15,8 +15,9 @@ constexpr std::int64_t kSlack = 2;
 // The greatest age of the progress that the runner reports: five signs of life of the roles, some
 // of which may be lost.
 constexpr Duration kHearsay = milliseconds(1000);
-// What is heard comes late when it is sent again, which nothing is that is older than a ring; what
-// the runner says while it hears nothing itself, for less than a minute of a run that goes on.
+// How long a proof of the run's progress counts (step_horizon.h). A message that is sent again
+// comes late, but a message that is older than a ring is not sent again. The runner reports old
+// progress while it hears nothing itself, which lasts less than a minute in a run that goes on.
 constexpr std::int64_t kHeardPeriods = kRingSteps;
 constexpr Duration kToldFor = milliseconds(60'000);
 

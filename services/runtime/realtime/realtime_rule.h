@@ -5,11 +5,12 @@
 // message that comes after the end of its step is late: it is counted and never used. A role does
 // not wait for an input on demand and does not judge it.
 //
-// What is of a step that cannot be under way is refused: unless nothing new has been heard for some
-// periods, by what was heard of the steps themselves; and always by what the runner says of the
-// progress. So a role that is wrong about how far the run is (it was started in the middle of it,
-// and heard an old message first) is right again soon. A false message can make it wrong by the
-// slack of two steps, and many of them by no more than what the runner's word lets pass, a second.
+// A message of a step that cannot be under way is refused. The progress that the runner reports
+// always limits the steps. The steps that were heard limit them, too, unless no new step was heard
+// for some periods. So a role that is wrong about the progress corrects itself soon (for example a
+// role that was started in the middle of the run and heard an old message first). One false message
+// can mislead a role by the slack of two steps. Many false messages can mislead it by no more than
+// the runner's report allows, which is one second.
 //
 // The rule also judges every input by age (input_health.h). STATUS reports the state of each input,
 // the culprit, and how well the role keeps its time. A change of a state is reported at once.

@@ -136,7 +136,7 @@ TimePoint TickRule::Resume(TimePoint now) {
   phase_ = Phase::kTicking;  // take_over_ sets another phase if the run ends with this step
   try {
     take_over_(*truth_);
-  } catch (const std::exception&) {  // the TRUTH is of another road
+  } catch (const std::exception&) {  // the TRUTH does not fit this scenario
     ++status().malformed;
     truth_.reset();
     phase_ = Phase::kResuming;

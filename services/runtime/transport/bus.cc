@@ -130,17 +130,17 @@ Bus::~Bus() {
   if (lcm_ != nullptr) lcm_destroy(lcm_);
 }
 
-void Bus::Secure(const MessageSigner& seal) {
+void Bus::Secure(const MessageSigner& signer) {
   if (url_.starts_with("mpudpm://")) {
     throw InputError(
         "error: --key: with mpudpm nothing filters what reaches LCM's parser; use udpm");
   }
   if (!filtered_) {
     throw InputError(
-        "error: --key: the kernel takes no socket filter, so strangers reach LCM's parser before "
-        "the signature is looked at; `fogline doctor` says more");
+        "error: --key: the kernel takes no socket filter, so messages reach LCM's parser before "
+        "their signature is checked; `fogline doctor` says more");
   }
-  seal_ = seal;
+  signer_ = signer;
 }
 
 Bus::Topic& Bus::TopicOf(std::string_view channel) {
@@ -208,7 +208,7 @@ void Bus::Publish(const Topic& topic, Bytes bytes) {
     throw std::runtime_error(fmt::format("{} takes {} bytes, at most {} fit", topic.channel,
                                          bytes.size(), kMaxMessageBytes));
   }
-  if (seal_) bytes = seal_->Sign(topic.channel, bytes);
+  if (signer_) bytes = signer_->Sign(topic.channel, bytes);
   errno = 0;
   const bool sent = tcpq_ ? tcpq_->Publish(topic.channel, bytes)
                           : lcm_publish(lcm_, topic.channel.c_str(), bytes.data(),
@@ -316,7 +316,7 @@ void Bus::Watch(std::string_view channel, Bytes bytes) {
 }
 
 void Bus::CallHandlers(Topic& topic, Bytes bytes) {
-  if (seal_ || LooksSigned(bytes)) {
+  if (signer_ || LooksSigned(bytes)) {
     const auto verified = Verified(topic, bytes);
     if (!verified) return;
     bytes = *verified;
@@ -330,13 +330,13 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
     ++(unverified_.*kind);
     ++(not_taken_.*kind);
   };
-  if (!seal_) {
+  if (!signer_) {
     // The bytes go to the decoder as they are. It refuses a message with a signature behind its
     // payload. An unsigned payload may by chance end like a signature, and must still be read.
     count(&Unverified::no_key);
     return bytes;
   }
-  const MessageSigner::Opened opened = seal_->Open(topic.channel, bytes);
+  const MessageSigner::Opened opened = signer_->Open(topic.channel, bytes);
   if (opened.verdict == MessageSigner::Verdict::kGood) return opened.payload;
   count(opened.verdict == MessageSigner::Verdict::kNotSigned ? &Unverified::not_signed
                                                              : &Unverified::badly_signed);

@@ -49,8 +49,8 @@ class Bus {
   /// signature.
   /// @throws InputError if the kernel does not filter the messages that reach LCM's parser, which
   ///     runs before the signature is checked: with mpudpm, or if the kernel takes no filter
-  void Secure(const MessageSigner& seal);
-  bool secured() const { return seal_.has_value(); }
+  void Secure(const MessageSigner& signer);
+  bool secured() const { return signer_.has_value(); }
   /// From now on receives messages as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
 
@@ -139,10 +139,9 @@ class Bus {
   int fd_ = -1;
   std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
-  // Where the group is heard and reached as the route leads, which may change; and when it was seen
-  // to last that it is joined there.
+  // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
-  TimePoint joined_{};
+  TimePoint joined_{};  // when a silent bus last renewed its membership
   FailedSends failed_sends_;
   // With memq only this object publishes: waiting_ counts its messages that wait to be handled.
   bool in_memory_;
@@ -151,7 +150,7 @@ class Bus {
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
   Watcher watcher_;            // of all channels, if there is one
   std::exception_ptr parked_;  // an exception of a handler; it may not pass through LCM's C code
-  std::optional<MessageSigner> seal_;
+  std::optional<MessageSigner> signer_;
   std::optional<Faults> faults_;
   Unverified unverified_;
   Unverified not_taken_;

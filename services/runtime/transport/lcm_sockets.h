@@ -56,21 +56,22 @@ bool LoopbackIsUp();
 /// How far a udpm:// URL reaches: only loopback with ttl=0 and loopback up, otherwise the route.
 LcmSockets::Reach ReachOf(const std::string& url);
 
-/// That sockets are in the group of a udpm:// URL on the interface to which its route leads. With
-/// an interface or its last address go its groups, and a route may change.
+/// Keeps sockets in the group of a udpm:// URL, on the interface to which the route to the group
+/// leads. This interface may change. An interface that goes away or loses its last address also
+/// loses its groups.
 class GroupMembership {
  public:
-  /// @param sockets those that LCM has just had join where the route leads
+  /// @param sockets LCM's sockets, which have just joined the group on the interface of the route
   GroupMembership(std::vector<int> sockets, const std::string& url);
-  /// Joins where the route leads now, if that is another interface or the group has gone there, and
-  /// leaves where it was joined before. Says on stderr what is in the way.
+  /// Joins the group on the interface of the present route, if that is another interface or has
+  /// lost the group, and leaves the group on the former one. Prints on stderr why it cannot join.
   void Renew();
 
  private:
   std::vector<int> sockets_;
   std::string group_;
   ip_mreqn joined_{};
-  std::string trouble_;  // as said last
+  std::string trouble_;  // the last warning
 };
 
 }  // namespace fogline::runtime

@@ -91,7 +91,7 @@ int Client::Connect(Duration limit) const {
   close(connection);
   throw std::runtime_error(
       error == ECONNREFUSED
-          ? fmt::format("nobody listens on {}; start fogline-relay there", endpoint_.ToString())
+          ? fmt::format("no process listens on {}; start fogline-relay there", endpoint_.ToString())
           : fmt::format("cannot reach {}: {}", endpoint_.ToString(), std::strerror(error)));
 }
 

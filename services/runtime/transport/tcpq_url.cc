@@ -58,7 +58,8 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
 
 Endpoint ResolveUrl(std::string_view url) {
   const Endpoint endpoint = Resolve(url.substr(kScheme.size()), url);
-  if (endpoint.port == 0) throw InputError(fmt::format("error: {}: nobody listens on port 0", url));
+  if (endpoint.port == 0)
+    throw InputError(fmt::format("error: {}: no process can listen on port 0", url));
   return endpoint;
 }
 

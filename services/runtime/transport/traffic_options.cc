@@ -43,8 +43,8 @@ void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
   const FaultRates rates = ParseFaults(options.faults);
   if (rates.Damage() && options.key_file.empty()) {
     throw InputError(
-        "error: --faults: truncate and flip want --key: without a signature nobody finds out that "
-        "a message was damaged (on a real network UDP's checksum does)");
+        "error: --faults: truncate and flip need --key: without a signature no process notices "
+        "that a message was damaged (on a real network UDP's checksum does)");
   }
   bus.Impair(Faults(rates, role.value_or(Role::kRunner)));
 }

@@ -148,7 +148,7 @@ SigningKey SigningKey::Load(const std::filesystem::path& file) {
   }
   // A script that finds no randomness makes such a key, and an attacker tries it first.
   if (sodium_is_zero(key.secret_.data(), key.secret_.size()) == 1) {
-    throw KeyError(file, "a key of zeros keeps nobody out; `fogline keygen FILE` makes one");
+    throw KeyError(file, "a key of zeros is no secret; `fogline keygen FILE` makes one");
   }
   if (const std::string why = WhyNoSecret(in.fd(), file); !why.empty()) throw KeyError(file, why);
   return key;

@@ -15,7 +15,7 @@ namespace fogline::runtime {
 /// kRingSteps. Then it is on disk, and the recorder answers for it.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
-static_assert(2 * kMaxAhead <= kRingSteps, "there would be steps that nobody answers for");
+static_assert(2 * kMaxAhead <= kRingSteps, "some steps would be neither in a ring nor on disk");
 
 /// Far beyond any run. Arithmetic on steps up to here does not overflow.
 inline constexpr std::int64_t kMaxStep = 1'000'000'000'000;

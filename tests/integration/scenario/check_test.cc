@@ -77,7 +77,7 @@ TEST(BadScenariosTest, AreThereForEveryRule) {
     try {
       LoadScenario(SourceDirectory() / "scenario/bad" / (name + ".json"));
     } catch (const ScenarioError& error) {
-      for (const Diagnostic& mistake : error.mistakes()) rules.push_back(mistake.rule);
+      for (const Diagnostic& diagnostic : error.diagnostics()) rules.push_back(diagnostic.rule);
     }
   }
   for (const char* rule : {"syntax", "too-large", "duplicate-key", "unknown-key", "missing-key",

@@ -64,7 +64,7 @@ TEST(SilentFollowersTest, EachStopsWithinTheLimitsAndTheHostGoesOn) {
   }
 }
 
-TEST(SilentFollowersTest, NobodySilentIsTheLockstepRun) {
+TEST(SilentFollowersTest, WithoutASilentFollowerIsTheLockstepRun) {
   const Scenario scenario = Column();
   world::World lockstep(scenario);
   follower::Follower follower(scenario);

@@ -112,7 +112,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
   Braking braking_{scenario_};
 };
 
-TEST_P(SilentRolesTest, NobodySilentIsTheLockstepRun) {
+TEST_P(SilentRolesTest, WithoutASilentRoleIsTheLockstepRun) {
   metrics::ClosedLoop lockstep(scenario_);
   std::vector<double> commands;
   lockstep.Run(

@@ -68,7 +68,7 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
   }
 }
 
-TEST(AccOnVehicleTest, DoesNotRunAwayFromACarThatSomebodyElseDrives) {
+TEST(AccOnVehicleTest, DoesNotRunAwayWhileThePersonDrives) {
   // GIVEN a gap that is far too small, and a driver who keeps the car at a steady speed
   const AccSection section;
   acc::AccController acc(section, kStep_s, VehicleModel::kLongitudinal);

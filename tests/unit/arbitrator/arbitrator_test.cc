@@ -213,7 +213,7 @@ TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
   EXPECT_EQ(out.mode, arbitration_t::HUMAN) << "both have half: his is the mode";
 }
 
-TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
+TEST(ArbitratorTest, ModeNamesTheSideWithMoreAuthorityDuringATransfer) {
   Scenario scenario = WithPolicy("traded");
   scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
   scenario.arbitrator.transfer.duration_s = 1;
@@ -228,7 +228,7 @@ TEST(ArbitratorTest, ModeIsWhoHasMoreAuthorityWhileItIsUnderWay) {
 
 TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   for (const policies::PolicyRow& row : policies::Policies()) {
-    EXPECT_EQ(arbitrator::Arbitrator::UsesOptionalInput(WithPolicy(row.name)),
+    EXPECT_EQ(arbitrator::Arbitrator::UsesOnDemandInput(WithPolicy(row.name)),
               row.needs_surroundings)
         << row.name;
   }
@@ -244,7 +244,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
   // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
-  arbitrator.SetOptionalInput(truth);
+  arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
 
@@ -286,13 +286,13 @@ class SharedWithTheAskedTest : public testing::Test {
         .mode = TakeOverMode::kRequested, .time = {.mean_s = 1, .std_s = 1e-3}, .recovery_s = 1};
     return scenario;
   }
-  /// One step in which the policy wishes for this share, which is above 0.
-  const arbitration_t& Wishing(double share) {
+  /// One step in which the policy requests this share, which is above 0.
+  const arbitration_t& Requesting(double share) {
     const double doc = 0.2 + 0.6 * share;
     Messages m = Differing(1 + std::log(doc / (1 - doc)) / 10);
     return StepOf(m);
   }
-  const arbitration_t& WishingForNothing() {
+  const arbitration_t& RequestingNothing() {
     Messages m = Differing(0.1);
     return StepOf(m);
   }
@@ -309,46 +309,46 @@ class SharedWithTheAskedTest : public testing::Test {
 };
 
 TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
-  EXPECT_EQ(WishingForNothing().mode, arbitration_t::AUTOMATION);
-  EXPECT_EQ(Wishing(0.1).mode, arbitration_t::REQUEST);
+  EXPECT_EQ(RequestingNothing().mode, arbitration_t::AUTOMATION);
+  EXPECT_EQ(Requesting(0.1).mode, arbitration_t::REQUEST);
   for (int k = 0; k < 11; ++k) {
-    EXPECT_EQ(Wishing(0.1).lambda_human, 0) << "he has not come";
+    EXPECT_EQ(Requesting(0.1).lambda_human, 0) << "he has not come";
     EXPECT_TRUE(arbitrator_.must_ask());
   }
   for (const double share : {0.1, 0.3, 0.7, 0.95, 0.4}) {
-    const arbitration_t& out = Wishing(share);
+    const arbitration_t& out = Requesting(share);
     EXPECT_NEAR(out.lambda_human, share, 1e-12);
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // While he recovers he is there, so he gets the wished share at once: here nothing.
-  EXPECT_EQ(WishingForNothing().lambda_human, 0);
-  EXPECT_NEAR(Wishing(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
+  // While he recovers he is there, so he gets the requested share at once: here nothing.
+  EXPECT_EQ(RequestingNothing().lambda_human, 0);
+  EXPECT_NEAR(Requesting(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
 }
 
-TEST_F(SharedWithTheAskedTest, TheAutomationHasTheWheelBackWhenNoShareIsWishedFor) {
-  for (int k = 0; k < 40; ++k) Wishing(0.2);
-  EXPECT_EQ(Wishing(0.2).mode, arbitration_t::HUMAN) << "recovered, and with a share";
-  EXPECT_EQ(WishingForNothing().mode, arbitration_t::AUTOMATION);
-  EXPECT_EQ(Wishing(0.2).mode, arbitration_t::REQUEST) << "and he must be asked again";
+TEST_F(SharedWithTheAskedTest, TheAutomationHasTheWheelBackWhenNoShareIsRequested) {
+  for (int k = 0; k < 40; ++k) Requesting(0.2);
+  EXPECT_EQ(Requesting(0.2).mode, arbitration_t::HUMAN) << "recovered, and with a share";
+  EXPECT_EQ(RequestingNothing().mode, arbitration_t::AUTOMATION);
+  EXPECT_EQ(Requesting(0.2).mode, arbitration_t::REQUEST) << "and he must be asked again";
 }
 
 TEST_F(SharedWithTheAskedTest, HeDrivesAloneWhereTheAutomationIsOffOrGone) {
-  for (int k = 0; k < 20; ++k) Wishing(0.2);
+  for (int k = 0; k < 20; ++k) Requesting(0.2);
   arbitrator_.SetAutomationThere(false);
-  EXPECT_EQ(Wishing(0.2).lambda_human, 1);
+  EXPECT_EQ(Requesting(0.2).lambda_human, 1);
   arbitrator_.SetAutomationThere(true);
-  EXPECT_NEAR(Wishing(0.2).lambda_human, 0.2, 1e-12);
+  EXPECT_NEAR(Requesting(0.2).lambda_human, 0.2, 1e-12);
 }
 
-TEST_F(SharedWithTheAskedTest, WhoComesLateDrivesAloneForTheRestOfTheRun) {
+TEST_F(SharedWithTheAskedTest, ALateDriverDrivesAloneForTheRestOfTheRun) {
   readiness_ = 0;
-  while (Wishing(0.2).mode != arbitration_t::MRM_COMFORT && step_ < 200) {
+  while (Requesting(0.2).mode != arbitration_t::MRM_COMFORT && step_ < 200) {
   }
   readiness_ = 1;
-  EXPECT_EQ(Wishing(0.2).mode, arbitration_t::RECOVERING);
-  for (int k = 0; k < 50; ++k) ASSERT_EQ(Wishing(0.2).lambda_human, 1);
-  EXPECT_EQ(WishingForNothing().lambda_human, 1);
+  EXPECT_EQ(Requesting(0.2).mode, arbitration_t::RECOVERING);
+  for (int k = 0; k < 50; ++k) ASSERT_EQ(Requesting(0.2).lambda_human, 1);
+  EXPECT_EQ(RequestingNothing().lambda_human, 1);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_F(FailsafeTakeOverTest, GoesOnStoppingWhateverElseIsLost) {
   for (int k = 0; k < 100; ++k) ASSERT_EQ(Step().mode, arbitration_t::MRM_DONE);
 }
 
-TEST_F(FailsafeTakeOverTest, StopsAtOnceWhenTheAutomationIsLostAndNobodyHasBeenAsked) {
+TEST_F(FailsafeTakeOverTest, StopsAtOnceWhenTheAutomationIsLostBeforeARequest) {
   Agree();
   EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
   inputs_.automation.state = InputState::kLost;

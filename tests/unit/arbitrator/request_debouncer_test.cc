@@ -11,35 +11,35 @@ namespace {
 
 constexpr double kThreshold = 0.5;
 
-double Step(arbitrator::RequestDebouncer& steady, double doc) {
-  return steady.Step(policies::Compare(doc, kThreshold), doc);
+double Step(arbitrator::RequestDebouncer& debouncer, double doc) {
+  return debouncer.Step(policies::Compare(doc, kThreshold), doc);
 }
 
 TEST(RequestDebouncerTest, WithoutHysteresisIsTheComparison) {
-  arbitrator::RequestDebouncer steady(TransferSection{}, 0.1);
+  arbitrator::RequestDebouncer debouncer(TransferSection{}, 0.1);
   for (const double doc : {0.0, 0.5, 0.49, 1.0, 0.2}) {
-    EXPECT_EQ(Step(steady, doc), doc >= kThreshold ? 1 : 0);
+    EXPECT_EQ(Step(debouncer, doc), doc >= kThreshold ? 1 : 0);
   }
 }
 
 TEST(RequestDebouncerTest, BandLetsTheAutomationReturnOnlyBelowIt) {
-  arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = 0.2}, 0.1);
-  EXPECT_EQ(Step(steady, 0.49), 0);
-  EXPECT_EQ(Step(steady, 0.5), 1);
-  EXPECT_EQ(Step(steady, 0.31), 1);
-  EXPECT_EQ(Step(steady, 0.29), 0);
-  EXPECT_EQ(Step(steady, 0.49), 0);
+  arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kBand, .band = 0.2}, 0.1);
+  EXPECT_EQ(Step(debouncer, 0.49), 0);
+  EXPECT_EQ(Step(debouncer, 0.5), 1);
+  EXPECT_EQ(Step(debouncer, 0.31), 1);
+  EXPECT_EQ(Step(debouncer, 0.29), 0);
+  EXPECT_EQ(Step(debouncer, 0.49), 0);
 }
 
 // With DoC 0.9 against 0.5, L grows by ln 9 = 2.197 in a step. The third step exceeds ln 99 =
 // 4.595.
 TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
-  arbitrator::RequestDebouncer steady(
+  arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
-  for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(steady, 0.9), expected);
+  for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(debouncer, 0.9), expected);
   // The last step above already belongs to the next test. Three times -ln 9 leaves -4.39, so a
   // fourth is needed.
-  for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(steady, 0.1), expected);
+  for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(debouncer, 0.1), expected);
 }
 
 TEST(RequestDebouncerTest, SprtDecidesWithWaldsBounds) {
@@ -52,43 +52,43 @@ TEST(RequestDebouncerTest, SprtDecidesWithWaldsBounds) {
 }
 
 TEST(RequestDebouncerTest, SprtStaysFiniteWhereDocOrThresholdIsRoundedToOneOrNought) {
-  arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kSprt}, 0.1);
-  EXPECT_EQ(steady.Step(policies::Compare(1, 1), 1), 0) << "no evidence either way";
-  EXPECT_EQ(steady.Step(policies::Compare(1, 0), 1), 1);
-  EXPECT_EQ(steady.Step(policies::Compare(0, 1), 0), 0);
+  arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kSprt}, 0.1);
+  EXPECT_EQ(debouncer.Step(policies::Compare(1, 1), 1), 0) << "no evidence either way";
+  EXPECT_EQ(debouncer.Step(policies::Compare(1, 0), 1), 1);
+  EXPECT_EQ(debouncer.Step(policies::Compare(0, 1), 0), 0);
 }
 
 TEST(RequestDebouncerTest, StaysAtLeastItsTime) {
-  arbitrator::RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
-  EXPECT_EQ(Step(steady, 1), 1) << "nothing to wait for before the first transfer";
-  EXPECT_EQ(Step(steady, 0), 1);
-  EXPECT_EQ(Step(steady, 0), 1);
-  EXPECT_EQ(Step(steady, 0), 0);
-  EXPECT_EQ(Step(steady, 1), 0);
+  arbitrator::RequestDebouncer debouncer({.min_dwell_s = 0.3}, 0.1);
+  EXPECT_EQ(Step(debouncer, 1), 1) << "nothing to wait for before the first transfer";
+  EXPECT_EQ(Step(debouncer, 0), 1);
+  EXPECT_EQ(Step(debouncer, 0), 1);
+  EXPECT_EQ(Step(debouncer, 0), 0);
+  EXPECT_EQ(Step(debouncer, 1), 0);
 }
 
-TEST(RequestDebouncerTest, TakesTheWishOfTheMomentWhenTheStayIsOver) {
-  arbitrator::RequestDebouncer steady({.min_dwell_s = 0.3}, 0.1);
-  Step(steady, 1);
-  Step(steady, 0);
-  Step(steady, 0);
-  EXPECT_EQ(Step(steady, 1), 1) << "the conflict is back";
+TEST(RequestDebouncerTest, TakesTheRequestOfTheMomentWhenTheStayIsOver) {
+  arbitrator::RequestDebouncer debouncer({.min_dwell_s = 0.3}, 0.1);
+  Step(debouncer, 1);
+  Step(debouncer, 0);
+  Step(debouncer, 0);
+  EXPECT_EQ(Step(debouncer, 1), 1) << "the conflict is back";
 }
 
-TEST(RequestDebouncerTest, LetsAFirmWishPass) {
-  arbitrator::RequestDebouncer steady(
+TEST(RequestDebouncerTest, LetsAFirmRequestPass) {
+  arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kBand, .band = 0.5, .min_dwell_s = 60}, 0.1);
-  Step(steady, 1);
-  EXPECT_EQ(steady.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
+  Step(debouncer, 1);
+  EXPECT_EQ(debouncer.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
 }
 
 // Otherwise no DoC would be low enough for a band as wide as the threshold.
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
-      arbitrator::RequestDebouncer steady({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
+      arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kBand, .band = band}, 0.1);
       const auto step = [&](double doc) {
-        return steady.Step(policies::Compare(doc, threshold), doc);
+        return debouncer.Step(policies::Compare(doc, threshold), doc);
       };
       EXPECT_EQ(step(threshold), 1);
       const double lower = threshold - std::min(band, threshold / 2);
@@ -100,13 +100,13 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
 
 // ln(0.99/0.01) = 4.595: a posterior of 0.99 is this much evidence against 0.5, at any time.
 TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
-  arbitrator::RequestDebouncer steady(
+  arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1, true);
-  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.98), 0);
-  EXPECT_EQ(Step(steady, 0.991), 1);
-  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(steady, 0.02), 1);
-  EXPECT_EQ(Step(steady, 0.009), 0);
-  EXPECT_EQ(steady.Step(policies::Compare(0.991, 0.9), 0.991), 0) << "against 0.9 it is less";
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(debouncer, 0.98), 0);
+  EXPECT_EQ(Step(debouncer, 0.991), 1);
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(Step(debouncer, 0.02), 1);
+  EXPECT_EQ(Step(debouncer, 0.009), 0);
+  EXPECT_EQ(debouncer.Step(policies::Compare(0.991, 0.9), 0.991), 0) << "against 0.9 it is less";
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace fogline {
 namespace {
 
-class WholeFileTest : public testing::Test {
+class AtomicFileTest : public testing::Test {
  protected:
   static std::string Content(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -44,7 +44,7 @@ class WholeFileTest : public testing::Test {
   const std::string file_ = folder_.File("result.csv");
 };
 
-TEST_F(WholeFileTest, HasItsNameOnlyWhenItIsFinished) {
+TEST_F(AtomicFileTest, HasItsNameOnlyWhenItIsFinished) {
   {
     AtomicFile file(file_);
     file.Write("half");
@@ -57,13 +57,13 @@ TEST_F(WholeFileTest, HasItsNameOnlyWhenItIsFinished) {
   EXPECT_EQ(Content(file_), "whole");
 }
 
-TEST_F(WholeFileTest, ReplacesNoFolder) {
+TEST_F(AtomicFileTest, ReplacesNoFolder) {
   const std::string folder = folder_.path().string();
   EXPECT_EQ(ErrorOf([&] { AtomicFile file(folder); }),
             folder + ": error: cannot write: it is a folder");
 }
 
-TEST_F(WholeFileTest, FollowsNoLinkThatLiesWhereItWrites) {
+TEST_F(AtomicFileTest, FollowsNoLinkThatLiesWhereItWrites) {
   // GIVEN links with the names that an attacker could predict
   const std::string precious = folder_.File("precious");
   std::ofstream(precious) << "precious";
@@ -77,7 +77,7 @@ TEST_F(WholeFileTest, FollowsNoLinkThatLiesWhereItWrites) {
   EXPECT_EQ(Content(file_), "page");
 }
 
-TEST_F(WholeFileTest, TwoAtOnceEachWriteAWholeFile) {
+TEST_F(AtomicFileTest, TwoAtOnceEachWriteAWholeFile) {
   AtomicFile one(file_);
   AtomicFile two(file_);
   one.Write("one, ");
@@ -90,7 +90,7 @@ TEST_F(WholeFileTest, TwoAtOnceEachWriteAWholeFile) {
   EXPECT_EQ(Content(file_), "two, whole");
 }
 
-TEST_F(WholeFileTest, HasTheRightsOfAnyNewFile) {
+TEST_F(AtomicFileTest, HasTheRightsOfAnyNewFile) {
   const mode_t before = umask(027);
   {
     AtomicFile file(file_);
@@ -100,7 +100,7 @@ TEST_F(WholeFileTest, HasTheRightsOfAnyNewFile) {
   EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0640));
 }
 
-TEST_F(WholeFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
+TEST_F(AtomicFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
   std::filesystem::create_directory(folder_.File("elsewhere"));
   const std::string target = folder_.File("elsewhere/target.csv");
   std::ofstream(target) << "old";
@@ -117,7 +117,7 @@ TEST_F(WholeFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
   EXPECT_THAT(ErrorOf([&] { AtomicFile file(file_); }), testing::EndsWith(", which is not there"));
 }
 
-TEST_F(WholeFileTest, HandsEverythingToADeviceAtTheEnd) {
+TEST_F(AtomicFileTest, HandsEverythingToADeviceAtTheEnd) {
   AtomicFile nothing("/dev/null");
   nothing.Write("page");
   nothing.Finish();
@@ -127,7 +127,7 @@ TEST_F(WholeFileTest, HandsEverythingToADeviceAtTheEnd) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
-TEST_F(WholeFileTest, HandsEverythingToThePipeThatAProcessReads) {
+TEST_F(AtomicFileTest, HandsEverythingToThePipeThatAProcessReads) {
   const std::string pipe = folder_.File("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(ErrorOf([&] { AtomicFile file(pipe); }),
@@ -147,7 +147,7 @@ TEST_F(WholeFileTest, HandsEverythingToThePipeThatAProcessReads) {
   close(reader);
 }
 
-TEST_F(WholeFileTest, GoesOnBehindWhatAnOpenDescriptorHasWritten) {
+TEST_F(AtomicFileTest, GoesOnBehindWhatAnOpenDescriptorHasWritten) {
   const int out = open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   ASSERT_EQ(write(out, "before ", 7), 7);
   {
@@ -160,7 +160,7 @@ TEST_F(WholeFileTest, GoesOnBehindWhatAnOpenDescriptorHasWritten) {
   EXPECT_EQ(Content(file_), "before page after");
 }
 
-TEST_F(WholeFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
+TEST_F(AtomicFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
   const auto is_page = [](const std::filesystem::path& file) {
     return Content(file.string()).starts_with("page");
   };
@@ -177,7 +177,7 @@ TEST_F(WholeFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
   EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/dev/null", "--out", false, "page", is_page); }), "");
 }
 
-TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
+TEST_F(AtomicFileTest, IsTriedBeforehandWithoutATrace) {
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
   EXPECT_TRUE(IsEmpty());
   std::ofstream(file_) << "of before";
@@ -188,7 +188,7 @@ TEST_F(WholeFileTest, IsTriedBeforehandWithoutATrace) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
 
-TEST_F(WholeFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
+TEST_F(AtomicFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
   const std::string slip = folder_.File("nonexist/dir");
   const std::string none = ": error: --out: there is no folder " + slip;
   EXPECT_EQ(ErrorOf([&] { RequireWritable(slip + "/result.csv", "--out"); }),
@@ -202,14 +202,14 @@ TEST_F(WholeFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
 
-TEST_F(WholeFileTest, IsTriedBeforehandWithoutTouchingTheHalfThatSomebodyElseWrites) {
+TEST_F(AtomicFileTest, IsTriedBeforehandWithoutTouchingTheHalfThatAnotherProcessWrites) {
   const std::string part = file_ + ".part";
   std::ofstream(part) << "half of another's";
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
   EXPECT_EQ(Content(part), "half of another's");
 }
 
-TEST_F(WholeFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
+TEST_F(AtomicFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
   std::ofstream(file_) << "no folder";
   const std::string folder = folder_.path().string();
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_ + "/below", "--out"); }),

@@ -204,7 +204,7 @@ class AwarenessOfTheDriverTest : public testing::Test {
   }
   /// His readiness in the next step, after he hears this HOST_COMMAND.
   double ReadinessAfter(const arbitration_t& host) {
-    driver_.SetOptionalInput(host);
+    driver_.SetOnDemandInput(host);
     return driver_.Step(TruthOf(step_++)).readiness;
   }
 
@@ -295,14 +295,14 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
   }
 }
 
-TEST(DriverTest, DemandsToKnowWhoDrivesOnlyIfHisAwarenessDependsOnIt) {
+TEST(DriverTest, UsesItsOnDemandInputOnlyIfItsAwarenessDependsOnIt) {
   Scenario scenario;
-  EXPECT_FALSE(driver::Driver::UsesOptionalInput(scenario));
+  EXPECT_FALSE(driver::Driver::UsesOnDemandInput(scenario));
   scenario.human.misjudges = true;
   scenario.human.sight = Sight::kFog;
-  EXPECT_FALSE(driver::Driver::UsesOptionalInput(scenario));
+  EXPECT_FALSE(driver::Driver::UsesOnDemandInput(scenario));
   scenario.human.loses_awareness = true;
-  EXPECT_TRUE(driver::Driver::UsesOptionalInput(scenario));
+  EXPECT_TRUE(driver::Driver::UsesOnDemandInput(scenario));
 }
 
 }  // namespace

@@ -139,12 +139,12 @@ TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
   }
 }
 
-TEST(CastTest, IsThePapersWithoutASection) {
-  const follower::DriverAssignment part = follower::AssignmentOf(Scenario(), 0);
-  EXPECT_TRUE(part.has_acc);
+TEST(DriverAssignmentTest, IsThePapersWithoutASection) {
+  const follower::DriverAssignment assignment = follower::AssignmentOf(Scenario(), 0);
+  EXPECT_TRUE(assignment.has_acc);
 }
 
-TEST(CastTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
+TEST(DriverAssignmentTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
   Scenario scenario = WithFollowers(4, FollowerDriver::kHuman);
   scenario.followers.style = FollowerStyle::kCautious;
   scenario.followers.cars = {{FollowerDriver::kAcc, FollowerStyle::kNormal},
@@ -155,7 +155,7 @@ TEST(CastTest, TakesTheFirstCarsFromTheListAndTheOthersFromTheSection) {
   EXPECT_EQ(follower::AssignmentOf(scenario, 3).style, models::Style::kCautious);
 }
 
-TEST(CastTest, DrawsInProportionToTheShares) {
+TEST(DriverAssignmentTest, DrawsInProportionToTheShares) {
   Scenario scenario = WithFollowers(kMaxFollowers, FollowerDriver::kDrawn);
   scenario.followers.style = FollowerStyle::kDrawn;
   scenario.followers.acc_share = 0.25;
@@ -165,9 +165,9 @@ TEST(CastTest, DrawsInProportionToTheShares) {
   int aggressive = 0;
   for (scenario.seed = 1; scenario.seed <= kSeeds; ++scenario.seed) {
     for (std::size_t car = 0; car < kMaxFollowers; ++car) {
-      const follower::DriverAssignment part = follower::AssignmentOf(scenario, car);
-      acc += part.has_acc ? 1 : 0;
-      aggressive += part.style == models::Style::kAggressive ? 1 : 0;
+      const follower::DriverAssignment assignment = follower::AssignmentOf(scenario, car);
+      acc += assignment.has_acc ? 1 : 0;
+      aggressive += assignment.style == models::Style::kAggressive ? 1 : 0;
     }
   }
   // Of 6,400 cars a quarter and three fifths. Four standard deviations are 139 and 157.
@@ -175,7 +175,7 @@ TEST(CastTest, DrawsInProportionToTheShares) {
   EXPECT_NEAR(aggressive, 3840, 157);
 }
 
-TEST(CastTest, DrawsNobodyWithoutAShare) {
+TEST(DriverAssignmentTest, DrawsNoDriverOfAKindWithoutAShare) {
   Scenario scenario = WithFollowers(kMaxFollowers, FollowerDriver::kDrawn);
   for (const double share : {0.0, 1.0}) {
     scenario.followers.acc_share = share;

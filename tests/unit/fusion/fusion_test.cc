@@ -310,7 +310,7 @@ TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
 
 TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
   for (const policies::PolicyRow& row : policies::Policies()) {
-    EXPECT_EQ(fusion::Fusion::UsesOptionalInput(WithPolicy(row.name)), row.name == "oracle")
+    EXPECT_EQ(fusion::Fusion::UsesOnDemandInput(WithPolicy(row.name)), row.name == "oracle")
         << row.name;
   }
   fusion::Fusion fusion(WithPolicy("oracle"));
@@ -319,7 +319,7 @@ TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
   for (int k = 0; k < 20; ++k) {
     Messages m = At(k, 31);
     m.lidar.range_m = 29.9;
-    fusion.SetOptionalInput(truth);
+    fusion.SetOnDemandInput(truth);
     const track_t& track = Step(fusion, m);
     EXPECT_EQ(track.state[0], 29.9);
     EXPECT_EQ(track.usage[2], track_t::USED);

@@ -166,7 +166,7 @@ TEST_F(LogSealTest, ShowsWhatWasAddedBehindIt) {
   EXPECT_TRUE(Read(log_).run.altered);
 }
 
-TEST_F(LogSealTest, HoldsInACopyWhoseEventsHaveOtherTimes) {
+TEST_F(LogSealTest, HoldsInACopyWithOtherEventTimes) {
   SealIt();
   // GIVEN the log as lcm-logger records it while lcm-logplayer plays it
   const std::string copy = folder_.File("copy");
@@ -223,7 +223,7 @@ TEST_F(LogSealTest, IsSignedWithAKeyAndWithNoOther) {
             log::SealSignature::kWrong);
 }
 
-TEST_F(LogSealTest, MadeAnewWithoutTheKeyIsNotSigned) {
+TEST_F(LogSealTest, MadeWithoutTheKeyIsNotSigned) {
   runtime::SigningKey::Create(folder_.File("key"));
   const runtime::SigningKey key = runtime::SigningKey::Load(folder_.File("key"));
   SealIt();

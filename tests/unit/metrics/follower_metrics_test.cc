@@ -51,7 +51,7 @@ TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
   metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
-  EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "nobody closes in";
+  EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "no car closes in";
   // WHEN the first closes in on the host with 5 m/s, and the second on the first with 2 m/s
   truth.follower_speed_mps = {25, 27};
   accumulator.Add(truth, SafeDistances(0, 0));

@@ -30,7 +30,7 @@ TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
   for (const double sum : sums) EXPECT_NEAR(sum / kDraws, 1, tolerance);
 }
 
-TEST(ResamplingTest, IsTheSameWhoeverDrawsInWhateverOrder) {
+TEST(ResamplingTest, IsTheSameInWhateverOrderItIsDrawn) {
   std::vector<double> first;
   std::vector<double> again;
   study::Resampling(100, kTest).Draw(3, first);

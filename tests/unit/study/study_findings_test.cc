@@ -7,7 +7,7 @@
 namespace fogline {
 namespace {
 
-TEST(DifferenceTextTest, SaysMoreLessOrThatNobodyCanTell) {
+TEST(DifferenceTextTest, SaysMoreLessOrUndecided) {
   EXPECT_EQ(study::DifferenceText({.n = 9, .mean = 1.5, .deviation = 1, .low = 1, .high = 2},
                                   "points", 1, " than before"),
             "1.5 [1.0, 2.0] points more than before");

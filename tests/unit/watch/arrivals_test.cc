@@ -51,7 +51,7 @@ TEST(ArrivalsTest, SaysNothingOfGapsThatItHasNotSeen) {
   EXPECT_FALSE(view.jitter_s);
 }
 
-TEST(ArrivalsTest, BeginsEveryIntervalAnewButTheCount) {
+TEST(ArrivalsTest, StartsOverInEachIntervalExceptTheCount) {
   watch::Arrivals arrivals;
   for (int i = 0; i < 10; ++i) arrivals.Add(50, kBegin + milliseconds(i));
   arrivals.Observe(kBegin + kSecond, kSecond);

@@ -71,7 +71,7 @@ TEST_F(TrafficStatisticsTest, ShowsRunsApart) {
   EXPECT_TRUE(view.others.empty());
 }
 
-TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatSomebodyMaySend) {
+TEST_F(TrafficStatisticsTest, TakesAnyProcessorTimeThatAMessageMayHave) {
   // GIVEN two readings with a difference that does not fit into 64 bits
   status_t status = Status("radar", 1, 1);
   status.cpu_ms = std::numeric_limits<std::int64_t>::min();
@@ -92,8 +92,8 @@ TEST_F(TrafficStatisticsTest, CountsNamesThatItDoesNotKnow) {
 }
 
 TEST_F(TrafficStatisticsTest, ShowsSignedMessagesWithoutAKey) {
-  runtime::MessageSigner seal(runtime::SigningKey(runtime::SigningKey::Secret{}), std::nullopt);
-  const runtime::Bytes radar = seal.Sign("RADAR", Radar(kRun, 3));
+  runtime::MessageSigner signer(runtime::SigningKey(runtime::SigningKey::Secret{}), std::nullopt);
+  const runtime::Bytes radar = signer.Sign("RADAR", Radar(kRun, 3));
   Add("RADAR", {radar.begin(), radar.end()});
   const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);

@@ -155,7 +155,7 @@ TEST(WorldVehicleTest, SubstepsChangeNothingButRoundingForVehiclesToo) {
   EXPECT_EQ(a.truth().host_speed_mps, 0);
 }
 
-TEST(WorldVehicleTest, BeginsAnewWithEveryRun) {
+TEST(WorldVehicleTest, StartsOverWithEveryRun) {
   world::World world(WithVehicles());
   std::vector<double> speeds[2];
   for (std::vector<double>& run : speeds) {

@@ -109,18 +109,18 @@ TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   Follower(kOk, &follower_);
   now_.follower_acceleration_mps2 = {-1.5};
   // WHEN messages come in time but contain no command for the car
-  const follower_command_t nobody{};
+  const follower_command_t empty{};
   // THEN the last command holds as long as a stale one would, and then the car stops
-  EXPECT_EQ(Follower(kOk, &nobody), -1.5);
+  EXPECT_EQ(Follower(kOk, &empty), -1.5);
   EXPECT_EQ(fallback_.follower_state(), kStale);
-  EXPECT_NEAR(Follower(kOk, &nobody), -1.5 - 0.2, 1e-12);
+  EXPECT_NEAR(Follower(kOk, &empty), -1.5 - 0.2, 1e-12);
   EXPECT_TRUE(fallback_.follower_in_minimal_risk());
 }
 
 TEST_F(VehicleFallbackTest, ForgivesACommandForNoCarWhenTheNextOneIsForIt) {
-  const follower_command_t nobody{};
+  const follower_command_t empty{};
   for (int k = 0; k < 20; ++k) {
-    Follower(kOk, &nobody);
+    Follower(kOk, &empty);
     EXPECT_EQ(Follower(kOk, &follower_), -1.5);
   }
   EXPECT_EQ(fallback_.follower_state(), kOk);

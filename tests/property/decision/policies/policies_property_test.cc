@@ -107,8 +107,8 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
     double previous = 0;
     for (std::int64_t k = 0; k < 100; ++k) {
       in.Next(draw, k);
-      arbitrator.SetOptionalInput(in.truth);
-      fusion.SetOptionalInput(in.truth);
+      arbitrator.SetOnDemandInput(in.truth);
+      fusion.SetOnDemandInput(in.truth);
       const track_t& track = fusion.Step(in.ego, in.radar, in.lidar);
       const arbitration_t& out =
           arbitrator.Step(in.ego, in.radar, in.lidar, track, in.automation, in.driver);
@@ -147,8 +147,8 @@ TEST_P(EveryPolicyProperty, DecidesTheSameAgain) {
       Inputs in;
       for (std::int64_t k = 0; k < 50; ++k) {
         in.Next(draw, k);
-        arbitrator.SetOptionalInput(in.truth);
-        fusion.SetOptionalInput(in.truth);
+        arbitrator.SetOnDemandInput(in.truth);
+        fusion.SetOnDemandInput(in.truth);
         const track_t& track = fusion.Step(in.ego, in.radar, in.lidar);
         decisions.push_back(
             arbitrator.Step(in.ego, in.radar, in.lidar, track, in.automation, in.driver));
@@ -233,12 +233,12 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
   for (int run = 0; run < 200; ++run) {
     TransferSection section = AnyTransfer(draw);
     const double step_s = draw.Uniform(0.02, 0.2);
-    arbitrator::RequestDebouncer steady(section, step_s);
+    arbitrator::RequestDebouncer debouncer(section, step_s);
     double previous = 0;
     std::optional<int> last;
     for (int k = 0; k < 300; ++k) {
       const double doc = draw.Uniform(0, 1);
-      const double wanted = steady.Step(policies::Compare(doc, draw.Uniform(0.4, 0.6)), doc);
+      const double wanted = debouncer.Step(policies::Compare(doc, draw.Uniform(0.4, 0.6)), doc);
       ASSERT_TRUE(wanted == 0 || wanted == 1);
       if (wanted != previous) {
         if (last) {
@@ -263,19 +263,19 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     const Random random(14, Stream::kRadar);
     int errors = 0;
     for (int test = 0; test < kTests; ++test) {
-      arbitrator::RequestDebouncer steady(
+      arbitrator::RequestDebouncer debouncer(
           {.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha}, 0.1);
       // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN it
       // decides for the human in at most a share alpha of the cases
       for (int k = 0; k < 60; ++k) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));
-        const double before = steady.evidence();
-        if (steady.Step(policies::Compare(doc, 0.5), doc) == 1) {
+        const double before = debouncer.evidence();
+        if (debouncer.Step(policies::Compare(doc, 0.5), doc) == 1) {
           ++errors;
           break;
         }
-        if (before != 0 && steady.evidence() == 0) break;  // decided for the automation
+        if (before != 0 && debouncer.evidence() == 0) break;  // decided for the automation
       }
     }
     // Wald's bound is alpha/(1 - beta); four standard deviations of the count are added.

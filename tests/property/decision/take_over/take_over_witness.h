@@ -53,8 +53,8 @@ inline Scenario AnyScenario(Dice& dice) {
   return scenario;
 }
 
-/// Random inputs of the state machine: offers, wishes and cars ahead, and a car of its own. The
-/// brake of this car may fail for a while.
+/// Random inputs of the state machine: offers, engagement requests and cars ahead, and a car of its
+/// own. The brake of this car may fail for a while.
 class Events {
  public:
   explicit Events(Dice& dice, double step_s)

@@ -123,7 +123,7 @@ double Sigmoid(double progress) {
   return (logistic(10 * (progress - 0.5)) - logistic(-5.0)) / (logistic(5.0) - logistic(-5.0));
 }
 
-/// The human's authority by definition, from the time since the wish last changed.
+/// The human's authority by definition, from the time since the request last changed.
 class Ramp {
  public:
   explicit Ramp(const Scenario& scenario)
@@ -159,8 +159,8 @@ class Ramp {
   int steps_ = 0;
 };
 
-/// The command by definition, from the mixed offers. Each change of the wish starts the limit; it
-/// ends when the command has caught up with the offers.
+/// The command by definition, from the mixed offers. Each change of the request starts the limit;
+/// it ends when the command has caught up with the offers.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)

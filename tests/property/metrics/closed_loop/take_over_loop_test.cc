@@ -90,7 +90,7 @@ class TakeOverLoopTest : public testing::Test {
   }
 };
 
-TEST_F(TakeOverLoopTest, KeepsTheRulesWhoeverComes) {
+TEST_F(TakeOverLoopTest, KeepsTheRulesForEveryDriver) {
   int requests = 0;
   int manoeuvres = 0;
   for (std::int64_t seed = 1; seed <= 10; ++seed) {
@@ -177,7 +177,7 @@ TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   }
 }
 
-TEST_F(TakeOverLoopTest, StandsAtTheEndIfNobodyComes) {
+TEST_F(TakeOverLoopTest, StandsAtTheEndIfTheDriverDoesNotCome) {
   Scenario scenario = Paper();
   scenario.arbitrator.take_over.absent_probability = 1;
   const Driven driven = Drive(scenario);

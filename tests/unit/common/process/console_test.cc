@@ -66,9 +66,9 @@ int InChild(int standard_error, const std::function<int()>& run) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-class DiagnosticsTest : public testing::TestWithParam<Ends (*)()> {};
+class ConsoleTest : public testing::TestWithParam<Ends (*)()> {};
 
-TEST_P(DiagnosticsTest, NoticesAreDroppedWhereThereIsNoRoomAndTheNextOneSaysSo) {
+TEST_P(ConsoleTest, NoticesAreDroppedWhereThereIsNoRoomAndTheNextOneSaysSo) {
   const Ends ends = GetParam()();
   const int code = InChild(ends.in, [&] {
     const std::string long_line(1000, 'x');
@@ -83,7 +83,7 @@ TEST_P(DiagnosticsTest, NoticesAreDroppedWhereThereIsNoRoomAndTheNextOneSaysSo) 
   EXPECT_THAT(rest, EndsWith("\nthe end\n"));
 }
 
-TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderThatIsSlow) {
+TEST_P(ConsoleTest, AComplaintWaitsForAReaderThatIsSlow) {
   const Ends ends = GetParam()();
   // GIVEN a reader that begins only when the pipe is full
   const std::string line(1000, 'x');
@@ -106,7 +106,7 @@ TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderThatIsSlow) {
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }
 
-TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
+TEST_P(ConsoleTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
   const Ends ends = GetParam()();
   const Ends told = Pipe();
   const pid_t writer = fork();
@@ -134,7 +134,7 @@ TEST_P(DiagnosticsTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
   EXPECT_THAT(text.substr(std::max<std::size_t>(text.size(), 20) - 20), EndsWith(" the error\n"));
 }
 
-TEST_P(DiagnosticsTest, NothingIsChangedForOtherProcessesThatHaveTheSameDescription) {
+TEST_P(ConsoleTest, NothingIsChangedForOtherProcessesThatHaveTheSameDescription) {
   const Ends ends = GetParam()();
   InChild(ends.in, [] {
     Notice("a line");
@@ -144,7 +144,7 @@ TEST_P(DiagnosticsTest, NothingIsChangedForOtherProcessesThatHaveTheSameDescript
   EXPECT_EQ(Read(ends.out), "a line\n");
 }
 
-TEST_P(DiagnosticsTest, ALineWithoutAReaderEndsNoProcess) {
+TEST_P(ConsoleTest, ALineWithoutAReaderEndsNoProcess) {
   const Ends ends = GetParam()();
   close(ends.out);
   EXPECT_EQ(InChild(ends.in,
@@ -157,7 +157,7 @@ TEST_P(DiagnosticsTest, ALineWithoutAReaderEndsNoProcess) {
             7);
 }
 
-INSTANTIATE_TEST_SUITE_P(To, DiagnosticsTest, testing::Values(Pipe, Sockets),
+INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
                          [](const auto& ends) { return ends.index == 0 ? "Pipe" : "Socket"; });
 
 /// Says something in the background of a terminal that stops whatever writes there (stty tostop).
@@ -182,7 +182,7 @@ int StatusInBackground(const char* terminal) {
   return status;
 }
 
-TEST(DiagnosticsTerminalTest, AProcessInTheBackgroundIsNotStopped) {
+TEST(ConsoleTerminalTest, AProcessInTheBackgroundIsNotStopped) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
@@ -199,7 +199,7 @@ TEST(DiagnosticsTerminalTest, AProcessInTheBackgroundIsNotStopped) {
   close(terminal);
 }
 
-TEST(DiagnosticsTextTest, WhatATerminalWouldObeyIsEscaped) {
+TEST(ConsoleTextTest, WhatATerminalWouldObeyIsEscaped) {
   const Ends ends = Pipe();
   InChild(ends.in, [] {
     Notice("\x1b[31mred\xe2\x80\xae\nsecond line");

@@ -92,7 +92,7 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
   }
 }
 
-TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
+TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
        {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
@@ -100,7 +100,7 @@ TEST(PoliciesTest, KnowsWhoseSayIsWanted) {
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
     };
-    EXPECT_EQ(row.trusts, is({"isolate", "oracle", "availability"})) << row.name;
+    EXPECT_EQ(row.selects_sensors, is({"isolate", "oracle", "availability"})) << row.name;
     EXPECT_EQ(row.needs_true_gap, is({"oracle"})) << row.name;
     EXPECT_EQ(row.needs_surroundings, is({"adaptive", "bayes", "availability"})) << row.name;
     EXPECT_EQ(row.shares, is({"blend"})) << row.name;
@@ -139,10 +139,10 @@ TEST(PoliciesTest, NoneIsolateAndOracleStayAutomatedWhateverTheConflict) {
   Situation situation;
   situation.doc = 1;
   for (const char* policy : {"none", "isolate", "oracle"}) {
-    const policies::EngagementRequest wish = Decide(policy, situation);
-    EXPECT_EQ(wish.lambda_human, 0) << policy;
-    EXPECT_EQ(wish.threshold, 0.5) << policy;
-    EXPECT_TRUE(wish.firm) << policy;
+    const policies::EngagementRequest request = Decide(policy, situation);
+    EXPECT_EQ(request.lambda_human, 0) << policy;
+    EXPECT_EQ(request.threshold, 0.5) << policy;
+    EXPECT_TRUE(request.firm) << policy;
   }
 }
 
@@ -159,10 +159,10 @@ TEST(PoliciesTest, BlendSharesInProportionToTheConflict) {
   Situation situation;
   for (const auto& [doc, lambda] : {std::pair{0.1, 0.0}, {0.2, 0.0}, {0.5, 0.5}, {0.9, 1.0}}) {
     situation.doc = doc;
-    const policies::EngagementRequest wish = Decide("blend", situation);
-    EXPECT_NEAR(wish.lambda_human, lambda, 1e-15) << doc;
-    EXPECT_EQ(wish.threshold, 0.5);
-    EXPECT_TRUE(wish.firm);
+    const policies::EngagementRequest request = Decide("blend", situation);
+    EXPECT_NEAR(request.lambda_human, lambda, 1e-15) << doc;
+    EXPECT_EQ(request.threshold, 0.5);
+    EXPECT_TRUE(request.firm);
   }
 }
 
@@ -259,8 +259,8 @@ TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   EXPECT_EQ(Decide("availability", driving).lambda_human, 1) << "he is there";
   Situation calm = followed(20);
   calm.doc = 0.4;
-  EXPECT_EQ(Decide("availability", calm).lambda_human, 0) << "nobody calls him";
-  EXPECT_EQ(Decide("availability", Situation()).lambda_human, 1) << "nobody behind";
+  EXPECT_EQ(Decide("availability", calm).lambda_human, 0) << "DoC below the threshold";
+  EXPECT_EQ(Decide("availability", Situation()).lambda_human, 1) << "no car behind";
 }
 
 // ---- in the fusion ------------------------------------------------------------------------------
@@ -294,14 +294,14 @@ TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
   }
 }
 
-TEST(PoliciesTest, IsolateDropsNobodyWithoutAWitnessAndNeverBoth) {
+TEST(PoliciesTest, IsolateDropsNoSensorWithoutAWitnessAndNeverBoth) {
   conflict::Evidence alone = kLidarShort;
   alone.prediction = {};
   EXPECT_EQ(SelectSensors("isolate", {alone, {}}), kBoth);
   conflict::Evidence both_off = kLidarShort;
   both_off.radar.range_m = 80;
-  const policies::SensorSelection trust = SelectSensors("isolate", {both_off, {}});
-  EXPECT_TRUE(trust.radar || trust.lidar);
+  const policies::SensorSelection selection = SelectSensors("isolate", {both_off, {}});
+  EXPECT_TRUE(selection.radar || selection.lidar);
 }
 
 TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
@@ -310,9 +310,9 @@ TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
     scenario.arbitrator.blame = static_cast<BlameChoice>(&row - conflict::BlameMeasures().data());
     scenario.arbitrator.blame_threshold = 0.6;
     const auto policy = policies::RowOf(policies::FindPolicy("isolate").value()).make(scenario);
-    policies::SensorSelection trust;
-    for (int i = 0; i < 5; ++i) trust = policy->SelectSensors({kLidarShort, {}});
-    EXPECT_EQ(trust, kRadarAlone) << row.name;
+    policies::SensorSelection selection;
+    for (int i = 0; i < 5; ++i) selection = policy->SelectSensors({kLidarShort, {}});
+    EXPECT_EQ(selection, kRadarAlone) << row.name;
   }
 }
 
@@ -332,7 +332,7 @@ constexpr policies::PolicyRow kExample =
 
 TEST(ExamplePolicyTest, IsAPolicyLikeAnyOther) {
   const auto policy = kExample.make({});
-  EXPECT_FALSE(kExample.trusts);
+  EXPECT_FALSE(kExample.selects_sensors);
   Situation situation;
   situation.doc = 0.1;
   EXPECT_EQ(policy->Decide(situation.View()).lambda_human, 1) << "no track";

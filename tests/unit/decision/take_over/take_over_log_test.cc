@@ -101,7 +101,7 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
   EXPECT_THAT(log.requests(), IsEmpty());
 }
 
-TEST(TakeOverLogTest, DoesNotCountAnInputOfADriverWhomNobodyAskedForTheLastRequest) {
+TEST(TakeOverLogTest, DoesNotCountAnUnrequestedInputForTheLastRequest) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
   Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed

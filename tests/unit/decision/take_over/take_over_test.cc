@@ -112,7 +112,7 @@ TEST_F(TakeOverTest, EscalatesAfterFourSeconds) {
   EXPECT_EQ(state(), kHandover);
 }
 
-TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestThatNobodyAnswers) {
+TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestWithoutAnAnswer) {
   Begin(Absent());
   Step();
   StepWhile(kDemand);
@@ -124,7 +124,7 @@ TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestThatNobodyAnswers) {
   EXPECT_EQ(take_over_->request()->manoeuvre, 100);
 }
 
-TEST_F(TakeOverTest, StaysLockedInStandstillWhoeverComes) {
+TEST_F(TakeOverTest, StaysLockedInStandstillForEveryDriver) {
   Begin(Absent());
   inputs_.speed_mps = 1;
   while (state() != kMrmDone && Now() < 60) Step();
@@ -211,7 +211,7 @@ TEST_F(TakeOverTest, DoesNotWithdrawARequestThatIsNotWantedAnyMore) {
   EXPECT_EQ(state(), kMrmComfort);
 }
 
-TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndTheWishIsGone) {
+TEST_F(TakeOverTest, ReturnsToTheAutomationWhenTheDriverHasRecoveredAndIsNotWanted) {
   Begin(Answering(2));
   Step();
   StepWhile(kDemand);

@@ -30,7 +30,7 @@ TEST(ForeignPeersTest, AreNamedOnceEach) {
 
 TEST(ForeignPeersTest, MustHaveTheNameOfARole) {
   runtime::ForeignPeers foreign_peers;
-  foreign_peers.Hear(Status(1, "nobody", 1, "here"));
+  foreign_peers.Hear(Status(1, "pilot", 1, "here"));
   EXPECT_TRUE(foreign_peers.known().empty());
 }
 

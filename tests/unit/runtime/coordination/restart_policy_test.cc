@@ -12,7 +12,7 @@ TEST(RestartPolicyTest, WaitsTwiceAsLongEachTimeThatItDoesNotHelpUpToASecond) {
   }
 }
 
-TEST(RestartPolicyTest, BeginsAnewWhenTheRunHasMadeProgress) {
+TEST(RestartPolicyTest, StartsOverWhenTheRunHasMadeProgress) {
   runtime::RestartPolicy policy(10);
   policy.OnDeath(217);
   policy.OnDeath(217);

@@ -24,7 +24,7 @@ TEST_F(RunCoordinatorTest, SaysPrepareUntilEveryRoleIsReadyAndThenGo) {
   EXPECT_EQ(said_.back().phase, run_t::GO);
 }
 
-TEST_F(RunCoordinatorTest, TellsWhoJoinsHowFarTheRunIs) {
+TEST_F(RunCoordinatorTest, TellsARoleThatJoinsHowFarTheRunIs) {
   BeAtStep(-1);
   BeAtStep(40);
   role(Role::kRecorder).header.step = 48;
@@ -77,12 +77,12 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
   }
   PollUntil(coordinator_, Clock::now() + milliseconds(3900));
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
-  EXPECT_EQ(coordinator_.step(), 40) << "of the run, not of who catches up";
+  EXPECT_EQ(coordinator_.step(), 40) << "the step of the run, not of the role that catches up";
   PollUntil(coordinator_, Clock::now() + milliseconds(4100));
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
-TEST_F(RunCoordinatorTest, HoldsAgainstNobodyWhatItHasNotHeardWhileItWasHeldUp) {
+TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   BeAtStep(-1);
   BeAtStep(40);
   const TimePoint again = Clock::now() + milliseconds(5000);
@@ -119,13 +119,13 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
   EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
 }
 
-TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse) {
+TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
   runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
                                                 .scenario_text = script_.text(),
                                                 .stall_limit = milliseconds(100)});
   BeAtStep(-1);
   hasty.Poll(Clock::now());
-  // GIVEN that everybody waits for somebody
+  // GIVEN that every role waits for another one
   const auto wait = [this](Role who, std::int64_t next, const char* channel, std::int64_t heard) {
     role(who).header.step = next - 1;
     role(who).waiting_for = channel;
@@ -134,7 +134,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheFirstWhoDoesNotWaitForSomethingElse
   };
   wait(Role::kWorld, 8, "HOST_COMMAND", 6);
   wait(Role::kArbitrator, 7, "DRIVER_COMMAND", 6);
-  // WHEN it is the driver who lacks what the arbitrator has said before
+  // WHEN the driver lacks a message that the arbitrator has sent before
   wait(Role::kDriver, 7, "HOST_COMMAND", 5);
   hasty.Poll(Clock::now() + milliseconds(150));
   EXPECT_THAT(
@@ -200,9 +200,9 @@ TEST_F(RunCoordinatorTest, CountsWhatItRefusesItself) {
   auto foreign = role(Role::kRadar);
   foreign.header.run_id = Script::kRunId + 1;
   script_.Say(foreign);
-  auto nobody = role(Role::kRadar);
-  nobody.role = "nobody";
-  script_.Say(nobody);
+  auto unknown_role = role(Role::kRadar);
+  unknown_role.role = "pilot";
+  script_.Say(unknown_role);
   script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
   script_.bus().Publish("RESEND", std::vector<std::uint8_t>(100));
   script_.bus().Publish("RESEND", std::vector<std::uint8_t>(3));

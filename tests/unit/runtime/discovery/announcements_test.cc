@@ -101,7 +101,7 @@ TEST_F(AnnouncementsTest, RefuseWhatNoRunnerOfThisMachineCanHaveSaid) {
       [](beacon_t& b) { b.url = "tcpq://192.0.2.1:7700"; },
       [](beacon_t& b) { b.url = "udpm://239.255.76.67:7700?ttl=0\n"; },
       [](beacon_t& b) { b.url = "udpm://239.255.76.67:7700'; reboot; '"; },
-      [](beacon_t& b) { b.awaited = {"nobody"}; },
+      [](beacon_t& b) { b.awaited = {"pilot"}; },
       [](beacon_t& b) {
         b.awaited = {"driver", "driver"};
         b.num_awaited = 2;

@@ -22,8 +22,8 @@ class Echo {
  public:
   explicit Echo(const Scenario& /*scenario*/) { out_.acceleration_mps2 = kNothing; }
 
-  static bool UsesOptionalInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
-  void SetOptionalInput(const arbitration_t& host) {
+  static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
+  void SetOnDemandInput(const arbitration_t& host) {
     out_.acceleration_mps2 = host.acceleration_mps2;
     ++out_.readiness;
   }
@@ -38,7 +38,7 @@ class Echo {
   driver_command_t out_{};
 };
 
-static_assert(AlgorithmTraits<Echo>::kHears);
+static_assert(AlgorithmTraits<Echo>::kHasOnDemand);
 
 Scenario Demanding() {
   Scenario scenario;
@@ -125,7 +125,7 @@ TEST_F(OnDemandTest, IsNoSignOfAStepToCome) {
   EXPECT_TRUE(requests_.empty()) << "step 0 may be the last";
 }
 
-TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByWhoJoinsLate) {
+TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
   constexpr std::int64_t kProgress = 150;
   script_.SayRun(run_t::GO, kProgress);
   std::size_t served = 0;

@@ -14,7 +14,7 @@ runtime::ChannelSet Lost() {
 
 std::size_t At(Role role) { return static_cast<std::size_t>(role); }
 
-TEST(CulpritTest, NamesNobodyWhereNothingIsLost) {
+TEST(CulpritTest, NamesNoRoleIfNothingIsLost) {
   EXPECT_EQ(runtime::FindCulprit({}, {}), std::nullopt);
 }
 
@@ -63,7 +63,7 @@ TEST(CulpritTest, FindsAnEndWhateverIsReported) {
   }
 }
 
-TEST(CulpritTest, SaysWhoAndByWhatItShows) {
+TEST(CulpritTest, NamesTheRoleAndTheLostChannel) {
   EXPECT_EQ(runtime::Text({Role::kLidar, IndexOf<lidar_t>()}), "lidar (LIDAR lost)");
 }
 

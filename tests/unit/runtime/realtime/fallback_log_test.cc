@@ -44,7 +44,7 @@ class FallbackLogTest : public testing::Test {
   runtime::FallbackLog log_{kStep_us, 1, kSteps};
 };
 
-TEST_F(FallbackLogTest, SaysWhatIsLostWhoIsToBlameAndWhatIsDone) {
+TEST_F(FallbackLogTest, NamesTheLostInputsTheCulpritAndTheFallback) {
   EXPECT_EQ(Add(Said("arbitrator", 10, {{"TRACK", kOk}})), "");
   EXPECT_EQ(Add(Said("arbitrator", 13, {{"TRACK", kLost}}, "the human drives")),
             "step 13: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): "
@@ -62,7 +62,7 @@ TEST_F(FallbackLogTest, TakesAStaleInputForNewsOnlyIfSomethingIsDoneAboutIt) {
             "the host's last command holds");
 }
 
-TEST_F(FallbackLogTest, BlamesWhoSilencesTheOthers) {
+TEST_F(FallbackLogTest, BlamesTheRoleThatSilencesTheOthers) {
   Add(Said("fusion", 12, {{"RADAR", kLost}}));
   Add(Said("acc", 12, {{"TRACK", kLost}}));
   EXPECT_EQ(log_.all().back().culprit, "radar");
@@ -101,9 +101,9 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
   EXPECT_EQ(Add(next), "step 13: fusion: RADAR ok again");
 }
 
-TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfStrangers) {
+TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfForeignPeers) {
   EXPECT_EQ(Add(Said("recorder", 12, {{"RADAR", kLost}})), "");
-  EXPECT_EQ(Add(Said("nobody", 12, {{"RADAR", kLost}})), "");
+  EXPECT_EQ(Add(Said("pilot", 12, {{"RADAR", kLost}})), "");
   EXPECT_EQ(Add(Said("fusion", 12, {{"NO_CHANNEL", kLost}})), "");
 }
 

@@ -73,7 +73,7 @@ TEST(InputHealthTest, SaysWhenItWantsToBeLookedAt) {
   EXPECT_EQ(health.NextChange(), TimePoint::max());
 }
 
-TEST(InputHealthTest, NoticesAGapThatNobodyLookedAt) {
+TEST(InputHealthTest, NoticesAGapBetweenTwoLooks) {
   runtime::InputHealth health = Running(3);
   health.Arrived(12, At(1200));
   EXPECT_EQ(health.state(), InputState::kLost);

@@ -117,7 +117,7 @@ TEST_F(RealtimeRuleTest, BlamesTheWorldAloneForItsPause) {
   EXPECT_EQ(status.waiting_for, ChannelOf<ego_t>().name);
 }
 
-TEST_F(RealtimeRuleTest, BlamesNobodyForItsOwnPause) {
+TEST_F(RealtimeRuleTest, BlamesNoRoleForItsOwnPause) {
   Say<ego_t, radar_t, lidar_t>(0);
   script_.PollUpTo(node_);
   script_.Poll(node_, At(4));
@@ -206,7 +206,7 @@ class TickRuleTest : public RealtimeRulesTest {
   runtime::StepNode<world::World, world::FailsafeWorld> node_{script_.bus(), Script::kRunId};
 };
 
-TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWhoeverAnswers) {
+TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWithoutWaiting) {
   script_.SayRun(run_t::PREPARE, -1, kSpeed);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(truths_), ElementsAre());
@@ -217,7 +217,7 @@ TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWhoeverAnswers) {
   script_.PollUpTo(node_, At(1));
   script_.PollUpTo(node_, At(2.01));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1, 2));
-  EXPECT_EQ(Status(node_).deadline_misses, 2) << "nobody commanded anything";
+  EXPECT_EQ(Status(node_).deadline_misses, 2) << "no command came";
 }
 
 TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
@@ -255,7 +255,7 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   EXPECT_EQ(Status(node_).ticks_missed, 2) << "tick 1, in the pause, and tick 3";
 }
 
-TEST_F(TickRuleTest, WaitsForNobodyForLong) {
+TEST_F(TickRuleTest, WaitsForNoRoleForLong) {
   Go();
   script_.PollUpTo(node_, At(0));
   script_.Poll(node_, At(1.5));

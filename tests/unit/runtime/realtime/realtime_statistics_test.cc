@@ -47,7 +47,7 @@ TEST(RealtimeStatisticsTest, WritesWhatItHasCounted) {
   EXPECT_EQ(status.latency_max_us, 1100);
 }
 
-TEST(RealtimeStatisticsTest, WritesTheInputsAnew) {
+TEST(RealtimeStatisticsTest, ReplacesTheInputs) {
   runtime::InputHealth health(HealthSection(), milliseconds(100), kDue);
   for (int k = 0; k < 5; ++k) health.Arrived(k, kDue + k * milliseconds(100));
   health.Arrived(1, kDue + milliseconds(401));

@@ -75,7 +75,7 @@ TEST_F(RunClockTest, GoesNoFasterThanTheWallWhenTicksComeEarlyAndLate) {
   EXPECT_GE(clock_.At(At(101'000)), At(99'900));
 }
 
-TEST_F(RunClockTest, IsNotAheadOfTheWallWhateverStepSomebodyClaims) {
+TEST_F(RunClockTest, IsNotAheadOfTheWallWhateverStepAMessageClaims) {
   Tick(5);
   clock_.Heard(std::numeric_limits<std::int64_t>::max(), At(1500));
   EXPECT_LE(clock_.At(At(1600)), At(1600));

@@ -131,14 +131,14 @@ TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
   // GIVEN a sender without a key, one with another key, and one that has the key but may not
   // publish RADAR
   runtime::Bus keyless(url);
-  runtime::Bus stranger(url);
-  stranger.Secure(runtime::MessageSigner(KeyOf(2), Role::kRadar));
+  runtime::Bus other(url);
+  other.Secure(runtime::MessageSigner(KeyOf(2), Role::kRadar));
   runtime::Bus lidar(url);
   lidar.Secure(runtime::MessageSigner(KeyOf(1), Role::kLidar));
   runtime::Bus radar(url);
   radar.Secure(runtime::MessageSigner(KeyOf(1), Role::kRadar));
   for (int i = 0; i < 3; ++i) keyless.Publish("RADAR", Payload(1));
-  for (int i = 0; i < 2; ++i) stranger.Publish("RADAR", Payload(2));
+  for (int i = 0; i < 2; ++i) other.Publish("RADAR", Payload(2));
   lidar.Publish("RADAR", Payload(3));
   radar.Publish("RADAR", Payload(4));
   while (received.empty() && receiver.Wait(std::chrono::seconds(5))) {

@@ -8,7 +8,7 @@ namespace {
 /// Sends messages at a rate to a process that admits the share that its rate limiter allows.
 class Sender {
  public:
-  explicit Sender(runtime::LoadShedder& gate) : gate_(gate) {}
+  explicit Sender(runtime::LoadShedder& shedder) : shedder_(shedder) {}
 
   /// @return messages per second that pass
   double Send(double rate_hz, double seconds) {
@@ -20,29 +20,29 @@ class Sender {
       if (due_ < 1) continue;
       due_ -= 1;
       ++through;
-      share_ = gate_.Count(now_).value_or(share_);
+      share_ = shedder_.Count(now_).value_or(share_);
     }
     return through / seconds;
   }
   double share() const { return share_; }
 
  private:
-  runtime::LoadShedder& gate_;
+  runtime::LoadShedder& shedder_;
   TimePoint now_ = Clock::now();
   double share_ = 1;
   double due_ = 0;
 };
 
 TEST(LoadShedderTest, LetsEverythingInThatIsNoFlood) {
-  runtime::LoadShedder gate(3000);
-  Sender sender(gate);
+  runtime::LoadShedder shedder(3000);
+  Sender sender(shedder);
   EXPECT_NEAR(sender.Send(2400, 2), 2400, 1);
   EXPECT_EQ(sender.share(), 1);
 }
 
 TEST(LoadShedderTest, LetsInOfAFloodAboutWhatIsWelcome) {
-  runtime::LoadShedder gate(3000);
-  Sender sender(gate);
+  runtime::LoadShedder shedder(3000);
+  Sender sender(shedder);
   sender.Send(20'000, 0.2);
   EXPECT_NEAR(sender.Send(20'000, 1), 3000, 0.2 * 3000);
   sender.Send(200'000, 0.2);
@@ -50,8 +50,8 @@ TEST(LoadShedderTest, LetsInOfAFloodAboutWhatIsWelcome) {
 }
 
 TEST(LoadShedderTest, LetsEverythingInAgainWhenItIsOver) {
-  runtime::LoadShedder gate(3000);
-  Sender sender(gate);
+  runtime::LoadShedder shedder(3000);
+  Sender sender(shedder);
   sender.Send(20'000, 1);
   sender.Send(100, 1);
   EXPECT_EQ(sender.share(), 1);

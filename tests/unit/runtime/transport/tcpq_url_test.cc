@@ -36,7 +36,8 @@ TEST(TcpqUrlTest, RefusesWhatIsNoPort) {
   EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:65536"),
             "error: tcpq://127.0.0.1:65536: \"65536\" is no port (0 to 65535)");
   EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:"), "error: tcpq://127.0.0.1:: \"\" is no port (0 to 65535)");
-  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:0"), "error: tcpq://127.0.0.1:0: nobody listens on port 0");
+  EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:0"),
+            "error: tcpq://127.0.0.1:0: no process can listen on port 0");
   EXPECT_EQ(ErrorOf("tcpq://127.0.0.1:7700?ttl=1"),
             "error: tcpq://127.0.0.1:7700?ttl=1: \"7700?ttl=1\" is no port (0 to 65535)");
 }

@@ -67,32 +67,33 @@ TEST(MessageSignerTest, GivesThePayloadBackAsItWas) {
 }
 
 TEST(MessageSignerTest, NoticesEveryBitThatIsWrong) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  Message message = Copy(signer.Sign("RADAR", kRadar));
   for (std::size_t bit = 0; bit < 8 * message.size(); ++bit) {
     const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
     message[bit / 8] ^= mask;
-    EXPECT_NE(seal.Open("RADAR", message).verdict, Verdict::kGood) << "bit " << bit;
+    EXPECT_NE(signer.Open("RADAR", message).verdict, Verdict::kGood) << "bit " << bit;
     message[bit / 8] ^= mask;
   }
-  EXPECT_EQ(seal.Open("RADAR", message).verdict, Verdict::kGood);
+  EXPECT_EQ(signer.Open("RADAR", message).verdict, Verdict::kGood);
 }
 
 TEST(MessageSignerTest, NoticesEveryCut) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  const Message message = Copy(signer.Sign("RADAR", kRadar));
   for (std::size_t size = 0; size < message.size(); ++size) {
-    EXPECT_EQ(seal.Open("RADAR", runtime::Bytes(message).first(size)).verdict, Verdict::kNotSigned)
+    EXPECT_EQ(signer.Open("RADAR", runtime::Bytes(message).first(size)).verdict,
+              Verdict::kNotSigned)
         << size;
   }
 }
 
 TEST(MessageSignerTest, RefusesOtherKeysAndOtherChannels) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kWorld);
-  const Message message = Copy(seal.Sign("TRUTH", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kWorld);
+  const Message message = Copy(signer.Sign("TRUTH", kRadar));
   EXPECT_EQ(runtime::MessageSigner(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict,
             Verdict::kBadlySigned);
-  EXPECT_EQ(seal.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
+  EXPECT_EQ(signer.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
 }
 
 TEST(MessageSignerTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
@@ -107,7 +108,7 @@ TEST(MessageSignerTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
   }
 }
 
-TEST(MessageSignerTest, TakesRunFromTheRunnerAloneAndResendFromEverybody) {
+TEST(MessageSignerTest, TakesRunFromTheRunnerAloneAndResendFromEveryRole) {
   EXPECT_EQ(VerdictOn(Role::kRunner, "RUN", kRadar), Verdict::kGood);
   EXPECT_EQ(VerdictOn(Role::kRunner, "RESEND", kRadar), Verdict::kGood);
   for (const RoleInfo& info : kRoles) {
@@ -120,7 +121,7 @@ TEST(MessageSignerTest, TakesAStatusFromTheRoleThatItNamesAlone) {
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("radar")), Verdict::kGood);
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRecorder, "STATUS", StatusOf("lidar")), Verdict::kBadlySigned);
-  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("nobody")), Verdict::kBadlySigned);
+  EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", StatusOf("pilot")), Verdict::kBadlySigned);
   EXPECT_EQ(VerdictOn(Role::kRadar, "STATUS", runtime::Bytes(kRadar).first(34)),
             Verdict::kBadlySigned);
 }
@@ -135,8 +136,8 @@ TEST(MessageSignerTest, SignsAsEveryRoleInAProcessThatIsAll) {
 }
 
 TEST(MessageSignerTest, LeavesASignedMessageToLcmsOwnDecodersAndNoneToOurs) {
-  runtime::MessageSigner seal(KeyOf(1), Role::kRadar);
-  const Message message = Copy(seal.Sign("RADAR", kRadar));
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  const Message message = Copy(signer.Sign("RADAR", kRadar));
   radar_t decoded{};
   // Calls the generated decoder as LCM's own programs do.
   EXPECT_GE(decoded.decode(message.data(), 0, static_cast<int>(message.size())), 0);
@@ -222,13 +223,13 @@ TEST(SigningKeyTest, IsRefusedIfGroupOrOthersCanReadOrChangeItsFile) {
   }
 }
 
-TEST(SigningKeyTest, IsRefusedIfItsFileBelongsToSomebodyElse) {
+TEST(SigningKeyTest, IsRefusedIfItsFileBelongsToAnotherUser) {
   if (geteuid() != 0) return test::MachineLacks("root, to give a file away");
   const ScratchFolder folder;
   const std::string file = folder.File("key");
   runtime::SigningKey::Create(file);
-  constexpr uid_t kNobody = 65534;
-  ASSERT_EQ(chown(file.c_str(), kNobody, kNobody), 0);
+  constexpr uid_t kOtherUser = 65534;
+  ASSERT_EQ(chown(file.c_str(), kOtherUser, kOtherUser), 0);
   EXPECT_THAT(Complaint(file), HasSubstr("error: the key belongs to user 65534"));
 }
 

@@ -64,9 +64,9 @@ TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
   command.num_followers = 1;
   command.acceleration_mps2 = {std::numeric_limits<double>::quiet_NaN()};
   command.safe_distance_m = {33};
-  const follower_command_t nobody{};
+  const follower_command_t empty{};
   std::vector<std::uint8_t> bytes;
-  runtime::Encode(nobody, bytes);
+  runtime::Encode(empty, bytes);
   ASSERT_TRUE(runtime::Decode(bytes, command));
   EXPECT_TRUE(command.acceleration_mps2.empty());
   EXPECT_TRUE(command.safe_distance_m.empty());

@@ -12,29 +12,29 @@ namespace fogline {
 namespace {
 
 // The mistakes in a text, as a user sees them.
-std::vector<Diagnostic> MistakesOf(std::string_view text) {
+std::vector<Diagnostic> DiagnosticsOf(std::string_view text) {
   DiagnosticList list;
   ParseJson(text, 0, list);
   if (list.empty()) return {};
   try {
     list.Throw({{.name = "f", .text = text}});
   } catch (const ScenarioError& error) {
-    return error.mistakes();
+    return error.diagnostics();
   }
 }
 
 std::string PlaceOf(std::string_view text) {
-  const std::vector<Diagnostic> mistakes = MistakesOf(text);
-  if (mistakes.size() != 1) return std::to_string(mistakes.size()) + " mistakes";
-  return std::to_string(mistakes[0].line) + ":" + std::to_string(mistakes[0].column);
+  const std::vector<Diagnostic> diagnostics = DiagnosticsOf(text);
+  if (diagnostics.size() != 1) return std::to_string(diagnostics.size()) + " mistakes";
+  return std::to_string(diagnostics[0].line) + ":" + std::to_string(diagnostics[0].column);
 }
 
 TEST(JsonTest, KnowsTheFirstByteOfEveryKeyAndValue) {
   constexpr std::string_view kText = R"({"a": 12 ,"b\"": [true, {"c":null}, "x,:"],"d":-1.5e3})";
-  DiagnosticList mistakes;
-  const std::optional<JsonValue> root = ParseJson(kText, 7, mistakes);
+  DiagnosticList diagnostics;
+  const std::optional<JsonValue> root = ParseJson(kText, 7, diagnostics);
   ASSERT_TRUE(root);
-  ASSERT_TRUE(mistakes.empty());
+  ASSERT_TRUE(diagnostics.empty());
 
   std::vector<std::string_view> starts;
   const auto note = [&](Place place) {
@@ -52,8 +52,8 @@ TEST(JsonTest, KnowsTheFirstByteOfEveryKeyAndValue) {
 }
 
 TEST(JsonTest, TellsIntegersFromNumbersWithAFraction) {
-  DiagnosticList mistakes;
-  const auto root = ParseJson("[3, 3.0, 9223372036854775807, 9223372036854775808]", 0, mistakes);
+  DiagnosticList diagnostics;
+  const auto root = ParseJson("[3, 3.0, 9223372036854775807, 9223372036854775808]", 0, diagnostics);
   const auto& items = *root->As<JsonArray>();
   EXPECT_EQ(*items[0].As<std::int64_t>(), 3);
   EXPECT_EQ(*items[1].As<double>(), 3.0);
@@ -88,9 +88,9 @@ TEST(JsonTest, RefusesWhatOnlyLooksLikeJson) {
   for (const std::string_view text :
        {"NaN", "[Infinity]", "[-Infinity]", "[+1]", "[.5]", "[1.]", "{'a':1}", "[1,]", "// x\n1",
         "[1e999]", "[\"\\ud800\"]", "[\"\xff\"]", "1 2", "\xef\xbb", "[tru]", "{1:2}"}) {
-    const std::vector<Diagnostic> mistakes = MistakesOf(text);
-    ASSERT_EQ(mistakes.size(), 1U) << text;
-    EXPECT_EQ(mistakes[0].rule, "syntax") << text;
+    const std::vector<Diagnostic> diagnostics = DiagnosticsOf(text);
+    ASSERT_EQ(diagnostics.size(), 1U) << text;
+    EXPECT_EQ(diagnostics[0].rule, "syntax") << text;
   }
 }
 
@@ -100,11 +100,12 @@ TEST(JsonTest, RefusesANulByteWhereverItIs) {
 }
 
 TEST(JsonTest, ReportsEveryDuplicateKeyWithItsPointer) {
-  const auto mistakes = MistakesOf(R"({"a": [{"x/y": 1, "b": 2, "x/y": 3, "x/y": 4}], "a": 5})");
+  const auto diagnostics =
+      DiagnosticsOf(R"({"a": [{"x/y": 1, "b": 2, "x/y": 3, "x/y": 4}], "a": 5})");
   std::vector<std::string> pointers;
-  for (const Diagnostic& mistake : mistakes) {
-    EXPECT_EQ(mistake.rule, "duplicate-key");
-    pointers.push_back(std::to_string(mistake.column) + " " + mistake.pointer);
+  for (const Diagnostic& diagnostic : diagnostics) {
+    EXPECT_EQ(diagnostic.rule, "duplicate-key");
+    pointers.push_back(std::to_string(diagnostic.column) + " " + diagnostic.pointer);
   }
   EXPECT_THAT(pointers, testing::ElementsAre("27 /a/0/x~1y", "37 /a/0/x~1y", "49 /a"));
 }
@@ -113,27 +114,27 @@ TEST(JsonTest, RefusesDepthBeyondItsLimitWithoutRecursion) {
   const auto nested = [](std::size_t depth) {
     return std::string(depth, '[') + std::string(depth, ']');
   };
-  EXPECT_TRUE(MistakesOf(nested(32)).empty());
+  EXPECT_TRUE(DiagnosticsOf(nested(32)).empty());
   for (const std::size_t depth : {std::size_t{33}, std::size_t{5'000'000}}) {
-    const auto mistakes = MistakesOf(nested(depth));
-    ASSERT_EQ(mistakes.size(), 1U);
-    EXPECT_EQ(mistakes[0].rule, "too-large");
-    EXPECT_EQ(mistakes[0].column, 33);
+    const auto diagnostics = DiagnosticsOf(nested(depth));
+    ASSERT_EQ(diagnostics.size(), 1U);
+    EXPECT_EQ(diagnostics[0].rule, "too-large");
+    EXPECT_EQ(diagnostics[0].column, 33);
   }
 }
 
 TEST(JsonTest, RefusesMoreValuesThanAnyScenarioHas) {
   std::string text = "[0";
   for (int i = 0; i < 2'000'000; ++i) text += ",0";
-  const auto mistakes = MistakesOf(text + "]");
-  ASSERT_EQ(mistakes.size(), 1U);
-  EXPECT_EQ(mistakes[0].rule, "too-large");
+  const auto diagnostics = DiagnosticsOf(text + "]");
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(diagnostics[0].rule, "too-large");
 }
 
 TEST(JsonTest, RefusesATextBeyondItsLimitWithoutReadingIt) {
-  const auto mistakes = MistakesOf(std::string(kMaxFileBytes + 1, ' '));
-  ASSERT_EQ(mistakes.size(), 1U);
-  EXPECT_EQ(mistakes[0].rule, "too-large");
+  const auto diagnostics = DiagnosticsOf(std::string(kMaxFileBytes + 1, ' '));
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(diagnostics[0].rule, "too-large");
 }
 
 }  // namespace

@@ -14,13 +14,13 @@
 namespace fogline {
 namespace {
 
-std::vector<Diagnostic> MistakesOf(std::string_view text,
-                                   const std::vector<std::string>& overrides = {}) {
+std::vector<Diagnostic> DiagnosticsOf(std::string_view text,
+                                      const std::vector<std::string>& overrides = {}) {
   try {
     ParseScenario(text, "f", overrides);
     return {};
   } catch (const ScenarioError& error) {
-    return error.mistakes();
+    return error.diagnostics();
   }
 }
 
@@ -68,17 +68,17 @@ TEST(LoaderTest, TakesAWholeNumberWithAFractionPartForAnInteger) {
 TEST(LoaderTest, TakesBothEndsOfARangeAndNothingBeyond) {
   EXPECT_EQ(ParseScenario(R"({"version": 1, "step_s": 0.001})").step_s, 0.001);
   EXPECT_EQ(ParseScenario(R"({"version": 1, "step_s": 1})").step_s, 1);
-  EXPECT_EQ(MistakesOf(R"({"version": 1, "step_s": 1.0000000000000002})").size(), 1U);
+  EXPECT_EQ(DiagnosticsOf(R"({"version": 1, "step_s": 1.0000000000000002})").size(), 1U);
 }
 
 TEST(LoaderTest, ReportsAllMistakesInTheOrderOfTheFile) {
-  const auto mistakes = MistakesOf(R"({"published": 1,
+  const auto diagnostics = DiagnosticsOf(R"({"published": 1,
  "steps": 0, "fog": {"modle": 1,
  "bias_m": -1}, "version": 2})");
   std::vector<std::string> found;
-  for (const Diagnostic& mistake : mistakes) {
-    found.push_back(std::to_string(mistake.line) + ":" + std::to_string(mistake.column) + " " +
-                    mistake.rule + " " + mistake.pointer);
+  for (const Diagnostic& diagnostic : diagnostics) {
+    found.push_back(std::to_string(diagnostic.line) + ":" + std::to_string(diagnostic.column) +
+                    " " + diagnostic.rule + " " + diagnostic.pointer);
   }
   EXPECT_THAT(found, testing::ElementsAre("1:15 type /published", "2:11 range /steps",
                                           "2:22 unknown-key /fog/modle", "3:12 range /fog/bias_m",
@@ -86,7 +86,7 @@ TEST(LoaderTest, ReportsAllMistakesInTheOrderOfTheFile) {
 }
 
 TEST(LoaderTest, RefusesAnEmptyKeyWithoutASuggestion) {
-  EXPECT_EQ(MistakesOf(R"({"version": 1, "minimal_risk": {"": 1}})")[0].message,
+  EXPECT_EQ(DiagnosticsOf(R"({"version": 1, "minimal_risk": {"": 1}})")[0].message,
             "unknown key; known here are \"deceleration_mps2\", \"jerk_mps3\"");
 }
 
@@ -106,17 +106,17 @@ TEST(LoaderTest, StopsCountingMistakesOfAHostileFile) {
 }
 
 TEST(LoaderTest, NeedsARecordingForARecordedLeader) {
-  EXPECT_EQ(MistakesOf(R"({"version": 1, "lead": {"profile": "recorded"}})")[0].rule, "needed");
+  EXPECT_EQ(DiagnosticsOf(R"({"version": 1, "lead": {"profile": "recorded"}})")[0].rule, "needed");
   EXPECT_EQ(
-      MistakesOf(R"({"version": 1, "lead": {"profile": "recorded", "recorded": {"file": ""}}})")
+      DiagnosticsOf(R"({"version": 1, "lead": {"profile": "recorded", "recorded": {"file": ""}}})")
           .size(),
       1U);
   EXPECT_TRUE(
-      MistakesOf(
+      DiagnosticsOf(
           R"({"version": 1, "lead": {"profile": "recorded", "recorded": {"file": "a.csv"}}})")
           .empty());
   EXPECT_TRUE(
-      MistakesOf(
+      DiagnosticsOf(
           R"({"version": 1, "lead": {"profile": "recorded", "recorded": {"speeds_mps": [1]}}})")
           .empty());
 }
@@ -129,7 +129,7 @@ TEST(LoaderTest, NamesAFileThatCannotBeRead) {
   } catch (const ScenarioError& error) {
     EXPECT_EQ(error.what(), (folder / "no_such_scenario.json").string() +
                                 ": error: cannot be read: No such file or directory");
-    EXPECT_EQ(error.mistakes()[0].rule, "file");
+    EXPECT_EQ(error.diagnostics()[0].rule, "file");
   }
   EXPECT_THROW(LoadScenario(folder), ScenarioError);
 }

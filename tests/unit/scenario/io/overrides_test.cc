@@ -121,11 +121,11 @@ TEST(OverrideTest, ComesAfterTheFilesMistakes) {
     ParseScenario(R"({"version": 1, "seed": -1})", "f", {"/steps=0", "/nothing=0"});
     FAIL();
   } catch (const ScenarioError& error) {
-    ASSERT_EQ(error.mistakes().size(), 3U);
-    EXPECT_EQ(error.mistakes()[0].file, "f");
-    EXPECT_EQ(error.mistakes()[1].file, "--set /steps=0");
-    EXPECT_EQ(error.mistakes()[1].line, 0);
-    EXPECT_EQ(error.mistakes()[2].file, "--set /nothing=0");
+    ASSERT_EQ(error.diagnostics().size(), 3U);
+    EXPECT_EQ(error.diagnostics()[0].file, "f");
+    EXPECT_EQ(error.diagnostics()[1].file, "--set /steps=0");
+    EXPECT_EQ(error.diagnostics()[1].line, 0);
+    EXPECT_EQ(error.diagnostics()[2].file, "--set /nothing=0");
   }
 }
 

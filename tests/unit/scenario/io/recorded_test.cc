@@ -105,9 +105,9 @@ TEST_F(RecordedLeadTest, NamesAFileThatIsNotThere) {
     LoadScenario(folder_ / "lead.json");
     FAIL();
   } catch (const ScenarioError& error) {
-    EXPECT_EQ(error.mistakes()[0].line, 3);
-    EXPECT_EQ(error.mistakes()[0].column, 24);
-    EXPECT_EQ(error.mistakes()[0].rule, "csv-file");
+    EXPECT_EQ(error.diagnostics()[0].line, 3);
+    EXPECT_EQ(error.diagnostics()[0].column, 24);
+    EXPECT_EQ(error.diagnostics()[0].rule, "csv-file");
   }
 }
 

@@ -35,13 +35,13 @@ TEST_P(EveryBlameTest, FallsOnTheRadarThatLeavesLidarAndPrediction) {
   EXPECT_LT(blame.lidar, 0.55);
 }
 
-TEST_P(EveryBlameTest, FallsOnNobodyWhenAllAgree) {
+TEST_P(EveryBlameTest, FallsOnNoSensorWhenAllAgree) {
   const conflict::Blame blame = Make(GetParam())->Step(LidarShortBy(0));
   EXPECT_NEAR(blame.radar, 0, kEven);
   EXPECT_NEAR(blame.lidar, 0, kEven);
 }
 
-TEST_P(EveryBlameTest, FallsOnNobodyWithoutAWitness) {
+TEST_P(EveryBlameTest, FallsOnNoSensorWithoutAWitness) {
   conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
   EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
@@ -108,7 +108,7 @@ TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
   EXPECT_NEAR(blame.Step(RadarLongBy(0.9)).radar, 0, kEven);
 }
 
-TEST(SupportTest, OfTwoSourcesCannotTellWhoIsWrong) {
+TEST(SupportTest, OfTwoSourcesCannotTellWhichIsWrong) {
   // GIVEN: a third body that shares nothing with the others, so it counts as missing
   const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.2, .radar_prediction = 0, .lidar_prediction = 0};

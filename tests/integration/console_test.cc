@@ -80,7 +80,7 @@ pid_t WaitForRole(pid_t run, const std::string& program) {
   return 0;
 }
 
-TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsAFullDisk) {
+TEST(ConsoleTest, NoProgramAbortsWhereStderrIsAFullDisk) {
   const ScratchFolder folder;
   const std::string none = folder.File("none.lcm");
   const std::string fogline = Program("fogline");
@@ -116,7 +116,7 @@ TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsAFullDisk) {
   EXPECT_EQ(RunCommand(Shell("exec 2>/dev/full", {fogline, "digest", cut})).code, 1);
 }
 
-TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsClosedOrItsReaderIsGone) {
+TEST(ConsoleTest, NoProgramAbortsWhereStderrIsClosedOrItsReaderIsGone) {
   const ScratchFolder folder;
   const std::string pipe = folder.File("pipe");
   mkfifo(pipe.c_str(), 0600);
@@ -128,7 +128,7 @@ TEST(DiagnosticsTest, NoProgramAbortsWhereStderrIsClosedOrItsReaderIsGone) {
   }
 }
 
-TEST(DiagnosticsTest, ARunGoesOnWhereStderrIsAPipeThatIsFullAndNeverRead) {
+TEST(ConsoleTest, ARunGoesOnWhereStderrIsAPipeThatIsFullAndNeverRead) {
   const ScratchFolder folder;
   const FullPipe pipe(folder.File("pipe"));
   ASSERT_TRUE(pipe.WasFilled());
@@ -140,7 +140,7 @@ TEST(DiagnosticsTest, ARunGoesOnWhereStderrIsAPipeThatIsFullAndNeverRead) {
   }
 }
 
-TEST(DiagnosticsTest, AnErrorIsNotWaitedForWithoutEnd) {
+TEST(ConsoleTest, AnErrorIsNotWaitedForWithoutEnd) {
   const ScratchFolder folder;
   const FullPipe pipe(folder.File("pipe"));
   ASSERT_TRUE(pipe.WasFilled());
@@ -150,7 +150,7 @@ TEST(DiagnosticsTest, AnErrorIsNotWaitedForWithoutEnd) {
       2);
 }
 
-TEST(DiagnosticsTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
+TEST(ConsoleTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
   // The shell's own writes to the pipe block until there is room, before the run and after it.
   const ScratchFolder folder;
   const Outcome outcome =
@@ -163,7 +163,7 @@ TEST(DiagnosticsTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
   EXPECT_EQ(std::stoul(outcome.out.substr(flags + 6), nullptr, 8) & O_NONBLOCK, 0U) << outcome.out;
 }
 
-TEST(DiagnosticsTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
+TEST(ConsoleTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   // GIVEN a run with a stderr that accepts nothing
@@ -178,7 +178,7 @@ TEST(DiagnosticsTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   EXPECT_THAT(run.Out(), HasSubstr("radar was started again once"));
 }
 
-TEST(DiagnosticsTest, ARunGoesOnWhenItsTerminalIsGone) {
+TEST(ConsoleTest, ARunGoesOnWhenItsTerminalIsGone) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -198,7 +198,7 @@ TEST(DiagnosticsTest, ARunGoesOnWhenItsTerminalIsGone) {
   EXPECT_EQ(run.Wait(), 0);
 }
 
-TEST(DiagnosticsTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
+TEST(ConsoleTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
   const ScratchFolder folder;
   const std::string file = folder.File("sweep.csv");
   const Words sweep{Program("fogline"),
