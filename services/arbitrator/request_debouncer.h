@@ -12,11 +12,12 @@ namespace fogline::arbitrator {
 /// delays the result of the comparison of DoC and threshold:
 ///
 ///     none  the human is wanted while DoC >= threshold
-///     band the human is wanted from DoC >= threshold until DoC < threshold - min(band,
-///     threshold/2):
+///     band  the human is wanted from DoC >= threshold until
+///           DoC < threshold - min(band, threshold/2):
 ///           a DoC that falls to 0 always returns authority, also if the threshold moves
-///     sprt Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold); the human is wanted
-///           from L >= ln((1 - beta)/alpha) on, the automation from L <= ln(beta/(1 - alpha)) on;
+///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
+///           the human is wanted from L >= ln((1 - beta)/alpha) on,
+///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           with every decision a new test begins from L = 0
 ///
 /// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities

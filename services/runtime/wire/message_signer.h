@@ -58,7 +58,7 @@ inline bool LooksSigned(Bytes message) {
          std::memcmp(message.data() + message.size() - kSignatureBytes, kSignatureMagic.data(),
                      kSignatureMagic.size()) == 0;
 }
-/// The message without its last kSealBytes. @pre LooksSigned(message)
+/// The message without its last kSignatureBytes. @pre LooksSigned(message)
 inline Bytes WithoutSignature(Bytes message) {
   return message.first(message.size() - kSignatureBytes);
 }
