@@ -19,7 +19,7 @@
 
 #include "common/errors.h"
 #include "common/file.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 
 namespace fogline {

@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/text.h"
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/other_build.h"

@@ -15,8 +15,8 @@
 
 #include <fmt/core.h>
 
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/progress.h"
 #include "scenario/io/loader.h"
 #include "services/acc/acc.h"

@@ -11,7 +11,7 @@
 
 #include "common/atomic_file.h"
 #include "common/errors.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
