@@ -53,7 +53,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
       << run.Err();
   machine.LoseNothing();
   // THEN the run starts a role again that reads TRUTH, and the role computes to the end
-  run.Wait();
+  EXPECT_EQ(run.Wait(), 3);
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();
   bool radar = false;
