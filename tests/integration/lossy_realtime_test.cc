@@ -14,6 +14,7 @@
 #include "services/log/event_log.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/wire.h"
+#include "tests/integration/not_whole.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
@@ -22,9 +23,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-// Exit code and error of a run whose recorder could not have everything again.
-constexpr int kFailed = 3;
-constexpr const char* kNotWhole = "fogline run: error: the log is not complete: at least ";
 constexpr int kRate_hz = 50;
 // Far longer than any wait here, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
