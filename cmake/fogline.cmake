@@ -1,9 +1,11 @@
 # fogline_add_library(NAME [SUBFOLDER...]): builds *.cc of this folder and of these subfolders as the
 # static library fogline_NAME. The caller states what it links.
 function(fogline_add_library name)
+  # Paths without "/./": the properties of a source file belong to its path as it is written here.
+  list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE subfolders)
   set(sources)
-  foreach(folder IN ITEMS . LISTS ARGN)
-    file(GLOB files CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cc")
+  foreach(folder IN LISTS CMAKE_CURRENT_SOURCE_DIR subfolders)
+    file(GLOB files CONFIGURE_DEPENDS "${folder}/*.cc")
     list(FILTER files EXCLUDE REGEX "_main\\.cc$")
     list(APPEND sources ${files})
   endforeach()
@@ -18,7 +20,6 @@ function(fogline_add_role name)
   target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario)
   add_executable(fogline-${name} ${name}_main.cc)
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
-  set_property(GLOBAL APPEND PROPERTY FOGLINE_ROLES ${name})
 endfunction()
 
 # fogline_add_tests(NAME LIBS...): builds every NAME/**/*_test.cc into one program; each TEST is one test of

@@ -19,7 +19,7 @@
 
 #include "common/errors.h"
 #include "common/file.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 
 namespace fogline {
@@ -28,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Text is written in pieces of at least this size, to save system calls.
-constexpr std::size_t kWorthWriting = 1 << 16;
 // Largest number of links that the kernel follows (path_resolution(7)).
 constexpr int kMostLinks = 40;
 
@@ -167,7 +165,7 @@ fs::path AtomicFile::part() const { return fmt::format("/proc/self/fd/{}", fd_);
 
 void AtomicFile::Write(std::string_view text) {
   buffer_ += text;
-  if (buffer_.size() >= kWorthWriting) Flush();
+  if (buffer_.size() >= kWorthACall) Flush();
 }
 
 void AtomicFile::Flush() {
@@ -192,7 +190,7 @@ void AtomicFile::Finish() {
 }
 
 void AtomicFile::HandOver() {
-  buffer_.resize(kWorthWriting);
+  buffer_.resize(kWorthACall);
   for (off_t at = 0;;) {
     const ssize_t size = pread(fd_, buffer_.data(), buffer_.size(), at);
     if (size < 0) Fail(errno);

@@ -8,6 +8,10 @@
 
 namespace fogline {
 
+/// A call of the operating system is worth its cost from this many bytes on: a call costs as much
+/// as copying thousands of bytes.
+inline constexpr std::size_t kWorthACall = 1 << 16;
+
 /// Result of reading a file: the text, or else the error. `error` is empty if the file was read.
 struct FileText {
   std::string text;

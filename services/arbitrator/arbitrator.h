@@ -18,6 +18,7 @@
 #include "services/decision/policies/policy.h"
 #include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::arbitrator {
 

@@ -12,8 +12,8 @@ namespace fogline::arbitrator {
 /// hysteresis delays the result of the comparison of DoC and threshold:
 ///
 ///     none  the human is wanted while DoC >= threshold
-///     band  the human is wanted from DoC >= threshold
-///           until DoC < threshold - min(band, threshold/2):
+///     band  the human is wanted from DoC >= threshold until
+///           DoC < threshold - min(band, threshold/2):
 ///           a DoC that falls to 0 always returns authority, also if the threshold moves
 ///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,

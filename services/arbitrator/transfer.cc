@@ -6,6 +6,7 @@
 
 #include "common/whole_steps.h"
 #include "services/decision/policies/policy.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::arbitrator {
 namespace {

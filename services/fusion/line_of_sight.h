@@ -32,9 +32,6 @@ class LineOfSight {
   /// d / r, the derivative of the range with respect to the distance.
   double cosine() const { return cosine_; }
 
-  /// dcosine/dd.
-  double cosine_slope_per_m() const { return cosine_slope_per_m_; }
-
   Ekf::Jacobian RangeJacobian() const { return {cosine_, 0, 0}; }
   Ekf::Jacobian RangeRateJacobian(double relative_speed_mps) const {
     return {relative_speed_mps * cosine_slope_per_m_, cosine_, 0};
@@ -46,7 +43,7 @@ class LineOfSight {
 
   double range_m_ = 0;
   double cosine_ = 1;
-  double cosine_slope_per_m_ = 0;
+  double cosine_slope_per_m_ = 0;  // dcosine/dd
 };
 
 }  // namespace fogline::fusion

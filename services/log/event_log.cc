@@ -26,11 +26,6 @@ namespace fogline::log {
 namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-constexpr std::size_t kEventHeader = 28;
-constexpr std::size_t kMaxChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-// A call of the operating system is worth its cost from this many bytes on: a call costs as much as
-// copying thousands of bytes.
-constexpr std::size_t kWorthWriting = 1 << 16;
 // The bytes of a mapped log that stay in memory: little for a process, but many pages for each
 // call.
 constexpr std::size_t kMostMapped = 4 << 20;
@@ -64,7 +59,7 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file)
         fmt::format("{}: error: cannot write the log: {}", PathText(file), std::strerror(errno)));
   }
   std::setvbuf(out_, nullptr, _IONBF, 0);
-  pending_.reserve(2 * kWorthWriting);
+  pending_.reserve(2 * kWorthACall);
 }
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& file, const LogHead& head)
@@ -76,7 +71,7 @@ EventLogWriter::EventLogWriter(const std::filesystem::path& file, const LogHead&
     if (out_ != nullptr) std::fclose(out_);
     throw InputError(fmt::format("{}: error: cannot go on with the log: {}", PathText(file), why));
   }
-  pending_.reserve(2 * kWorthWriting);
+  pending_.reserve(2 * kWorthACall);
 }
 
 EventLogWriter::~EventLogWriter() {
@@ -87,7 +82,7 @@ EventLogWriter::~EventLogWriter() {
 bool EventLogWriter::CountHead(std::int64_t bytes) {
   written_.begin = written_.bytes = std::max<std::int64_t>(0, bytes - kTailBytes);
   if (std::fseek(out_, written_.begin, SEEK_SET) != 0) return false;
-  std::vector<std::uint8_t> chunk(kWorthWriting);
+  std::vector<std::uint8_t> chunk(kWorthACall);
   while (written_.bytes < bytes) {
     const auto wanted = std::min<std::int64_t>(std::ssize(chunk), bytes - written_.bytes);
     const std::size_t size = std::fread(chunk.data(), 1, static_cast<std::size_t>(wanted), out_);
@@ -115,7 +110,7 @@ void EventLogWriter::Write(std::string_view channel, std::int64_t utime, runtime
   const std::size_t before = pending_.size();
   AppendEvent(events_++, channel, utime, data, pending_);
   size_ += static_cast<std::int64_t>(pending_.size() - before);
-  if (pending_.size() >= kWorthWriting) Flush();
+  if (pending_.size() >= kWorthACall) Flush();
 }
 
 void EventLogWriter::Flush() {
@@ -181,7 +176,7 @@ std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why) {
   const std::size_t channel_size = ReadUint32(bytes, 20);
   const std::size_t data_size = ReadUint32(bytes, 24);
   why = "impossible channel name";
-  if (channel_size == 0 || channel_size > kMaxChannel) return std::nullopt;
+  if (channel_size == 0 || channel_size > runtime::kLongestChannel) return std::nullopt;
   why = "cut off";
   if (channel_size + data_size > bytes.size() - kEventHeader) return std::nullopt;
   why = "";

@@ -19,8 +19,11 @@
 
 namespace fogline::log {
 
-/// The most bytes that an event takes besides its data: its header, and LCM's longest channel name.
-inline constexpr std::size_t kMostEventOverhead = 28 + 63;
+/// The bytes before an event's channel: sync word (4), number (8), time (8), and the lengths of
+/// channel and data (4 each).
+inline constexpr std::size_t kEventHeader = 28;
+/// The most bytes that an event takes besides its data.
+inline constexpr std::size_t kMostEventOverhead = kEventHeader + runtime::kLongestChannel;
 
 /// The part of a log that is kept when a writer continues it: its first bytes, which hold so many
 /// whole events.

@@ -156,8 +156,6 @@ class SafetyImprovement {
   /// SI so far in %; nullopt without a relevant step.
   std::optional<double> Pct() const;
 
-  std::int64_t relevant_steps() const { return relevant_steps_; }
-
  private:
   double floor_m_;
   double sum_ = 0;

@@ -3,6 +3,8 @@
 // comes first.
 #include <nlohmann/json.hpp>
 
+#include <limits>
+
 #include "tests/fuzz/samples.h"
 #include "tools/watch/traffic_statistics.h"
 #include "tools/watch/traffic_text.h"
@@ -79,13 +81,23 @@ std::vector<Input> Seeds() {
   AddDatagram(Encoded(status), control);
   control.push_back(IndexOf<run_t>());
   AddDatagram(Encoded(Sample<run_t>(0)), control);
+  Input readings;
+  // Two readings of the processor time whose difference does not fit into 64 bits.
+  for (const std::int64_t cpu_ms :
+       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    auto reading = Sample<status_t>(2);
+    reading.sequence = cpu_ms < 0 ? 1 : 2;
+    reading.cpu_ms = cpu_ms;
+    readings.push_back(IndexOf<status_t>());
+    AddDatagram(Encoded(reading), readings);
+  }
   Input others;
   for (const std::string_view name : {"LCM_SELF_TEST", "CAMERA\x9b", "TRUTH2"}) {
     others.push_back(0xff);
     AddDatagram({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()}, others);
     AddDatagram(Encoded(Sample<truth_t>(0)), others);
   }
-  return {run, control, others};
+  return {run, control, others, readings};
 }
 
 }  // namespace fogline::fuzz

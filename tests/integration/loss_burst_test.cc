@@ -15,16 +15,13 @@
 #include <fmt/core.h>
 
 #include "services/runtime/transport/bus.h"
+#include "tests/integration/not_whole.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
 namespace {
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-// Exit code of `fogline run` where a run failed. After a burst there is one reason for it: the
-// recorder cannot have everything again.
-constexpr int kFailed = 3;
-constexpr const char* kNotWhole = "fogline run: error: the log is not complete: at least ";
 
 struct Burst {
   int loss_pct;

@@ -120,8 +120,21 @@ INSTANTIATE_TEST_SUITE_P(
                     Outage{"TheFirewall", kFirewall, "nft delete table inet reload"}),
     [](const auto& outage) { return outage.param.name; });
 
+TEST_F(OutageTest, AFirewallThatDropsOneOfAThousandEndsNoRun) {
+  // GIVEN a machine on which a run could take any transport
+  const Machine machine("firewall");
+  machine.RouteMulticastToItself();
+  machine.Do(
+      "nft 'table inet outage { chain out { type filter hook output priority 0;"
+      " meta l4proto udp numgen inc mod 1000 < 1 drop; }; }'");
+  const auto result = Result(RunCommand(machine.On(Run({}))));
+  EXPECT_EQ(result["digest"], Undisturbed());
+  EXPECT_FALSE(result["failed_sends"].empty()) << "of 4500 messages and more";
+}
+
 TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
   const Machine machine("firewall");
+  machine.RouteMulticastToItself();
   machine.Do(
       "nft 'table inet outage { chain out { type filter hook output priority 0;"
       " meta l4proto udp numgen random mod 100 < 5 drop; }; }'");

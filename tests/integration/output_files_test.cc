@@ -68,6 +68,35 @@ TEST_F(OutputFilesTest, AReportFollowsNoLinkThatWaitsForIt) {
   EXPECT_THAT(Files(), ElementsAre("page.html", "page.html.part", "precious", "run.lcm"));
 }
 
+TEST_F(OutputFilesTest, TwoReportsAtOnceOnOneFileEachWriteAWholePage) {
+  // GIVEN two logs with different pages
+  const std::string other = folder_.File("other.lcm");
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                  "--set", "/steps=20", "--seed", "2", "--quiet", "--log", other});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto report = [this](const std::string& log) {
+    return Words{Program("fogline"), "report", log, "--output", page_};
+  };
+  std::vector<std::string> pages;
+  for (const std::string& log : {log_, other}) {
+    ASSERT_EQ(RunCommand(report(log)).code, 0);
+    pages.push_back(Content(page_));
+  }
+  ASSERT_NE(pages[0], pages[1]);
+  // WHEN they are reported at once, often enough that the two meet, THEN the page is one of them
+  constexpr int kPairs = 20;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    Background one(report(log_));
+    Background two(report(other));
+    EXPECT_EQ(one.Wait(), 0) << one.Err();
+    EXPECT_EQ(two.Wait(), 0) << two.Err();
+    const std::string page = Content(page_);
+    ASSERT_TRUE(page == pages[0] || page == pages[1]) << "pair " << pair;
+  }
+  EXPECT_THAT(Files(), ElementsAre("other.lcm", "page.html", "run.lcm"));
+}
+
 TEST_F(OutputFilesTest, AReportReplacesThePageThatALinkLeadsTo) {
   ASSERT_EQ(Report(folder_.File("real.html")).code, 0);
   std::filesystem::resize_file(folder_.File("real.html"), 100);

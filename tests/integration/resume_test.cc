@@ -7,12 +7,12 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include "services/log/event_log.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/scenario_parts.h"
+#include "tests/integration/resume_fixture.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -22,82 +22,10 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-using Words = std::vector<std::string>;
-
-Words operator+(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 // Far longer than any wait here, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
-// Steps of a run. Runs over the network take 3 ms for each, so that a test on a busy machine can
-// still kill one in the middle.
-constexpr int kSteps = 300;
+constexpr int kSteps = kResumeSteps;
 const Words kPaced{"--pace", "33"};
-
-std::string Content(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class ResumeTest : public testing::Test {
- protected:
-  static Words Paper(int steps) {
-    return {Program("fogline"), "run",   "scenario/paper.json",
-            "--json",           "--set", "/steps=" + std::to_string(steps)};
-  }
-  /// The result of an undisturbed run. Its log is whole.lcm.
-  nlohmann::json Undisturbed(int steps = kSteps) const {
-    const Outcome outcome = RunCommand(
-        Paper(steps) + Words{"--transport", "direct", "--force", "--log", File("whole.lcm")});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out, nullptr, false);
-  }
-  Outcome Resume(const Words& more = {}) const {
-    return RunCommand(Words{Program("fogline"), "run", "--json", "--resume", log_} + more);
-  }
-  /// Resumes the run to its end. @return the result, which must be that of the undisturbed run
-  nlohmann::json ExpectSameEnd(const nlohmann::json& whole, const Words& more = {}) const {
-    const Outcome outcome = Resume(more);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const auto result = nlohmann::json::parse(outcome.out, nullptr, false);
-    EXPECT_EQ(result.value("digest", ""), whole["digest"]) << outcome.err;
-    EXPECT_EQ(result.value("steps", 0), whole["steps"]);
-    EXPECT_EQ(result.value("seed", 0), whole["seed"]);
-    EXPECT_EQ(result["metrics"], whole["metrics"]);
-    // The resumed log has the same events as the whole one, and no others. Only their run ids
-    // differ. With a key, the last event has a signature.
-    const bool is_signed = std::ranges::find(more, "--key") != more.end();
-    EXPECT_EQ(std::filesystem::file_size(log_), std::filesystem::file_size(File("whole.lcm")) +
-                                                    (is_signed ? runtime::kSignatureBytes : 0));
-    return result;
-  }
-  /// Kills the runner, not its roles, as soon as there are so many bytes in the log.
-  /// @return whether it had not ended by itself
-  bool KillAt(std::uintmax_t bytes, const Words& command) const {
-    Background run(command + Words{"--log", log_});
-    EXPECT_TRUE(GrowsTo(bytes, log_)) << run.Err();
-    run.Signal(SIGKILL);
-    return run.Wait() == 128 + SIGKILL;
-  }
-  /// Expects that the run is refused with this text and leaves the log as it is.
-  void ExpectRefusal(const Words& command, const std::string& err) const {
-    const std::string before = Content(log_);
-    const Outcome outcome = RunCommand(command);
-    EXPECT_EQ(outcome.code, 2) << outcome.out;
-    EXPECT_EQ(outcome.err, err);
-    EXPECT_TRUE(Content(log_) == before) << "what is refused is left as it is";
-  }
-  void ExpectRefusal(const std::string& why) const {
-    ExpectRefusal({Program("fogline"), "run", "--quiet", "--resume", log_},
-                  log_ + ": error: --resume: " + why + "\n");
-  }
-  std::string File(const std::string& name) const { return folder_.File(name); }
-
-  const ScratchFolder folder_;
-  const std::string log_ = folder_.File("run.lcm");
-};
 
 /// A run over the network. This test hears its steps.
 class SeenRun {
@@ -264,20 +192,6 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
               ContainsRegex("^" + log_ + ": 300 steps, [0-9]+ of them from the log in "));
 }
 
-TEST_F(ResumeTest, OfACompleteRunSaysItsResultAgainAndComputesNothing) {
-  Undisturbed();
-  std::filesystem::copy(File("whole.lcm"), log_);
-  const auto whole = Undisturbed();
-  const Outcome outcome = Resume();
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.err, log_ + ": the run is complete\n");
-  const auto result = ExpectSameEnd(whole);
-  EXPECT_EQ(result["resumed_steps"], kSteps);
-  EXPECT_EQ(result["transport"], nullptr);
-  EXPECT_EQ(result["log"], log_);
-  EXPECT_EQ(ExpectSameEnd(whole, {"--verify"})["verified"]["roles"].size(), 8U);
-}
-
 TEST_F(ResumeTest, NamesWhatTheLogHasAndIsSaidAgain) {
   const Words resume{Program("fogline"), "run", "--resume", log_};
   const auto refusal = [](const std::string& what) {
@@ -330,18 +244,6 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
   EXPECT_TRUE(IsAlive(run.pid()));
 }
 
-/// Copies a log event by event. `change` may alter an event, add others, and end the copy by false.
-template <class Change>
-void Copy(const std::string& from, const std::string& to, const Change& change) {
-  log::EventLogReader reader(from);
-  log::EventLogWriter writer(to);
-  while (const auto event = reader.Next()) {
-    std::vector<std::uint8_t> data(event->data.begin(), event->data.end());
-    if (!change(writer, *event, data)) return;
-    writer.Write(event->channel, event->utime, data);
-  }
-}
-
 TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   Undisturbed();
   // GIVEN a log like that of lcm-logger, which contains STATUS messages
@@ -386,39 +288,6 @@ TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
                           "driver is another program, or another version, than the one that was "
                           "recorded\n"));
   }
-}
-
-TEST_F(ResumeTest, ComputesAgainWhatItGoesOnFrom) {
-  Undisturbed();
-  // GIVEN a log that was changed before the steps that every role says again
-  const auto resume = [&](std::int64_t steps, const Words& more) {
-    Copy(File("whole.lcm"), log_,
-         [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
-           const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
-           if (step == 100 && event.channel == "DRIVER_COMMAND") data[runtime::kHeaderEnd + 7] ^= 1;
-           return step < steps && event.channel != "FOGLINE_SEAL";
-         });
-    return Resume(more);
-  };
-  const auto expect_found = [](const Outcome& outcome) {
-    EXPECT_THAT(outcome.err, HasSubstr("error: step 100: DRIVER_COMMAND of driver: "));
-    EXPECT_EQ(outcome.code, 1);
-  };
-  expect_found(resume(250, {"--transport", "memq"}));
-  EXPECT_EQ(resume(250, {"--transport", "memq", "--no-verify"}).code, 0);
-  expect_found(resume(kSteps, {}));
-  EXPECT_EQ(resume(kSteps, {"--no-verify"}).code, 0);
-}
-
-TEST_F(ResumeTest, VerifiesAndSealsTheCompleteLogOfARunnerThatDiedBeforeItSealed) {
-  const auto whole = Undisturbed();
-  Copy(File("whole.lcm"), log_,
-       [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
-         return event.channel != "FOGLINE_SEAL";
-       });
-  EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), 8U);
-  const Outcome digest = RunCommand({Program("fogline"), "digest", "--json", log_});
-  EXPECT_EQ(nlohmann::json::parse(digest.out)[0]["seal"], "holds") << digest.out;
 }
 
 }  // namespace

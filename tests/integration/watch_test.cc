@@ -106,7 +106,8 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
     uneven = 0;
     Background top(
         {Program("fogline"), "top", "--once", "--json", "--interval", "2", "--lcm-url", bus.url()});
-    while (IsAlive(top.pid())) bus.Wait(milliseconds(10));
+    const TimePoint limit = Clock::now() + kPatience;
+    while (IsAlive(top.pid()) && Clock::now() < limit) bus.Wait(milliseconds(10));
     ASSERT_EQ(top.Wait(), 0) << top.Err();
     if (uneven == 0) shown = top.Out();
   }

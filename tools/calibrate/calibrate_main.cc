@@ -8,8 +8,8 @@
 
 #include "common/atomic_file.h"
 #include "common/file.h"
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "scenario/io/diagnostic_list.h"

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json.h"
 #include "common/text.h"
 
 namespace fogline::calibrate {
@@ -12,8 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Number = std::optional<double>;
-
-Json OrNull(Number value) { return value ? Json(*value) : Json(nullptr); }
 
 Number Difference(Number reached, Number target) {
   return reached && target ? Number(*reached - *target) : std::nullopt;

@@ -1,6 +1,6 @@
 #include "tools/cli/threshold_rows.h"
 
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/process/progress.h"
 #include "tools/sweep/engine.h"
 

@@ -11,8 +11,8 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/this_process.h"
 #include "common/text.h"
 #include "services/runtime/process/version.h"

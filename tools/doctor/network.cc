@@ -22,7 +22,6 @@
 #include "services/runtime/wire/channel_filter.h"
 #include "tools/doctor/doctor_findings.h"
 #include "tools/watch/traffic_statistics.h"
-#include "tools/watch/traffic_text.h"
 
 namespace fogline::doctor {
 namespace {

@@ -21,8 +21,6 @@ namespace {
 using Level = Finding::Level;
 namespace fs = std::filesystem;
 
-bool Executable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
-
 void ExamineJava(Findings& findings) {
   const fs::path java = spy::JavaProgram();
   if (java.empty()) {
@@ -66,7 +64,7 @@ std::map<Role, std::string> AskVersions(const fs::path& programs) {
   processes::ProcessGroup group;
   for (const RoleInfo& info : kRoles) {
     const fs::path program = programs / fmt::format("fogline-{}", info.name);
-    if (Executable(program)) group.Start(info.role, program, {"--version"});
+    if (spy::IsExecutable(program)) group.Start(info.role, program, {"--version"});
   }
   const TimePoint end = Clock::now() + kLimit;
   while (!group.empty() && Clock::now() < end) {

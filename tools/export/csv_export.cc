@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/atomic_file.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "services/graph.h"
 
 namespace fogline::exports {

@@ -18,7 +18,7 @@
 
 #include "common/atomic_file.h"
 #include "common/errors.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 
 namespace fogline::exports {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/errors.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/wire.h"

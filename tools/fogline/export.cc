@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.h"
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"

@@ -1,4 +1,5 @@
 // fogline run: one run of a scenario.
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -6,9 +7,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/text.h"
+#include "services/runtime/wire/build_id.h"
+#include "services/runtime/wire/other_build.h"
 #include "services/runtime/wire/scenario_parts.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/arguments.h"
@@ -16,6 +19,7 @@
 #include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/fogline/verbs.h"
+#include "tools/replay/role_check.h"
 #include "tools/runner/experiment.h"
 #include "tools/runner/kept_log.h"
 #include "tools/runner/log_keeper.h"
@@ -32,10 +36,11 @@ again and catches up, and the result is the same. So is that of a run that has
 ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
 are those of the log; transport, pace, key and the roles that are started
 elsewhere are given again. As the roles go on from what the log says, its steps
-are computed again and compared, unless --no-verify says otherwise; those of a
-complete log with --verify only. A run has a port of its own unless
-LCM_DEFAULT_URL names another; fogline top, spy, doctor and roles without
---lcm-url find it on this machine.
+are computed again and compared, unless --no-verify says otherwise. A complete
+log without a seal is compared in the same way, and then gets a seal; with
+--no-verify it gets none. A complete log with a seal is compared with --verify
+only. A run has a port of its own unless LCM_DEFAULT_URL names another;
+fogline top, spy, doctor and roles without --lcm-url find it on this machine.
 
 Examples:
   fogline run scenario/paper.json
@@ -172,8 +177,18 @@ int RunNew(RunArguments& arguments) {
                            .resumed = std::nullopt});
 }
 
-/// Continues the run of a log to its end. If the log has the whole run, no step is added; the log
-/// is verified and sealed if it has no seal.
+/// The builds of the roles that a verification has computed again: they were computed in this
+/// process, with equal results. The other roles are of an unknown build.
+runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
+  runtime::RoleBuilds builds{};
+  for (const Role role : verification.roles) {
+    builds[static_cast<std::size_t>(role)] = runtime::OwnBuildId();
+  }
+  return builds;
+}
+
+/// Continues the run of a log to its end. If the log has the whole run, no step is added. If it has
+/// no seal either, it is verified, and sealed if the verification holds; --no-verify omits both.
 int Resume(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
@@ -192,6 +207,7 @@ int Resume(RunArguments& arguments) {
     return Print(arguments, outcome);
   }
   if (options.announce) Notice(PathText(options.log) + ": the run is complete");
+  const runner::LogKeeper keeper(options.log);
   runner::LoggedRun run = runner::MeasureLoggedRun(options.log, log.scenario());
   if (!run.complete) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
@@ -203,8 +219,8 @@ int Resume(RunArguments& arguments) {
   if (options.verify.value_or(to_seal)) {
     verification = replay::VerifyRun(options.log, run, replay::OtherBuildsIn(run));
   }
-  if (to_seal && (!verification || verification->Holds())) {
-    runner::LogKeeper(options.log).Seal(run, {}, {}, key ? &*key : nullptr);
+  if (to_seal && verification && verification->Holds()) {
+    keeper.Seal(run, {}, BuildsOf(*verification), key ? &*key : nullptr);
   }
   return Print(arguments, outcome);
 }

@@ -14,8 +14,8 @@
 
 #include <fmt/core.h>
 
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/text.h"
 #include "services/runtime/discovery/beacon.h"
 #include "tools/cli/arguments.h"

@@ -10,8 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.h"
+#include "common/interrupt.h"
+#include "common/json.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
@@ -122,10 +123,6 @@ std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario
   for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
   if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
   return thresholds;
-}
-
-nlohmann::ordered_json OrNull(std::optional<double> value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 const PublishedRow* PublishedOf(const Scenario& scenario, double threshold) {

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "services/runtime/discovery/beacon.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/transport/lcm_url.h"

@@ -10,6 +10,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
 
+#include "common/file.h"
 #include "tools/relay/relay.h"
 
 namespace fogline::relay {
@@ -18,7 +19,6 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-constexpr std::size_t kReadBytes = 64 << 10;
 // A client has to send its magic within this time after it connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
 
@@ -47,7 +47,7 @@ RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
       greeting_(socket_.get_executor()),
       parser_(runtime::tcpq::kClientMagic, relay.options_.limits),
       subscriptions_(relay.options_.subscriptions),
-      read_(kReadBytes) {}
+      read_(kWorthACall) {}
 
 void RelayClient::Start() {
   error_code ignored;  // a closed socket reports that at the next read
@@ -138,7 +138,7 @@ void RelayClient::Write() {
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->sending_.clear();
                       // Frees the memory of a queue that was long.
-                      if (self->sending_.capacity() > kReadBytes) self->sending_.shrink_to_fit();
+                      if (self->sending_.capacity() > kWorthACall) self->sending_.shrink_to_fit();
                       if (error) {
                         self->deaf_ = true;
                         self->waiting_.clear();

@@ -7,8 +7,8 @@
 #include <boost/asio/signal_set.hpp>
 
 #include "common/errors.h"
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "tools/relay/relay.h"
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "tools/report/html.h"
 #include "tools/report/tables.h"
 #include "tools/stats/pareto.h"
 

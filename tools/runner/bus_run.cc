@@ -15,10 +15,9 @@
 
 #include <fmt/core.h>
 
+#include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/progress.h"
-#include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/acc/acc.h"
 #include "services/arbitrator/arbitrator.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/metrics/closed_loop/closed_loop.h"

@@ -10,16 +10,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool Executable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
 bool Readable(const fs::path& file) { return access(file.c_str(), R_OK) == 0; }
 
 }  // namespace
+
+bool IsExecutable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
 
 fs::path InPath(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    if (const fs::path file = fs::path(folder) / program; Executable(file)) return file;
+    if (const fs::path file = fs::path(folder) / program; IsExecutable(file)) return file;
   }
   return {};
 }
@@ -28,7 +29,7 @@ fs::path JavaProgram() {
   const char* home = std::getenv("JAVA_HOME");
   if (home == nullptr || *home == '\0') return InPath("java");
   const fs::path java = fs::path(home) / "bin/java";
-  return Executable(java) ? java : fs::path();
+  return IsExecutable(java) ? java : fs::path();
 }
 
 bool OpensWindows(const fs::path& java) {

@@ -7,6 +7,9 @@
 
 namespace fogline::spy {
 
+/// Whether this user may execute a file.
+bool IsExecutable(const std::filesystem::path& file);
+
 /// Path of a program as the shell finds it; "" if it is not in PATH.
 std::filesystem::path InPath(const std::string& program);
 

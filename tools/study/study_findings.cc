@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/html.h"
-
 namespace fogline::study {
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "common/atomic_file.h"
 #include "common/errors.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
@@ -72,14 +72,13 @@ std::string Names() {
 
 /// @throws InputError
 std::vector<const Study*> Chosen(const std::string& name) {
-  std::vector<const Study*> chosen;
-  for (const Study& study : Studies()) {
-    if (name == kAll || name == study.name) chosen.push_back(&study);
+  if (name == kAll) {
+    std::vector<const Study*> all;
+    for (const Study& study : Studies()) all.push_back(&study);
+    return all;
   }
-  if (chosen.empty()) {
-    throw InputError(fmt::format("error: no study \"{}\"; there are {}", name, Names()));
-  }
-  return chosen;
+  if (const Study* study = FindStudy(name); study != nullptr) return {study};
+  throw InputError(fmt::format("error: no study \"{}\"; there are {}", name, Names()));
 }
 
 Made Make(const Study& study, const StudyArguments& arguments) {

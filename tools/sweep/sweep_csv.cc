@@ -17,7 +17,7 @@
 #include "common/atomic_file.h"
 #include "common/errors.h"
 #include "common/file.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 #include "common/text.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/row_sums.h"

@@ -1,15 +1,12 @@
 #include <nlohmann/json.hpp>
 
+#include "common/json.h"
 #include "tools/watch/traffic_text.h"
 
 namespace fogline::watch {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json OrNull(const std::optional<double>& value, double factor = 1) {
-  return value ? Json(factor * *value) : Json(nullptr);
-}
 
 Json ChannelJson(const ChannelView& channel) {
   constexpr double kMillisecondsPerSecond = 1e3;

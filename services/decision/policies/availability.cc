@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "services/models/driver/take_over_time.h"
+#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::policies {
 namespace {

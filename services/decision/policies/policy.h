@@ -12,7 +12,6 @@
 #include "scenario/sections/scenario.h"
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/graph.h"
-#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::policies {
 

@@ -64,9 +64,4 @@ Situation FogSight::Perceive(const Situation& truth, double visibility_m) const 
   return perceived;
 }
 
-double SpeedForSightDistance(double range_m, double reaction_time_s, double deceleration_mps2) {
-  const double before = deceleration_mps2 * reaction_time_s;
-  return std::sqrt(before * before + 2.0 * deceleration_mps2 * range_m) - before;
-}
-
 }  // namespace fogline::models

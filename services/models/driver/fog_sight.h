@@ -36,8 +36,4 @@ class FogSight {
   FogSightParameters parameters_;
 };
 
-/// The highest speed in m/s from which a car can stop within the range of sight, with reaction time
-/// tau and deceleration b: v tau + v^2 / (2 b) = range.
-double SpeedForSightDistance(double range_m, double reaction_time_s, double deceleration_mps2);
-
 }  // namespace fogline::models

@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 
 #include "common/errors.h"
+#include "common/interrupt.h"
 #include "common/own_pauses.h"
 #include "common/process/console.h"
-#include "common/process/interrupt.h"
 #include "common/process/this_process.h"
 #include "services/runtime/discovery/run_seeker.h"
 #include "services/runtime/process/version.h"

@@ -35,7 +35,6 @@ class RealtimeStatistics {
   std::int64_t deadline_misses() const { return deadline_misses_; }
   /// The time between a tick and its due time, early or late.
   const DurationHistogram& jitter() const { return jitter_; }
-  const DurationHistogram& latency() const { return latency_; }
 
   /// Writes everything into a STATUS.
   void Write(status_t& status) const;

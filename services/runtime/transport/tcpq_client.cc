@@ -27,7 +27,6 @@ constexpr Duration kStallLimit = milliseconds(5000);
 // kAnswerLimit for a relay that the client connects to again. The process does nothing else
 // meanwhile.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
-constexpr std::size_t kReadBytes = 64 << 10;
 // The most bytes from the relay that are kept while the relay takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;
 // After publishing this many bytes without reading, the client reads: a relay disconnects clients
@@ -50,7 +49,7 @@ Client::Client(const std::string& url, const Limits& limits)
     : endpoint_(ResolveUrl(url)),
       limits_(limits),
       parser_(kRelayMagic, limits),
-      chunk_(kReadBytes) {
+      chunk_(kWorthACall) {
   try {
     fd_ = Connect(kAnswerLimit);
     Greet(kAnswerLimit);

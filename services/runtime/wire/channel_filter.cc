@@ -1,5 +1,6 @@
 #include "services/runtime/wire/channel_filter.h"
 
+#include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -22,9 +23,10 @@ namespace {
 constexpr std::uint32_t kMagicOffset = 8;
 constexpr std::uint32_t kChannelOffset = kMagicOffset + 8;
 constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian like every number here
-constexpr std::size_t kMaxChannel = 63;              // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr auto kMaxDatagram = static_cast<std::uint32_t>(kChannelOffset + kMaxChannel + 1 +
+constexpr auto kMaxDatagram = static_cast<std::uint32_t>(kChannelOffset + kLongestChannel + 1 +
                                                          kMaxMessageBytes + kSignatureBytes);
+
+static_assert(kLongestChannel == LCM_MAX_CHANNEL_NAME_LENGTH);
 
 constexpr std::uint32_t kWholeDatagram = 0xffffffff;
 constexpr std::uint32_t kNothing = 0;
@@ -132,7 +134,7 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
 std::vector<sock_filter> AnyChannelFilter() {
   std::vector<sock_filter> program = WholeMessages();
   // Looks for the 0 behind the name. A filter that reads beyond the end of a datagram drops it.
-  constexpr std::size_t kPlaces = kMaxChannel + 1;
+  constexpr std::size_t kPlaces = kLongestChannel + 1;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     program.push_back(Load(1, kChannelOffset + i));
     program.push_back(SkipIf(0, 2 * (kPlaces - 1 - i) + 1));

@@ -28,7 +28,7 @@ enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscrib
 
 /// The largest parts of a frame, in bytes. A longer part is refused before it is read.
 struct Limits {
-  std::size_t channel = 63;  // LCM's own LCM_MAX_CHANNEL_NAME_LENGTH
+  std::size_t channel = kLongestChannel;
   // Of a subscription: the cost of a match grows with the square of its length.
   std::size_t pattern = 256;
   std::size_t payload = 4 << 20;

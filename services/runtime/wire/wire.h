@@ -24,6 +24,8 @@ using Bytes = std::span<const std::uint8_t>;
 /// The largest message. With the headers of UDP and LCM, the channel's name and a signature it
 /// still fits into one Ethernet frame, so it is not fragmented.
 inline constexpr std::size_t kMaxMessageBytes = 1400;
+/// LCM's longest channel name (LCM_MAX_CHANNEL_NAME_LENGTH), in bytes.
+inline constexpr std::size_t kLongestChannel = 63;
 
 /// Every message begins with its type's fingerprint (8 bytes) and header_t: run_id, step, utime.
 inline constexpr std::size_t kRunIdOffset = 8;

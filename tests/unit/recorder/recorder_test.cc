@@ -3,10 +3,15 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <filesystem>
 #include <fstream>
 
+#include "services/log/remains.h"
+#include "services/log/step_order.h"
 #include "tests/support/command.h"
 #include "tests/unit/runtime/script.h"
 
@@ -56,6 +61,27 @@ class RecorderTest : public testing::Test {
     for (int i = 0; i < kTurns; ++i) {
       recorder.Poll(Clock::now());
       script_.bus().Drain();
+    }
+  }
+  /// Writes the scenario of the run into a log, as a recorder does.
+  void WriteScenario(log::EventLogWriter& log) const {
+    const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      runtime::Encode(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0,
+                                           runtime::HashOf(script_.text()), parts, i),
+                      bytes);
+      log.Write(ChannelOf<run_t>().name, 0, bytes);
+    }
+  }
+  /// Writes the steps from `first` on and before `end`. All of them have the same size.
+  static void WriteSteps(log::EventLogWriter& log, std::int64_t first, std::int64_t end) {
+    std::vector<std::uint8_t> bytes;
+    for (std::int64_t step = first; step < end; ++step) {
+      ForEachStepChannel([&]<class M>(std::size_t channel) {
+        runtime::Encode(Script::Of<M>(step), bytes);
+        log.Write(kChannels[channel].name, step * 100'000, bytes);
+      });
     }
   }
   /// Records the whole run. @return the bytes of its log
@@ -181,20 +207,8 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
   const std::string file = folder_.File("long");
   {
     log::EventLogWriter log(file);
-    const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
-    std::vector<std::uint8_t> bytes;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      runtime::Encode(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0,
-                                           runtime::HashOf(script_.text()), parts, i),
-                      bytes);
-      log.Write(ChannelOf<run_t>().name, 0, bytes);
-    }
-    for (std::int64_t step = 0; step < kMany; ++step) {
-      ForEachStepChannel([&]<class M>(std::size_t channel) {
-        runtime::Encode(Script::Of<M>(step), bytes);
-        log.Write(kChannels[channel].name, step * 100'000, bytes);
-      });
-    }
+    WriteScenario(log);
+    WriteSteps(log, 0, kMany);
   }
   std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * log::kTailBytes);
   // WHEN a recorder continues it
@@ -210,6 +224,53 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
   EXPECT_GT(steps.front(), 0);
   EXPECT_EQ(status_.back().state, status_t::READY);
   EXPECT_EQ(status_.back().header.step, kMany - 1);
+}
+
+/// The bytes that this process has read so far: by calls, and through mapped files.
+std::int64_t BytesRead() {
+  std::ifstream io("/proc/self/io");
+  std::string name;
+  std::int64_t by_calls = 0;
+  io >> name >> by_calls;
+  EXPECT_EQ(name, "rchar:");
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return by_calls + (use.ru_minflt + use.ru_majflt) * sysconf(_SC_PAGESIZE);
+}
+
+TEST_F(RecorderTest, ReadsOfALongLogOnlyItsEndWhenItGoesOn) {
+  // GIVEN a log of a hundred gigabytes that has only its front and its last steps
+  constexpr std::int64_t kLongLog = 100'000'000'000;
+  constexpr std::int64_t kLastSteps = 2000;  // more than the end that a recorder reads
+  const std::string file = folder_.File("long");
+  {
+    log::EventLogWriter log(file);
+    WriteScenario(log);
+    WriteSteps(log, 0, 1);
+  }
+  const log::LogFront front = log::ReadFront(file);
+  const std::int64_t step_bytes =
+      static_cast<std::int64_t>(std::filesystem::file_size(file)) - front.head.bytes;
+  const std::int64_t steps = kLongLog / step_bytes;
+  std::filesystem::resize_file(file,
+                               static_cast<std::uintmax_t>(front.head.bytes + steps * step_bytes));
+  {
+    log::EventLogWriter log(
+        file,
+        {.bytes = front.head.bytes + steps * step_bytes,
+         .events = front.head.events + steps * static_cast<std::int64_t>(log::kStepChannels)});
+    WriteSteps(log, steps, steps + kLastSteps);
+  }
+  // WHEN a recorder continues it
+  const std::int64_t before = BytesRead();
+  const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
+  // THEN it is ready at the last step, with a checksum of the end of the log
+  EXPECT_EQ(recorder->error(), "");
+  EXPECT_EQ(status_.back().state, status_t::READY);
+  EXPECT_EQ(status_.back().header.step, steps + kLastSteps - 1);
+  EXPECT_EQ(status_.back().log_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
+  // AND has read some megabytes of it, twice the end at most and what the memory of a process takes
+  EXPECT_LT(BytesRead() - before, 64 << 20);
 }
 
 TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {

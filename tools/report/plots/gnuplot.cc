@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include "common/atomic_file.h"
-#include "common/process/interrupt.h"
+#include "common/interrupt.h"
 
 extern char** environ;
 

@@ -1,18 +1,13 @@
 // Distances between two Gaussian readings N(x1, s1^2), N(x2, s2^2), with d = x1 - x2 and
-// S = s1^2 + s2^2.
+// S = s1^2 + s2^2. The Bhattacharyya distance is D_B = d^2/(4 S) + ln(S/(2 s1 s2))/2, at least 0
+// (Bhattacharyya 1943). Its second part is above 0 at d = 0, too, if the precisions differ: unequal
+// precision looks like conflict. So only the first part is used. The Hellinger distance is
+// H = sqrt(1 - exp(-D_B)), in [0, 1].
 #pragma once
 
 #include "services/decision/conflict/disagreement.h"
 
 namespace fogline::conflict {
-
-/// Bhattacharyya distance D_B = d^2/(4 S) + ln(S/(2 s1 s2))/2, at least 0 (Bhattacharyya 1943).
-/// The second part is above 0 at d = 0, too, if the precisions differ: unequal precision looks like
-/// conflict.
-double Bhattacharyya(const Disagreement& disagreement);
-
-/// Hellinger distance H = sqrt(1 - exp(-D_B)), in [0, 1].
-double Hellinger(const Disagreement& disagreement);
 
 /// The part of D_B that comes from the means, d^2/(4 S) = NIS/4: at least 0, and 0 at d = 0.
 double BhattacharyyaOfMeans(const Disagreement& disagreement);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "services/decision/conflict/disagreement.h"
-#include "services/decision/conflict/over_time/window.h"
+#include "services/decision/conflict/window.h"
 
 namespace fogline::conflict {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "services/decision/conflict/disagreement.h"
-#include "services/decision/conflict/over_time/window.h"
+#include "services/decision/conflict/window.h"
 
 namespace fogline::conflict {
 

@@ -13,7 +13,7 @@
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/conflict_parameters.h"
 #include "services/decision/conflict/one_step/consonant_belief.h"
-#include "services/decision/conflict/over_time/window.h"
+#include "services/decision/conflict/window.h"
 
 namespace fogline::conflict {
 

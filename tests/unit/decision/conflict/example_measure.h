@@ -1,4 +1,4 @@
-// services/decision/conflict/relative.h: how much of the radar's range the LiDAR misses.
+// services/decision/conflict/one_step/relative.h: how much of the radar's range the LiDAR misses.
 #pragma once
 
 #include <algorithm>

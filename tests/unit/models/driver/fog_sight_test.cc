@@ -103,13 +103,6 @@ TEST(FogSightTest, LeavesAFreeRoadFree) {
       models::FogSight(FogSightParameters{}).Perceive({.speed_mps = 20}, 50).ahead.has_value());
 }
 
-TEST(FogSightTest, GivesTheSpeedFromWhichACarStopsWithinSight) {
-  // tau = 1 s, b = 3 m/s2.
-  EXPECT_NEAR(models::SpeedForSightDistance(50, 1, 3), 14.6, 0.05);
-  EXPECT_NEAR(models::SpeedForSightDistance(100, 1, 3), 21.7, 0.05);
-  EXPECT_NEAR(models::SpeedForSightDistance(200, 1, 3), 31.8, 0.05);
-}
-
 TEST(FogSightTest, RefusesAContrastBelowItsThreshold) {
   FogSightParameters p;
   p.contrast = 0.04;
