@@ -3,7 +3,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "scenario/sections/scenario.h"
 
@@ -26,7 +25,6 @@ class FieldAssignment {
 
  private:
   std::string pointer_;
-  std::vector<std::string> path_;
 };
 
 }  // namespace fogline

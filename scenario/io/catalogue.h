@@ -1,37 +1,22 @@
 // Every field of a scenario by its JSON pointer: for explanations, overrides and suggestions.
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 
-/// A section, a list, a list's item or a field.
-struct FieldInfo {
-  std::string pointer;       // a list's item has the segment *
-  bool is_section = false;   // a section, the whole scenario, or an item with fields
-  std::string allowed;       // such as "a number in [0, 70] m/s"
-  std::string default_text;  // with unit; "" for a section, list or item without a default
-  std::string doc;
-  std::string_view source;
-  std::span<const std::string_view> choices;
-  std::span<const std::string_view> choice_docs;
-};
+/// All fields, sections, lists and items of a scenario, with default values. Each list has one
+/// item, with the segment * in its pointer. The contents of a section follow the section. The
+/// values are shared by all callers: read them only.
+const FieldList& Catalogue();
 
-/// All fields, sections, lists and items. The contents of a section follow the section. The first
-/// entry is the whole scenario, "/".
-const std::vector<FieldInfo>& Catalogue();
-
-/// The index that a segment of a pointer states: digits without a leading zero (RFC 6901, section
-/// 4). Nothing if the segment is not an index.
-std::optional<std::size_t> ListIndex(std::string_view segment);
-
-/// The field with this pointer; null if there is none. Any index finds the item of a list.
-const FieldInfo* FindField(std::string_view pointer);
+/// The field with this pointer; null if there is none. Any index finds the item of a list. "/" and
+/// "" find the whole scenario, which is not in Catalogue().
+const Field* FindField(std::string_view pointer);
 
 /// The longest beginning of `pointer` that names a field or section; at least "/".
 std::string NearestKnownPointer(std::string_view pointer);

@@ -1,120 +1,87 @@
-// PrintScenario: a visitor that writes every field.
+// PrintScenario: writes every field as JSON.
 #include <cstddef>
-#include <cstdint>
 #include <string>
-#include <string_view>
-#include <vector>
+#include <utility>
+#include <variant>
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 namespace {
 
 constexpr std::size_t kMaxColumns = 100;
 
-// Writes the members of one object, indented by two spaces a level.
+// Writes values, each level of the contents of lists and objects indented by two spaces.
 class Printer {
  public:
-  Printer(std::string& out, std::size_t depth) : out_(out), depth_(depth) {}
+  void operator()(const NumberField& number) { out_ += NumberText(*number.value); }
+  void operator()(const IntegerField& integer) { out_ += std::to_string(*integer.value); }
+  void operator()(const bool* flag) { out_ += *flag ? "true" : "false"; }
+  void operator()(const std::string* text) { out_ += Quote(*text); }
+  void operator()(const ChoiceField& choice) { out_ += Quote(choice.names[choice.get()]); }
+  void operator()(const NumbersField& numbers);
+  void operator()(const ListField& list) { Block('[', list.items(""), ']'); }
+  void operator()(const SectionField& section) { Block('{', section.fields(""), '}'); }
 
-  void Number(std::string_view name, const double& value, const NumberSpec&) {
-    Key(name);
-    out_ += NumberText(value);
-  }
-  void Integer(std::string_view name, const std::int64_t& value, const IntegerSpec&) {
-    Key(name);
-    out_ += std::to_string(value);
-  }
-  void Flag(std::string_view name, const bool& value, std::string_view /*doc*/) {
-    Key(name);
-    out_ += value ? "true" : "false";
-  }
-  void Text(std::string_view name, const std::string& value, std::string_view /*doc*/) {
-    Key(name);
-    out_ += Quote(value);
-  }
-  template <class Enum>
-  void Choice(std::string_view name, const Enum& value, std::string_view /*doc*/) {
-    Key(name);
-    out_ += Quote(ChoiceNames<Enum>::kNames[static_cast<std::size_t>(value)]);
-  }
-  void Numbers(std::string_view name, const std::vector<double>& values, const NumberSpec&,
-               const ListSpec&) {
-    Key(name);
-    out_ += '[';
-    std::size_t line_begin = out_.size();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::string number = NumberText(values[i]);
-      const bool full = out_.size() - line_begin + number.size() + 2 > kMaxColumns;
-      if (i == 0 || full) {
-        if (i > 0) out_ += ',';
-        line_begin = NewLine(depth_ + 1);
-      } else {
-        out_ += ", ";
-      }
-      out_ += number;
+  void Block(char open, const FieldList& fields, char close) {
+    out_ += open;
+    ++depth_;
+    for (const Field& field : fields) {
+      if (&field != &fields.front()) out_ += ',';
+      NewLine();
+      if (!field.name.empty()) out_ += Quote(field.name) + ": ";
+      std::visit(*this, field.value);
     }
-    if (!values.empty()) NewLine(depth_);
-    out_ += ']';
+    --depth_;
+    if (!fields.empty()) NewLine();
+    out_ += close;
   }
-  template <class T>
-  void Section(std::string_view name, const T& section, std::string_view /*doc*/) {
-    Key(name);
-    Object(section, depth_);
-  }
-  template <class T>
-  void List(std::string_view name, const std::vector<T>& items, const ListSpec&) {
-    Key(name);
-    out_ += '[';
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      if (i > 0) out_ += ',';
-      NewLine(depth_ + 1);
-      Object(items[i], depth_ + 1);
-    }
-    if (!items.empty()) NewLine(depth_);
-    out_ += ']';
-  }
-  void Needs(const NeedSpec&) {}
 
-  // Writes `object` in braces that are indented by `depth` levels.
-  template <class T>
-  void Object(const T& object, std::size_t depth) {
-    out_ += '{';
-    Printer inner(out_, depth + 1);
-    T::Fields(object, inner);
-    NewLine(depth);
-    out_ += '}';
-  }
+  std::string TakeText() { return std::move(out_); }
 
  private:
   // Begins a line; returns where in `out_` it begins.
-  std::size_t NewLine(std::size_t depth) {
+  std::size_t NewLine() {
     out_ += '\n';
     const std::size_t begin = out_.size();
-    out_.append(2 * depth, ' ');
+    out_.append(2 * depth_, ' ');
     return begin;
   }
-  void Key(std::string_view name) {
-    if (!first_) out_ += ',';
-    first_ = false;
-    NewLine(depth_);
-    out_ += Quote(name);
-    out_ += ": ";
-  }
 
-  std::string& out_;
-  std::size_t depth_;
-  bool first_ = true;
+  std::string out_;
+  std::size_t depth_ = 0;
 };
+
+// Fills the lines.
+void Printer::operator()(const NumbersField& numbers) {
+  out_ += '[';
+  ++depth_;
+  std::size_t line_begin = 0;
+  for (const double& value : *numbers.values) {
+    const std::string number = NumberText(value);
+    const bool first = &value == &numbers.values->front();
+    if (first || out_.size() - line_begin + number.size() + 2 > kMaxColumns) {
+      if (!first) out_ += ',';
+      line_begin = NewLine();
+    } else {
+      out_ += ", ";
+    }
+    out_ += number;
+  }
+  --depth_;
+  if (!numbers.values->empty()) NewLine();
+  out_ += ']';
+}
 
 }  // namespace
 
 std::string PrintScenario(const Scenario& scenario) {
-  std::string out;
-  Printer(out, 0).Object(scenario, 0);
-  out += '\n';
-  return out;
+  Scenario printed = scenario;  // a view needs a scenario that may change
+  Printer printer;
+  printer.Block('{', FieldsOf(printed), '}');
+  return printer.TakeText() + "\n";
 }
 
 }  // namespace fogline

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/core.h>
@@ -16,6 +17,7 @@
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
 #include "scenario/sections/field_text.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 namespace {
@@ -54,195 +56,161 @@ std::string_view QuotesHint(const JsonValue& value) {
   return bare ? "; did you mean it without quotes?" : "";
 }
 
-// Visits one object: a section, an item of a list, or the whole scenario.
-class ObjectReader {
+std::vector<std::string_view> KeysOf(const FieldList& fields) {
+  std::vector<std::string_view> keys;
+  for (const Field& field : fields) keys.push_back(field.name);
+  return keys;
+}
+
+// Reads values into fields, and notes each mistake at its pointer.
+class Reader {
  public:
-  ObjectReader(const JsonObject& object, Place place, std::string pointer, DiagnosticList& mistakes)
-      : object_(object), place_(place), pointer_(std::move(pointer)), mistakes_(mistakes) {}
+  explicit Reader(DiagnosticList& mistakes) : mistakes_(mistakes) {}
 
-  void Number(std::string_view name, double& out, const NumberSpec& spec) {
-    if (const JsonValue* value = Take(name)) ReadNumber(*value, Pointer(name), out, spec);
-  }
-  void Integer(std::string_view name, std::int64_t& out, const IntegerSpec& spec);
-  void Flag(std::string_view name, bool& out, std::string_view doc);
-  void Text(std::string_view name, std::string& out, std::string_view doc);
-  void Numbers(std::string_view name, std::vector<double>& out, const NumberSpec& spec,
-               const ListSpec& list);
+  // Reads the members of an object that are fields.
+  void ReadFields(const JsonObject& object, const FieldList& fields);
+  // Refuses the other members. `known` are the names of the fields.
+  void RefuseUnknownKeys(const JsonObject& object, const std::string& pointer,
+                         const std::vector<std::string_view>& known);
 
-  template <class Enum>
-  void Choice(std::string_view name, Enum& out, std::string_view /*doc*/) {
-    const JsonValue* value = Take(name);
-    if (value == nullptr) return;
-    const std::optional<std::size_t> index =
-        ReadChoice(*value, Pointer(name), ChoiceNames<Enum>::kNames);
-    if (index) out = static_cast<Enum>(*index);
-  }
-  template <class T>
-  void Section(std::string_view name, T& out, std::string_view /*doc*/) {
-    if (const JsonValue* value = Take(name)) ReadObject(*value, Pointer(name), out);
-  }
-  template <class T>
-  void List(std::string_view name, std::vector<T>& out, const ListSpec& list) {
-    const JsonArray* items = TakeList(name, list);
-    if (items == nullptr) return;
-    out.assign(items->size(), T{});
-    const std::string base = Pointer(name);
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      ReadObject((*items)[i], fmt::format("{}/{}", base, i), out[i]);
-    }
-  }
-  void Needs(const NeedSpec& spec);
-
-  // Refuses every key that no field has taken; call it after all fields.
-  void RefuseUnknownKeys();
-  void Require(std::string_view name, std::string_view example);
-
-  // Reads the value as an object with the fields of T.
-  template <class T>
-  void ReadObject(const JsonValue& value, std::string pointer, T& out) {
-    const auto* object = value.As<JsonObject>();
-    if (object == nullptr) return Refuse(value, std::move(pointer), "an object");
-    ObjectReader reader(*object, value.place, std::move(pointer), mistakes_);
-    T::Fields(out, reader);
-    reader.RefuseUnknownKeys();
-  }
+  void Read(const JsonValue& value, const std::string& pointer, const NumberField& number);
+  void Read(const JsonValue& value, const std::string& pointer, const IntegerField& integer);
+  void Read(const JsonValue& value, const std::string& pointer, bool* flag);
+  void Read(const JsonValue& value, const std::string& pointer, std::string* text);
+  void Read(const JsonValue& value, const std::string& pointer, const ChoiceField& choice);
+  void Read(const JsonValue& value, const std::string& pointer, const NumbersField& numbers);
+  void Read(const JsonValue& value, const std::string& pointer, const ListField& list);
+  void Read(const JsonValue& value, const std::string& pointer, const SectionField& section);
 
  private:
-  std::string Pointer(std::string_view name) const { return JoinPointer(pointer_, name); }
-
-  // The value of a key; null if the object lacks it. From then on the key is known.
-  const JsonValue* Take(std::string_view name) {
-    known_.push_back(name);
-    const JsonMember* member = FindMember(object_, name);
-    return member == nullptr ? nullptr : &member->value;
-  }
-  const JsonArray* TakeList(std::string_view name, const ListSpec& list);
-
-  void ReadNumber(const JsonValue& value, std::string pointer, double& out, const NumberSpec& spec);
-  std::optional<std::size_t> ReadChoice(const JsonValue& value, std::string pointer,
-                                        std::span<const std::string_view> names);
-  std::string UnknownKeyMessage(std::string_view key) const;
+  void CheckNeed(const JsonObject& object, const Field& section, const NeedSpec& need);
+  // The items of a list; null if the value is no list or has a wrong length.
+  const JsonArray* Items(const JsonValue& value, const std::string& pointer, const ListSpec& list);
 
   // Notes a wrong type.
-  void Refuse(const JsonValue& value, std::string pointer, std::string_view allowed,
+  void Refuse(const JsonValue& value, const std::string& pointer, std::string_view allowed,
               std::string_view hint = "") {
-    mistakes_.Add(value.place, std::move(pointer), "type",
+    mistakes_.Add(value.place, pointer, "type",
                   fmt::format("must be {}, not {}{}", allowed, Describe(value), hint));
   }
 
-  const JsonObject& object_;
-  Place place_;
-  std::string pointer_;
   DiagnosticList& mistakes_;
-  std::vector<std::string_view> known_;
 };
 
-void ObjectReader::ReadNumber(const JsonValue& value, std::string pointer, double& out,
-                              const NumberSpec& spec) {
-  const std::optional<double> number = ToNumber(value);
-  if (!number) {
-    return Refuse(value, std::move(pointer), Allowed(spec), QuotesHint(value));
+void Reader::Read(const JsonValue& value, const std::string& pointer, const NumberField& number) {
+  const NumberSpec& spec = number.spec;
+  const std::optional<double> read = ToNumber(value);
+  if (!read) return Refuse(value, pointer, Allowed(spec), QuotesHint(value));
+  if (*read < spec.min || *read > spec.max) {
+    return mistakes_.Add(value.place, pointer, "range",
+                         fmt::format("{} is outside {}", TextOfNumber(value), Range(spec)));
   }
-  if (*number < spec.min || *number > spec.max) {
-    mistakes_.Add(value.place, std::move(pointer), "range",
-                  fmt::format("{} is outside {}", TextOfNumber(value), Range(spec)));
-    return;
-  }
-  out = *number;
+  *number.value = *read;
 }
 
-void ObjectReader::Integer(std::string_view name, std::int64_t& out, const IntegerSpec& spec) {
-  const JsonValue* value = Take(name);
-  if (value == nullptr) return;
-  const std::optional<std::int64_t> integer = ToInteger(*value);
-  if (!integer) return Refuse(*value, Pointer(name), Allowed(spec), QuotesHint(*value));
-  if (*integer < spec.min || *integer > spec.max) {
-    const std::string number = TextOfNumber(*value);
-    mistakes_.Add(value->place, Pointer(name), "range",
-                  spec.min == spec.max ? fmt::format("must be {}, not {}", Allowed(spec), number)
-                                       : fmt::format("{} is outside {}", number, Range(spec)));
-    return;
+void Reader::Read(const JsonValue& value, const std::string& pointer, const IntegerField& integer) {
+  const IntegerSpec& spec = integer.spec;
+  const std::optional<std::int64_t> read = ToInteger(value);
+  if (!read) return Refuse(value, pointer, Allowed(spec), QuotesHint(value));
+  if (*read < spec.min || *read > spec.max) {
+    const std::string number = TextOfNumber(value);
+    return mistakes_.Add(value.place, pointer, "range",
+                         spec.min == spec.max
+                             ? fmt::format("must be {}, not {}", Allowed(spec), number)
+                             : fmt::format("{} is outside {}", number, Range(spec)));
   }
-  out = *integer;
+  *integer.value = *read;
 }
 
-void ObjectReader::Flag(std::string_view name, bool& out, std::string_view /*doc*/) {
-  const JsonValue* value = Take(name);
-  if (value == nullptr) return;
-  const auto* flag = value->As<bool>();
-  if (flag == nullptr) return Refuse(*value, Pointer(name), "true or false", QuotesHint(*value));
-  out = *flag;
+void Reader::Read(const JsonValue& value, const std::string& pointer, bool* flag) {
+  const auto* read = value.As<bool>();
+  if (read == nullptr) return Refuse(value, pointer, "true or false", QuotesHint(value));
+  *flag = *read;
 }
 
-void ObjectReader::Text(std::string_view name, std::string& out, std::string_view /*doc*/) {
-  const JsonValue* value = Take(name);
-  if (value == nullptr) return;
-  const auto* text = value->As<std::string>();
-  if (text == nullptr) return Refuse(*value, Pointer(name), "a text");
-  const std::size_t length = CountCharacters(*text);
+void Reader::Read(const JsonValue& value, const std::string& pointer, std::string* text) {
+  const auto* read = value.As<std::string>();
+  if (read == nullptr) return Refuse(value, pointer, "a text");
+  const std::size_t length = CountCharacters(*read);
   if (length > static_cast<std::size_t>(kMaxTextLength)) {
-    mistakes_.Add(value->place, Pointer(name), "text",
+    mistakes_.Add(value.place, pointer, "text",
                   fmt::format("{} characters; allowed are {}", length, kMaxTextLength));
-  } else if (HasControlCharacter(*text)) {
-    mistakes_.Add(value->place, Pointer(name), "text",
-                  fmt::format("a control character, which is not allowed: {}", QuoteShort(*text)));
+  } else if (HasControlCharacter(*read)) {
+    mistakes_.Add(value.place, pointer, "text",
+                  fmt::format("a control character, which is not allowed: {}", QuoteShort(*read)));
   } else {
-    out = *text;
+    *text = *read;
   }
 }
 
-std::optional<std::size_t> ObjectReader::ReadChoice(const JsonValue& value, std::string pointer,
-                                                    std::span<const std::string_view> names) {
+void Reader::Read(const JsonValue& value, const std::string& pointer, const ChoiceField& choice) {
   const auto* text = value.As<std::string>();
-  if (text == nullptr) {
-    Refuse(value, std::move(pointer), "one of " + Names(names));
-    return std::nullopt;
+  if (text == nullptr) return Refuse(value, pointer, "one of " + Names(choice.names));
+  const auto it = std::find(choice.names.begin(), choice.names.end(), *text);
+  if (it == choice.names.end()) {
+    return mistakes_.Add(
+        value.place, pointer, "choice",
+        fmt::format("{} is not one of {}{}", QuoteShort(*text), Names(choice.names),
+                    DidYouMean(Nearest(*text, choice.names))));
   }
-  const auto it = std::find(names.begin(), names.end(), *text);
-  if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
-  mistakes_.Add(value.place, std::move(pointer), "choice",
-                fmt::format("{} is not one of {}{}", QuoteShort(*text), Names(names),
-                            DidYouMean(Nearest(*text, names))));
-  return std::nullopt;
+  choice.set(static_cast<std::size_t>(it - choice.names.begin()));
 }
 
-const JsonArray* ObjectReader::TakeList(std::string_view name, const ListSpec& list) {
-  const JsonValue* value = Take(name);
-  if (value == nullptr) return nullptr;
-  const auto* items = value->As<JsonArray>();
+const JsonArray* Reader::Items(const JsonValue& value, const std::string& pointer,
+                               const ListSpec& list) {
+  const auto* items = value.As<JsonArray>();
   if (items == nullptr) {
-    Refuse(*value, Pointer(name), fmt::format("a list of {} items", Range(list)));
+    Refuse(value, pointer, fmt::format("a list of {} items", Range(list)));
     return nullptr;
   }
   const auto count = static_cast<std::int64_t>(items->size());
   if (count >= list.min_items && count <= list.max_items) return items;
-  mistakes_.Add(value->place, Pointer(name), "list-length",
+  mistakes_.Add(value.place, pointer, "list-length",
                 fmt::format("{} items; allowed are {}", count, Range(list)));
   return nullptr;
 }
 
-void ObjectReader::Numbers(std::string_view name, std::vector<double>& out, const NumberSpec& spec,
-                           const ListSpec& list) {
-  const JsonArray* items = TakeList(name, list);
+void Reader::Read(const JsonValue& value, const std::string& pointer, const NumbersField& numbers) {
+  const JsonArray* items = Items(value, pointer, numbers.list);
   if (items == nullptr) return;
-  out.assign(items->size(), 0.0);
+  const NumberSpec& spec = numbers.spec;
+  numbers.values->assign(items->size(), 0.0);
   for (std::size_t i = 0; i < items->size() && !mistakes_.full(); ++i) {
     const JsonValue& item = (*items)[i];
+    double& number = (*numbers.values)[i];
     if (const std::optional<double> n = ToNumber(item); n && *n >= spec.min && *n <= spec.max) {
-      out[i] = *n;
+      number = *n;
     } else {
-      ReadNumber(item, fmt::format("{}/{}", Pointer(name), i), out[i], spec);
+      Read(item, fmt::format("{}/{}", pointer, i), NumberField{.value = &number, .spec = spec});
     }
   }
 }
 
-void ObjectReader::Needs(const NeedSpec& spec) {
-  const JsonMember* choice = FindMember(object_, spec.choice);
+void Reader::Read(const JsonValue& value, const std::string& pointer, const ListField& list) {
+  const JsonArray* items = Items(value, pointer, list.list);
+  if (items == nullptr) return;
+  list.reset(items->size());
+  const FieldList fields = list.items(pointer);
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    Read((*items)[i], fields[i].pointer, *fields[i].As<SectionField>());
+  }
+}
+
+void Reader::Read(const JsonValue& value, const std::string& pointer, const SectionField& section) {
+  const auto* object = value.As<JsonObject>();
+  if (object == nullptr) return Refuse(value, pointer, "an object");
+  const FieldList fields = section.fields(pointer);
+  ReadFields(*object, fields);
+  RefuseUnknownKeys(*object, pointer, KeysOf(fields));
+}
+
+void Reader::CheckNeed(const JsonObject& object, const Field& section, const NeedSpec& need) {
+  const JsonMember* choice = FindMember(object, need.choice);
   if (choice == nullptr) return;
   const auto* text = choice->value.As<std::string>();
-  if (text == nullptr || *text != spec.value) return;
-  if (const JsonMember* section = FindMember(object_, spec.section)) {
-    const auto* fields = section->value.As<JsonObject>();
+  if (text == nullptr || *text != need.value) return;
+  if (const JsonMember* member = FindMember(object, section.name)) {
+    const auto* fields = member->value.As<JsonObject>();
     if (fields == nullptr) return;  // a wrong type, which has been noted
     const auto given = [fields](std::string_view name) {
       const JsonMember* field = FindMember(*fields, name);
@@ -251,34 +219,43 @@ void ObjectReader::Needs(const NeedSpec& spec) {
       const auto* items = field->value.As<JsonArray>();
       return !(field_text && field_text->empty()) && !(items && items->empty());
     };
-    if (std::any_of(spec.fields.begin(), spec.fields.end(), given)) return;
+    if (std::any_of(need.fields.begin(), need.fields.end(), given)) return;
   }
-  mistakes_.Add(choice->value.place, Pointer(spec.section), "needed",
-                fmt::format("{} {} needs {} or {} in {}", spec.choice, Quote(spec.value),
-                            Quote(spec.fields[0]), Quote(spec.fields[1]), Pointer(spec.section)));
+  mistakes_.Add(choice->value.place, section.pointer, "needed",
+                fmt::format("{} {} needs {} or {} in {}", need.choice, Quote(need.value),
+                            Quote(need.fields[0]), Quote(need.fields[1]), section.pointer));
 }
 
-void ObjectReader::Require(std::string_view name, std::string_view example) {
-  if (FindMember(object_, name) != nullptr) return;
-  mistakes_.Add(place_, Pointer(name), "missing-key",
-                fmt::format("missing; every scenario has {}", example));
-}
-
-void ObjectReader::RefuseUnknownKeys() {
-  for (const JsonMember& member : object_) {
-    if (mistakes_.full()) return;
-    if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    mistakes_.Add(member.place, Pointer(member.key), "unknown-key", UnknownKeyMessage(member.key));
-  }
-}
-
-std::string ObjectReader::UnknownKeyMessage(std::string_view key) const {
+std::string UnknownKeyMessage(std::string_view key, const std::string& pointer,
+                              std::span<const std::string_view> known) {
   constexpr std::size_t kMaxListed = 8;
-  std::optional<std::string_view> meant = Nearest(key, known_);
+  std::optional<std::string_view> meant = Nearest(key, known);
   if (!meant) meant = FindName(key);
   if (meant) return "unknown key" + DidYouMean(meant);
-  if (known_.size() <= kMaxListed) return "unknown key; known here are " + Names(known_);
-  return "unknown key; known here: fogline check --explain " + NearestKnownPointer(pointer_);
+  if (known.size() <= kMaxListed) return "unknown key; known here are " + Names(known);
+  return "unknown key; known here: fogline check --explain " + NearestKnownPointer(pointer);
+}
+
+void Reader::ReadFields(const JsonObject& object, const FieldList& fields) {
+  for (const Field& field : fields) {
+    if (const JsonMember* member = FindMember(object, field.name)) {
+      std::visit([&](const auto& view) { Read(member->value, field.pointer, view); }, field.value);
+    }
+    const auto* section = field.As<SectionField>();
+    if (section != nullptr && !section->need.choice.empty()) {
+      CheckNeed(object, field, section->need);
+    }
+  }
+}
+
+void Reader::RefuseUnknownKeys(const JsonObject& object, const std::string& pointer,
+                               const std::vector<std::string_view>& known) {
+  for (const JsonMember& member : object) {
+    if (mistakes_.full()) return;
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+    mistakes_.Add(member.place, JoinPointer(pointer, member.key), "unknown-key",
+                  UnknownKeyMessage(member.key, pointer, known));
+  }
 }
 
 }  // namespace
@@ -290,12 +267,21 @@ Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes) {
     mistakes.Add(root.place, "", "type", "a scenario must be an object, not " + Describe(root));
     return scenario;
   }
-  ObjectReader reader(*object, root.place, "", mistakes);
+  Reader reader(mistakes);
+  constexpr std::string_view kSchema = "$schema";
   std::string schema;  // for editors; says nothing about the experiment
-  reader.Text("$schema", schema, "");
-  Scenario::Fields(scenario, reader);
-  reader.Require("version", "\"version\": 1");
-  reader.RefuseUnknownKeys();
+  if (const JsonMember* member = FindMember(*object, kSchema)) {
+    reader.Read(member->value, JoinPointer("", kSchema), &schema);
+  }
+  const FieldList fields = FieldsOf(scenario);
+  reader.ReadFields(*object, fields);
+  if (FindMember(*object, "version") == nullptr) {
+    mistakes.Add(root.place, "/version", "missing-key",
+                 "missing; every scenario has \"version\": 1");
+  }
+  std::vector<std::string_view> known = KeysOf(fields);
+  known.insert(known.begin(), kSchema);
+  reader.RefuseUnknownKeys(*object, "", known);
   return scenario;
 }
 

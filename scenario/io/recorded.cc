@@ -16,6 +16,7 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "scenario/sections/field_text.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 namespace {
@@ -42,19 +43,8 @@ Place FindPlace(const JsonValue& root, std::string_view pointer) {
 
 // The range of a recorded speed, as the scenario's field allows it.
 NumberSpec SpeedRange() {
-  struct Visitor {
-    NumberSpec range{};
-    void Numbers(std::string_view, const std::vector<double>&, const NumberSpec& numbers,
-                 const ListSpec&) {
-      range = numbers;
-    }
-    void Number(std::string_view, const double&, const NumberSpec&) {}
-    void Text(std::string_view, const std::string&, std::string_view) {}
-  };
-  Visitor visitor;
-  const RecordedSection section;
-  RecordedSection::Fields(section, visitor);
-  return visitor.range;
+  Scenario scenario;
+  return FieldAt(scenario, "/lead/recorded/speeds_mps")->As<NumbersField>()->spec;
 }
 
 // Speed and time of each row.

@@ -1,15 +1,16 @@
-// ScenarioSchema: a visitor that writes the JSON schema (draft-07) of every field.
+// ScenarioSchema: writes the JSON schema (draft-07) of every field.
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "scenario/io/catalogue.h"
 #include "scenario/io/loader.h"
 
 namespace fogline {
@@ -34,8 +35,8 @@ std::string Title(std::string_view name, std::string_view unit) {
   return unit.empty() ? std::string(name) : fmt::format("{} [{}]", name, unit);
 }
 
-std::string Description(std::string_view doc, std::string_view source) {
-  return source.empty() ? std::string(doc) : fmt::format("{} Source: {}.", doc, source);
+std::string Description(const Field& field) {
+  return fmt::format("{} Source: {}.", field.doc, field.source);
 }
 
 Json TextSchema(std::string_view name, std::string_view doc) {
@@ -47,116 +48,117 @@ Json TextSchema(std::string_view name, std::string_view doc) {
 }
 
 template <class Spec>
-Json NumberSchema(std::string_view type, std::string_view name, const Spec& spec) {
+Json NumberSchema(std::string_view type, const Field& field, const Spec& spec) {
   return {{"type", type},
-          {"title", Title(name, spec.unit)},
-          {"description", Description(spec.doc, spec.source)},
+          {"title", Title(field.name, spec.unit)},
+          {"description", Description(field)},
           {"minimum", JsonNumber(static_cast<double>(spec.min))},
           {"maximum", JsonNumber(static_cast<double>(spec.max))}};
 }
 
-Json ListSchema(std::string_view name, std::string_view doc, const ListSpec& list, Json items) {
+Json ListSchema(std::string_view title, std::string_view doc, const ListSpec& list) {
   return {{"type", "array"},
-          {"title", name},
+          {"title", title},
           {"description", doc},
           {"minItems", list.min_items},
           {"maxItems", list.max_items},
-          {"items", std::move(items)},
+          {"items", nullptr},
           {"default", Json::array()}};
 }
 
-// Fills the `properties` of one object's schema.
-class SchemaBuilder {
- public:
-  explicit SchemaBuilder(Json& schema) : schema_(schema) {}
+Json ObjectSchema(std::string_view title, std::string_view doc) {
+  return {{"type", "object"},
+          {"title", title},
+          {"description", doc},
+          {"additionalProperties", false},
+          {"properties", Json::object()}};
+}
 
-  void Number(std::string_view name, const double& value, const NumberSpec& spec) {
-    Add(name, NumberSchema("number", name, spec), JsonNumber(value));
-  }
-  void Integer(std::string_view name, const std::int64_t& value, const IntegerSpec& spec) {
-    Add(name, NumberSchema("integer", name, spec), value);
-  }
-  void Flag(std::string_view name, const bool& value, std::string_view doc) {
-    Add(name, {{"type", "boolean"}, {"title", name}, {"description", doc}}, value);
-  }
-  void Text(std::string_view name, const std::string& value, std::string_view doc) {
-    Add(name, TextSchema(name, doc), value);
-  }
-  template <class Enum>
-  void Choice(std::string_view name, const Enum& value, std::string_view doc) {
-    const std::span<const std::string_view> names = ChoiceNames<Enum>::kNames;
-    const std::span<const std::string_view> docs = ChoiceNames<Enum>::kDocs;
-    Add(name,
-        {{"type", "string"},
-         {"title", name},
-         {"description", doc},
-         {"enum", std::vector(names.begin(), names.end())},
-         {"enumDescriptions", std::vector(docs.begin(), docs.end())}},
-        names[static_cast<std::size_t>(value)]);
-  }
-  void Numbers(std::string_view name, const std::vector<double>&, const NumberSpec& spec,
-               const ListSpec& list) {
-    Property(name) = ListSchema(
-        Title(name, spec.unit), Description(spec.doc, spec.source), list,
-        {{"type", "number"}, {"minimum", JsonNumber(spec.min)}, {"maximum", JsonNumber(spec.max)}});
-  }
-  template <class T>
-  void Section(std::string_view name, const T& section, std::string_view doc) {
-    Property(name) = ObjectSchema(name, doc, section);
-  }
-  template <class T>
-  void List(std::string_view name, const std::vector<T>&, const ListSpec& list) {
-    Property(name) =
-        ListSchema(name, list.doc, list, ObjectSchema("item", "An item of the list.", T{}));
-  }
-  void Needs(const NeedSpec& spec) {
-    Json any_of = Json::array();
-    for (const std::string_view field : spec.fields) {
-      // minLength applies to texts only, and minItems to lists only.
-      any_of.push_back(
-          {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
+Json WithDefault(Json schema, Json default_value) {
+  schema["default"] = std::move(default_value);
+  return schema;
+}
+
+// The schema of a field, without the contents of a section or list.
+struct FieldSchema {
+  const Field& field;
+
+  Json operator()(const NumberField& number) const {
+    if (field.name.empty()) {
+      return {{"type", "number"},
+              {"minimum", JsonNumber(number.spec.min)},
+              {"maximum", JsonNumber(number.spec.max)}};
     }
-    schema_["if"] = {{"required", {spec.choice}},
-                     {"properties", {{spec.choice, {{"const", spec.value}}}}}};
-    schema_["then"] = {{"required", {spec.section}},
-                       {"properties", {{spec.section, {{"anyOf", any_of}}}}}};
+    return WithDefault(NumberSchema("number", field, number.spec), JsonNumber(*number.value));
   }
-
-  template <class T>
-  static Json ObjectSchema(std::string_view title, std::string_view doc, const T& object) {
-    Json schema{{"type", "object"},
-                {"title", title},
-                {"description", doc},
-                {"additionalProperties", false},
-                {"properties", Json::object()}};
-    SchemaBuilder builder(schema);
-    T::Fields(object, builder);
-    return schema;
+  Json operator()(const IntegerField& integer) const {
+    return WithDefault(NumberSchema("integer", field, integer.spec), *integer.value);
   }
-
- private:
-  Json& Property(std::string_view name) { return schema_["properties"][std::string(name)]; }
-  void Add(std::string_view name, Json property, Json default_value) {
-    property["default"] = std::move(default_value);
-    Property(name) = std::move(property);
+  Json operator()(const bool* flag) const {
+    return {
+        {"type", "boolean"}, {"title", field.name}, {"description", field.doc}, {"default", *flag}};
   }
-
-  Json& schema_;
+  Json operator()(const std::string* text) const {
+    return WithDefault(TextSchema(field.name, field.doc), *text);
+  }
+  Json operator()(const ChoiceField& choice) const {
+    return {{"type", "string"},
+            {"title", field.name},
+            {"description", field.doc},
+            {"enum", std::vector(choice.names.begin(), choice.names.end())},
+            {"enumDescriptions", std::vector(choice.docs.begin(), choice.docs.end())},
+            {"default", choice.names[choice.get()]}};
+  }
+  Json operator()(const NumbersField& numbers) const {
+    return ListSchema(Title(field.name, numbers.spec.unit), Description(field), numbers.list);
+  }
+  Json operator()(const ListField& list) const {
+    return ListSchema(field.name, field.doc, list.list);
+  }
+  Json operator()(const SectionField&) const {
+    return ObjectSchema(field.name.empty() ? "item" : field.name, field.doc);
+  }
 };
+
+// Where the schema of a field is in the schema of the scenario.
+Json::json_pointer PlaceOf(std::string_view pointer) {
+  std::string place;
+  while (!pointer.empty()) {
+    const std::string_view segment = pointer.substr(0, pointer.find('/', 1));
+    place += segment == "/*" ? "/items" : fmt::format("/properties{}", segment);
+    pointer.remove_prefix(segment.size());
+  }
+  return Json::json_pointer(place);
+}
+
+// Adds to the schema of an object what one of its sections needs.
+void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
+  Json any_of = Json::array();
+  for (const std::string_view field : need.fields) {
+    // minLength applies to texts only, and minItems to lists only.
+    any_of.push_back(
+        {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
+  }
+  object["if"] = {{"required", {need.choice}},
+                  {"properties", {{need.choice, {{"const", need.value}}}}}};
+  object["then"] = {{"required", {section}}, {"properties", {{section, {{"anyOf", any_of}}}}}};
+}
 
 }  // namespace
 
 std::string ScenarioSchema() {
-  const Json scenario =
-      SchemaBuilder::ObjectSchema("Fogline scenario", "An experiment.", Scenario{});
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}};
-  schema.update(scenario);
+  schema.update(ObjectSchema("Fogline scenario", "An experiment."));
+  schema["properties"]["$schema"] =
+      TextSchema("$schema", "The JSON schema of this file, for editors.");
+  for (const Field& field : Catalogue()) {
+    schema[PlaceOf(field.pointer)] = std::visit(FieldSchema{field}, field.value);
+    const auto* section = field.As<SectionField>();
+    if (section == nullptr || section->need.choice.empty()) continue;
+    const std::string outer = field.pointer.substr(0, field.pointer.rfind('/'));
+    AddNeed(schema[PlaceOf(outer)], field.name, section->need);
+  }
   schema["required"] = {"version"};
-  Json& properties = schema["properties"];
-  Json with_schema{
-      {"$schema", TextSchema("$schema", "The JSON schema of this file, for editors.")}};
-  with_schema.update(properties);
-  properties = with_schema;
   return schema.dump(2) + "\n";
 }
 

@@ -1,68 +1,114 @@
-// Description of the fields of a section: one `Fields` function in each section visits every field
-// with its name, range, unit, meaning and source. The loader, the JSON schema, the effective
-// scenario and the parameter tables all use these visits.
+// How the sections of a scenario declare their fields. All that is known of a field stands in one
+// place:
 //
 //   struct RadarSection {
-//     double bias_m = 0.0;
-//     template <class Self, class Visitor>
-//     static void Fields(Self& self, Visitor& visit) {
-//       visit.Number("bias_m", self.bias_m, {.min = -5, .max = 5, .unit = "m", .doc = "..."});
-//     }
+//     FOGLINE_FIELD(double, bias_m, 0.954, {-10, 10, "m"}, "Mounting offset that ...",
+//                   "our choice, because ...");
+//     FOGLINE_FIELD(bool, gating, false, "Refuse measurements outside the gate.");
 //   };
+//
+// The struct has the members `double bias_m = 0.954;` and `bool gating = false;`. What comes after
+// the default depends on the type:
+//
+//   double                      NumberSpec, meaning, source of the default
+//   std::int64_t                IntegerSpec, meaning, source of the default
+//   bool, std::string, an enum  meaning
+//   a section                   meaning; a NeedSpec if some files must have it
+//   a std::vector of double     ListSpec, NumberSpec, meaning, source
+//   a std::vector of sections   ListSpec, meaning
+//
+// A source is a publication, a data sheet, or "our choice, because ..."; it has no full stop at its
+// end. field_view.h lists all fields for code that reads, prints, sets or explains them.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
 namespace fogline {
 
-/// A real number: closed range, unit ("" if none), meaning, and the source of the default. The
-/// source is a publication, a data sheet, or "our choice, because ..."; it has no full stop at its
-/// end.
+/// A real number: closed range, and unit ("" if none).
 struct NumberSpec {
   double min;
   double max;
-  std::string_view unit;
-  std::string_view doc;
-  std::string_view source;
+  std::string_view unit = "";
 };
 
 /// An integer; in the file 3 and 3.0 are the same.
 struct IntegerSpec {
   std::int64_t min;
   std::int64_t max;
-  std::string_view unit;
-  std::string_view doc;
-  std::string_view source;
+  std::string_view unit = "";
 };
 
 /// A list: how many items it may have.
 struct ListSpec {
   std::int64_t min_items;
   std::int64_t max_items;
-  std::string_view doc;
 };
 
 /// Longest text in a scenario file, in characters (Unicode code points). No character of a text is
 /// a control character (C0, DEL, C1), so a text can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// If the choice `choice` is `value`, the file must have the section `section`, and at least one of
-/// its `fields` (texts or lists) must not be empty.
+/// If the choice `choice` beside a section is `value`, the file must have the section, and at least
+/// one of the section's `fields` (texts or lists) must not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;
-  std::string_view section;
   std::array<std::string_view, 2> fields;
 };
 
-/// Names of an enumeration's values in their order, as written in the file. Each enumeration has a
-/// specialisation with `static constexpr std::array kNames{...}` and `kDocs` of the same size. If
-/// the values are the rows of a table in another file, the specialisation declares both as `static
-/// const std::span<const std::string_view>`; the file of the table defines them.
+/// A value of an enumeration: its name in the file, and its meaning.
+struct Choice {
+  std::string_view name;
+  std::string_view doc;
+};
+
+/// One column of the values' names and meanings.
+template <std::size_t size>
+constexpr auto ColumnOf(const std::array<Choice, size>& choices, std::string_view Choice::*column) {
+  std::array<std::string_view, size> texts;
+  for (std::size_t i = 0; i < size; ++i) texts[i] = choices[i].*column;
+  return texts;
+}
+
+/// Names and meanings of an enumeration's values in their order. Each enumeration has a function
+/// `constexpr auto ChoicesOf(Enum)` that returns them as an std::array of Choice. If the values are
+/// the rows of a table in another file, a specialisation declares both as `static const
+/// std::span<const std::string_view>`, and the file of the table defines them.
 template <class Enum>
-struct ChoiceNames;
+struct ChoiceNames {
+  static constexpr auto kNames = ColumnOf(ChoicesOf(Enum()), &Choice::name);
+  static constexpr auto kDocs = ColumnOf(ChoicesOf(Enum()), &Choice::doc);
+};
+
+/// A line of a source file. It converts to the lines above it, best to the nearest.
+template <int number>
+struct SourceLine : SourceLine<number - 1> {};
+template <>
+struct SourceLine<0> {};
+
+/// No field stands below this line of its file.
+inline constexpr int kLastFieldLine = 500;
+
+/// Declares a field of a section, as described above. Beside the member it defines an overload of
+/// VisitFieldsUpTo() for the field's line, which visits the nearest field above, and so in turn all
+/// fields above, and then this field. VisitFieldsUpTo(visitor, SourceLine<kLastFieldLine>()) thus
+/// visits all fields of the section in their order. Line numbers serve for this because they are
+/// the same wherever the header is included.
+#define FOGLINE_FIELD(type, name, default_value, ...)                                         \
+  static_assert(__LINE__ <= ::fogline::kLastFieldLine, "split this file or raise the limit"); \
+  template <class Visitor>                                                                    \
+  void VisitFieldsUpTo(Visitor& visitor, ::fogline::SourceLine<__LINE__>) {                   \
+    using Above = ::fogline::SourceLine<__LINE__ - 1>;                                        \
+    if constexpr (requires { this->VisitFieldsUpTo(visitor, Above()); }) {                    \
+      this->VisitFieldsUpTo(visitor, Above());                                                \
+    }                                                                                         \
+    visitor(#name, this->name, __VA_ARGS__);                                                  \
+  }                                                                                           \
+  type name = default_value
 
 }  // namespace fogline

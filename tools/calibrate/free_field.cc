@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
 #include "scenario/sections/field_text.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline::calibrate {
 namespace {
@@ -45,54 +46,23 @@ struct NumericField {
   std::string range;
 };
 
-/// Follows a pointer through the sections to the number or integer at its end.
-class Finder {
- public:
-  explicit Finder(std::string_view pointer) : rest_(pointer) {}
-
-  const std::optional<NumericField>& found() const { return found_; }
-
-  void Number(std::string_view name, const double& field, const NumberSpec& spec) {
-    if (rest_ != Segment(name)) return;
-    found_ = NumericField{field, spec.min, spec.max, false, spec.unit, Range(spec)};
+std::optional<NumericField> Find(Scenario scenario, std::string_view pointer) {
+  const std::optional<Field> field = FieldAt(scenario, pointer);
+  if (!field || field->name.empty()) return std::nullopt;
+  if (const auto* number = field->As<NumberField>()) {
+    const NumberSpec& spec = number->spec;
+    return NumericField{*number->value, spec.min, spec.max, false, spec.unit, Range(spec)};
   }
-  void Integer(std::string_view name, const std::int64_t& field, const IntegerSpec& spec) {
-    if (rest_ != Segment(name)) return;
-    found_ = NumericField{static_cast<double>(field),
-                          static_cast<double>(spec.min),
-                          static_cast<double>(spec.max),
-                          true,
-                          spec.unit,
-                          Range(spec)};
+  if (const auto* integer = field->As<IntegerField>()) {
+    const IntegerSpec& spec = integer->spec;
+    return NumericField{static_cast<double>(*integer->value),
+                        static_cast<double>(spec.min),
+                        static_cast<double>(spec.max),
+                        true,
+                        spec.unit,
+                        Range(spec)};
   }
-  template <class S>
-  void Section(std::string_view name, const S& section, std::string_view) {
-    const std::string prefix = Segment(name) + "/";
-    if (!rest_.starts_with(prefix)) return;
-    Finder inner(rest_.substr(prefix.size() - 1));
-    S::Fields(section, inner);
-    found_ = inner.found_;
-  }
-  void Flag(std::string_view, const bool&, std::string_view) {}
-  void Text(std::string_view, const std::string&, std::string_view) {}
-  template <class Enum>
-  void Choice(std::string_view, const Enum&, std::string_view) {}
-  void Numbers(std::string_view, const std::vector<double>&, const NumberSpec&, const ListSpec&) {}
-  template <class Item>
-  void List(std::string_view, const std::vector<Item>&, const ListSpec&) {}
-  void Needs(const NeedSpec&) {}
-
- private:
-  static std::string Segment(std::string_view name) { return fmt::format("/{}", name); }
-
-  std::string_view rest_;
-  std::optional<NumericField> found_;
-};
-
-std::optional<NumericField> Find(const Scenario& scenario, std::string_view pointer) {
-  Finder finder(pointer);
-  Scenario::Fields(scenario, finder);
-  return finder.found();
+  return std::nullopt;
 }
 
 }  // namespace

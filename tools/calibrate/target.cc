@@ -15,6 +15,7 @@
 #include "scenario/io/json.h"
 #include "scenario/io/loader.h"
 #include "scenario/sections/field_text.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline::calibrate {
 namespace {
@@ -25,37 +26,25 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Reads the fields of a published row; a target's row has the same ranges. A missing number
-/// becomes NaN.
-class RowReader {
- public:
-  RowReader(const JsonObject& object, std::string pointer, DiagnosticList& diagnostics)
-      : object_(object), pointer_(std::move(pointer)), diagnostics_(diagnostics) {}
-
-  void Number(std::string_view name, double& field, const NumberSpec& spec) {
-    field = std::nan("");
-    const JsonMember* member = FindMember(object_, name);
-    if (member == nullptr || member->value.As<std::monostate>() != nullptr) return;
-    const std::optional<double> number = AsNumber(member->value);
-    if (!number) {
-      Add(member->value, name,
-          fmt::format("must be {}, not {}", Allowed(spec), Describe(member->value)));
-    } else if (*number < spec.min || *number > spec.max) {
-      Add(member->value, name, fmt::format("{} is outside {}", NumberText(*number), Range(spec)));
-    } else {
-      field = *number;
-    }
+/// Reads a field of a published row; a target's row has the same ranges. A missing number becomes
+/// NaN.
+void ReadField(const JsonObject& object, const Field& field, DiagnosticList& diagnostics) {
+  const auto& [value, spec] = *field.As<NumberField>();
+  *value = std::nan("");
+  const JsonMember* member = FindMember(object, field.name);
+  if (member == nullptr || member->value.As<std::monostate>() != nullptr) return;
+  const auto refuse = [&](std::string message) {
+    diagnostics.Add(member->value.place, field.pointer, "range", std::move(message));
+  };
+  const std::optional<double> number = AsNumber(member->value);
+  if (!number) {
+    refuse(fmt::format("must be {}, not {}", Allowed(spec), Describe(member->value)));
+  } else if (*number < spec.min || *number > spec.max) {
+    refuse(fmt::format("{} is outside {}", NumberText(*number), Range(spec)));
+  } else {
+    *value = *number;
   }
-
- private:
-  void Add(const JsonValue& value, std::string_view name, std::string message) {
-    diagnostics_.Add(value.place, JoinPointer(pointer_, name), "range", std::move(message));
-  }
-
-  const JsonObject& object_;
-  std::string pointer_;
-  DiagnosticList& diagnostics_;
-};
+}
 
 std::optional<double> Present(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -71,8 +60,7 @@ std::optional<TargetRow> ReadRow(const JsonValue& value, const std::string& poin
     return std::nullopt;
   }
   PublishedRow row;
-  RowReader reader(*object, pointer, diagnostics);
-  PublishedRow::Fields(row, reader);
+  for (const Field& field : FieldsOf(row, pointer)) ReadField(*object, field, diagnostics);
   return TargetRow{
       .threshold = row.threshold, .si_pct = Present(row.si_pct), .rhe_pct = Present(row.rhe_pct)};
 }
@@ -94,8 +82,8 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& diagnosti
   return target;
 }
 
-/// Throws all mistakes, each with its place as in a scenario, but without the hints about fields of
-/// scenarios.
+/// Throws all diagnostics, each with its place as in a scenario, but without the hints about fields
+/// of scenarios.
 [[noreturn]] void Throw(DiagnosticList& diagnostics, const std::vector<Source>& sources) {
   std::string text;
   try {

@@ -32,7 +32,7 @@ std::string VerbsWith(const CLI::App& app, const std::string& option) {
 
 /// The value for `field` from the words "--threshold=0.8", or "--threshold" and "0.8"; "VALUE" if
 /// they have none.
-std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& words) {
+std::string ValueFor(const Field& field, const std::vector<std::string>& words) {
   const std::string& option = words.front();
   if (const std::size_t at = option.find('='); at != std::string::npos) {
     return Shown(option.substr(at + 1));
@@ -40,8 +40,9 @@ std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& wor
   if (words.size() > 1) {
     const std::string& word = words[1];
     double ignored = 0;
-    const bool is_number = CLI::detail::lexical_cast(word, ignored);
-    if (is_number || std::ranges::find(field.choices, word) != field.choices.end()) return word;
+    if (CLI::detail::lexical_cast(word, ignored)) return word;
+    const auto* choice = field.As<ChoiceField>();
+    if (choice != nullptr && std::ranges::count(choice->names, word) > 0) return word;
   }
   return "VALUE";
 }
@@ -51,21 +52,19 @@ std::string ValueFor(const FieldInfo& field, const std::vector<std::string>& wor
 std::string FieldHint(const std::string& option, const std::vector<std::string>& words) {
   std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   std::ranges::replace(word, '-', '_');
-  const auto name_of = [](const FieldInfo& field) {
-    return std::string_view(field.pointer).substr(field.pointer.rfind('/') + 1);
-  };
-  std::vector<const FieldInfo*> fields;
+  std::vector<const Field*> fields;
   std::vector<std::string_view> names;
-  for (const FieldInfo& field : Catalogue()) {
-    if (field.is_section || field.pointer.find('*') != std::string::npos) continue;
+  for (const Field& field : Catalogue()) {
+    if (field.As<SectionField>() != nullptr || field.pointer.find('*') != std::string::npos)
+      continue;
     fields.push_back(&field);
-    names.push_back(name_of(field));
+    names.push_back(field.name);
   }
   const auto meant = Nearest(word, names);
   if (!meant) return "";
   std::string hint;
-  for (const FieldInfo* field : fields) {
-    if (name_of(*field) != *meant) continue;
+  for (const Field* field : fields) {
+    if (field->name != *meant) continue;
     hint += hint.empty() ? fmt::format("; a field of the scenario is set with --set {}={}",
                                        field->pointer, ValueFor(*field, words))
                          : fmt::format(" or {}", field->pointer);

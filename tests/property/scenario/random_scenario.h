@@ -1,4 +1,4 @@
-// Visitors for property tests: one fills a scenario with random values, one lists every field.
+// For property tests: fills a scenario with random values, and lists every value.
 #pragma once
 
 #include <bit>
@@ -9,9 +9,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "scenario/sections/scenario.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 
@@ -61,43 +62,41 @@ class ValueDraw {
   std::mt19937_64 engine_;
 };
 
-/// Gives every field a random value within its range.
+/// Gives a field a random value within its range; a section or a list of sections gets random
+/// contents.
 class RandomFiller {
  public:
   explicit RandomFiller(ValueDraw& draw) : draw_(draw) {}
 
-  void Number(std::string_view, double& value, const NumberSpec& spec) {
-    value = draw_.Number(spec.min, spec.max);
+  void operator()(const NumberField& number) {
+    *number.value = draw_.Number(number.spec.min, number.spec.max);
   }
-  void Integer(std::string_view, std::int64_t& value, const IntegerSpec& spec) {
-    value = draw_.Integer(spec.min, spec.max);
+  void operator()(const IntegerField& integer) {
+    *integer.value = draw_.Integer(integer.spec.min, integer.spec.max);
   }
-  void Flag(std::string_view, bool& value, std::string_view) { value = draw_.Below(2) == 1; }
-  void Text(std::string_view, std::string& value, std::string_view) {
+  void operator()(bool* flag) { *flag = draw_.Below(2) == 1; }
+  void operator()(std::string* text) {
     static constexpr std::string_view kPieces[] = {"fog", " ",  "\"",       "\\",
                                                    "/",   "~1", "\xc3\xa4", "\xf0\x9f\x8c\xab"};
-    value.clear();
-    for (std::size_t n = draw_.Below(12); n > 0; --n) value += kPieces[draw_.Below(8)];
+    text->clear();
+    for (std::size_t n = draw_.Below(12); n > 0; --n) *text += kPieces[draw_.Below(8)];
   }
-  template <class Enum>
-  void Choice(std::string_view, Enum& value, std::string_view) {
-    value = static_cast<Enum>(draw_.Below(ChoiceNames<Enum>::kNames.size()));
+  void operator()(const ChoiceField& choice) { choice.set(draw_.Below(choice.names.size())); }
+  void operator()(const NumbersField& numbers) {
+    numbers.values->resize(draw_.Below(40));
+    for (double& value : *numbers.values) {
+      value = draw_.Number(numbers.spec.min, numbers.spec.max);
+    }
   }
-  void Numbers(std::string_view, std::vector<double>& values, const NumberSpec& spec,
-               const ListSpec&) {
-    values.resize(draw_.Below(40));
-    for (double& value : values) value = draw_.Number(spec.min, spec.max);
+  void operator()(const ListField& list) {
+    list.reset(draw_.Below(5));
+    Fill(list.items(""));
   }
-  template <class T>
-  void Section(std::string_view, T& section, std::string_view) {
-    T::Fields(section, *this);
+  void operator()(const SectionField& section) { Fill(section.fields("")); }
+
+  void Fill(const FieldList& fields) {
+    for (const Field& field : fields) std::visit(*this, field.value);
   }
-  template <class T>
-  void List(std::string_view, std::vector<T>& items, const ListSpec&) {
-    items.resize(draw_.Below(5));
-    for (T& item : items) T::Fields(item, *this);
-  }
-  void Needs(const NeedSpec&) {}
 
  private:
   ValueDraw& draw_;
@@ -105,66 +104,35 @@ class RandomFiller {
 
 inline Scenario RandomScenario(ValueDraw& draw) {
   Scenario scenario;
-  RandomFiller filler(draw);
-  Scenario::Fields(scenario, filler);
+  RandomFiller(draw).Fill(FieldsOf(scenario));
   if (scenario.lead.profile == LeadProfile::kRecorded) {
     scenario.lead.recorded.speeds_mps.push_back(draw.Number(0, 70));
   }
   return scenario;
 }
 
-/// Lists every field as a pointer and the JSON text of its value, doubles with all their bits.
-class Flattener {
- public:
-  using Fields = std::vector<std::pair<std::string, std::string>>;
-
-  void Number(std::string_view name, const double& value, const NumberSpec&) {
-    Add(name, std::to_string(std::bit_cast<std::uint64_t>(value)));
-  }
-  void Integer(std::string_view name, const std::int64_t& value, const IntegerSpec&) {
-    Add(name, std::to_string(value));
-  }
-  void Flag(std::string_view name, const bool& value, std::string_view) {
-    Add(name, value ? "true" : "false");
-  }
-  void Text(std::string_view name, const std::string& value, std::string_view) { Add(name, value); }
-  template <class Enum>
-  void Choice(std::string_view name, const Enum& value, std::string_view) {
-    Add(name, std::to_string(static_cast<int>(value)));
-  }
-  void Numbers(std::string_view name, const std::vector<double>& values, const NumberSpec& spec,
-               const ListSpec&) {
-    for (const double value : values) Number(name, value, spec);
-  }
-  template <class T>
-  void Section(std::string_view name, const T& section, std::string_view) {
-    const std::string outer = std::exchange(pointer_, pointer_ + "/" + std::string(name));
-    T::Fields(section, *this);
-    pointer_ = outer;
-  }
-  template <class T>
-  void List(std::string_view name, const std::vector<T>& items, const ListSpec&) {
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      Section(std::string(name) + "/" + std::to_string(i), items[i], "");
+/// The pointer of every field and a text that is equal only for equal values: doubles have all
+/// their bits.
+inline std::vector<std::pair<std::string, std::string>> Flatten(Scenario scenario) {
+  struct Text {
+    std::string operator()(const NumberField& number) const {
+      return std::to_string(std::bit_cast<std::uint64_t>(*number.value));
     }
+    std::string operator()(const IntegerField& integer) const {
+      return std::to_string(*integer.value);
+    }
+    std::string operator()(const bool* flag) const { return *flag ? "true" : "false"; }
+    std::string operator()(const std::string* text) const { return *text; }
+    std::string operator()(const ChoiceField& choice) const { return std::to_string(choice.get()); }
+    std::string operator()(const NumbersField&) const { return "numbers"; }
+    std::string operator()(const ListField&) const { return "a list"; }
+    std::string operator()(const SectionField&) const { return "a section"; }
+  };
+  std::vector<std::pair<std::string, std::string>> flat;
+  for (const Field& field : AllFields(scenario)) {
+    flat.emplace_back(field.pointer, std::visit(Text(), field.value));
   }
-  void Needs(const NeedSpec&) {}
-
-  const Fields& fields() const { return fields_; }
-
- private:
-  void Add(std::string_view name, std::string value) {
-    fields_.emplace_back(pointer_ + "/" + std::string(name), std::move(value));
-  }
-
-  std::string pointer_;
-  Fields fields_;
-};
-
-inline Flattener::Fields Flatten(const Scenario& scenario) {
-  Flattener flattener;
-  Scenario::Fields(scenario, flattener);
-  return flattener.fields();
+  return flat;
 }
 
 }  // namespace fogline

@@ -1,0 +1,96 @@
+// The fields of a scenario as values of one type, for code that treats all fields alike: it reads,
+// prints, sets or explains them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scenario/sections/field.h"
+#include "scenario/sections/scenario.h"
+
+namespace fogline {
+
+struct Field;
+using FieldList = std::vector<Field>;
+
+struct NumberField {
+  double* value;
+  NumberSpec spec;
+};
+
+struct IntegerField {
+  std::int64_t* value;
+  IntegerSpec spec;
+};
+
+/// A value of an enumeration, as an index of `names`.
+struct ChoiceField {
+  std::span<const std::string_view> names;
+  std::span<const std::string_view> docs;
+  std::function<std::size_t()> get;
+  std::function<void(std::size_t)> set;
+};
+
+struct NumbersField {
+  std::vector<double>* values;
+  ListSpec list;
+  NumberSpec spec;  // of each number
+};
+
+/// A list of sections.
+struct ListField {
+  ListSpec list;
+  std::function<void(std::size_t)> reset;  // makes so many items, all with their defaults
+  std::function<FieldList(const std::string& pointer)> items;
+};
+
+/// A section, or an item of a list of sections.
+struct SectionField {
+  NeedSpec need;  // its choice is "" if a file may always leave out the section
+  std::function<FieldList(const std::string& pointer)> fields;
+};
+
+/// A field of a section, or an item of a list. It refers to the value in its scenario.
+struct Field {
+  std::string pointer;      // JSON pointer, such as /fog/bias_m
+  std::string_view name;    // last segment of the pointer; "" for an item of a list
+  std::string_view doc;     // meaning
+  std::string_view source;  // of the default of a number; otherwise ""
+  std::variant<NumberField, IntegerField, bool*, std::string*, ChoiceField, NumbersField, ListField,
+               SectionField>
+      value;
+
+  /// The value if it is a T, or null.
+  template <class T>
+  const T* As() const {
+    return std::get_if<T>(&value);
+  }
+  /// The fields of a section or the items of a list; nothing for other fields.
+  FieldList Contents() const;
+};
+
+/// The fields of the scenario itself, in their order. A view is valid as long as the scenario is
+/// and as long as its lists keep their sizes.
+FieldList FieldsOf(Scenario& scenario);
+/// The fields of a published row, with pointers that begin with `pointer`.
+FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
+
+/// All fields of the scenario and all items of its lists. The contents of a section or list follow
+/// the section or list.
+FieldList AllFields(Scenario& scenario);
+
+/// The index that a segment of a pointer states: digits without a leading zero (RFC 6901, section
+/// 4). Nothing if the segment is not an index.
+std::optional<std::size_t> ListIndex(std::string_view segment);
+
+/// The field or item with this JSON pointer, if the scenario has it.
+std::optional<Field> FieldAt(Scenario& scenario, std::string_view pointer);
+
+}  // namespace fogline
