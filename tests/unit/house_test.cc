@@ -23,65 +23,67 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
+  std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all to use
   std::string_view why;     // why it stands behind those before it
 };
 
 /// A file may include files of its own room and of rooms before it. NAME_main.cc is a program, so
 /// it may include all.
 constexpr std::array kRooms = std::to_array<Room>({
-    {"common", "knows nothing of Fogline"},
-    {"common/process", "this process: its console, what it waits for, what it takes"},
-    {"fogline", "the message types that lcm-gen makes of lcmtypes/"},
-    {"scenario/sections", "what an experiment can choose"},
-    {"scenario/io", "reads, checks and explains the sections"},
-    {"services", "graph.h and what all roles share: who sends what to whom"},
-    {"services/models/vehicle", "a car"},
-    {"services/models/driver", "a person who drives"},
-    {"services/models/follower", "a following car; a person may drive it"},
-    {"services/models/minimal_risk", "how a car stops, and who drives it"},
-    {"services/decision/conflict", "what a measure of conflict is"},
-    {"services/decision/conflict/one_step", "measures of the readings of a step"},
-    {"services/decision/conflict/over_time", "measures that may use those of a step"},
-    {"services/decision/policies", "who should drive, from models and conflict"},
-    {"services/decision/take_over", "the request to a person, and its end"},
-    {"services/acc", "a role"},
-    {"services/world", "a role"},
-    {"services/radar", "a role"},
-    {"services/lidar", "a role"},
-    {"services/fusion", "a role"},
-    {"services/driver", "a role"},
-    {"services/arbitrator", "a role"},
-    {"services/follower", "a role; its car may have an ACC"},
-    {"services/runtime/wire", "the bytes of messages"},
-    {"services/metrics", "judges what the messages of a run say"},
-    {"services/metrics/closed_loop", "all roles in one process, and their metrics"},
-    {"services/runtime/transport", "carries the bytes"},
-    {"services/runtime/discovery", "finds runs by what is carried"},
-    {"services/runtime/lockstep", "a role's part in a run that waits"},
-    {"services/runtime/realtime", "a role's part in a run that does not wait"},
-    {"services/runtime/coordination", "the runner's part in both"},
-    {"services/runtime/process", "makes a process of a role"},
-    {"services/log", "the file that a run leaves"},
-    {"services/recorder", "the role that writes it"},
-    {"tools/stats", "numbers about many runs"},
-    {"tools/sweep", "many runs"},
-    {"tools/report", "pages about them"},
-    {"tools/export", "logs for other programs"},
-    {"tools/watch", "what is on a network"},
-    {"tools/relay", "carries messages over TCP"},
-    {"tools/processes", "starts and watches processes"},
-    {"tools/replay", "computes a role again from a log"},
-    {"tools/runner", "makes one run, over any transport"},
-    {"tools/spy", "LCM's viewer with Fogline's types"},
-    {"tools/doctor", "examines the machine, and these tools on it"},
-    {"tools/cli", "what the command lines of verbs share"},
-    {"tools/calibrate", "a program"},
-    {"tools/study", "a program"},
-    {"tools/fogline", "the verbs"},
-    {"tools/benchmarks", "a program that measures the others"},
+    {"common", "", "knows nothing of Fogline"},
+    {"common/process", "", "this process: its console, what it waits for, what it takes"},
+    {"fogline", "", "the message types that lcm-gen makes of lcmtypes/"},
+    {"scenario/sections", "", "what an experiment can choose"},
+    {"scenario/io", "", "reads, checks and explains the sections"},
+    {"services", "", "graph.h and what all roles share: who sends what to whom"},
+    {"services/models/vehicle", "models", "a car"},
+    {"services/models/driver", "models", "a person who drives"},
+    {"services/models/follower", "models", "a following car; a person may drive it"},
+    {"services/models/minimal_risk", "models", "how a car stops, and who drives it"},
+    {"services/decision/conflict", "conflict", "what a measure of conflict is"},
+    {"services/decision/conflict/one_step", "conflict", "measures of the readings of a step"},
+    {"services/decision/conflict/over_time", "conflict", "measures that may use those of a step"},
+    {"services/decision/policies", "policies", "who should drive, from models and conflict"},
+    {"services/decision/take_over", "take_over", "the request to a person, and its end"},
+    {"services/acc", "acc", "a role"},
+    {"services/world", "world", "a role"},
+    {"services/radar", "radar", "a role"},
+    {"services/lidar", "lidar", "a role"},
+    {"services/fusion", "fusion", "a role"},
+    {"services/driver", "driver", "a role"},
+    {"services/arbitrator", "arbitrator", "a role"},
+    {"services/follower", "follower", "a role; its car may have an ACC"},
+    {"services/runtime/wire", "runtime", "the bytes of messages"},
+    {"services/metrics", "metrics", "judges what the messages of a run say"},
+    {"services/metrics/closed_loop", "metrics", "all roles in one process, and their metrics"},
+    {"services/runtime/transport", "runtime", "carries the bytes"},
+    {"services/runtime/discovery", "runtime", "finds runs by what is carried"},
+    {"services/runtime/lockstep", "runtime", "a role's part in a run that waits"},
+    {"services/runtime/realtime", "runtime", "a role's part in a run that does not wait"},
+    {"services/runtime/coordination", "runtime", "the runner's part in both"},
+    {"services/runtime/process", "runtime", "makes a process of a role"},
+    {"services/log", "log", "the file that a run leaves"},
+    {"services/recorder", "recorder", "the role that writes it"},
+    {"tools/stats", "stats", "numbers about many runs"},
+    {"tools/sweep", "sweep", "many runs"},
+    {"tools/report", "report", "pages about them"},
+    {"tools/export", "exports", "logs for other programs"},
+    {"tools/watch", "watch", "what is on a network"},
+    {"tools/relay", "relay", "carries messages over TCP"},
+    {"tools/processes", "processes", "starts and watches processes"},
+    {"tools/replay", "replay", "computes a role again from a log"},
+    {"tools/runner", "runner", "makes one run, over any transport"},
+    {"tools/spy", "spy", "LCM's viewer with Fogline's types"},
+    {"tools/doctor", "doctor", "examines the machine, and these tools on it"},
+    {"tools/cli", "cli", "what the command lines of verbs share"},
+    {"tools/calibrate", "calibrate", "a program"},
+    {"tools/study", "study", "a program"},
+    {"tools/fogline", "", "the verbs"},
+    {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });
 
 /// This room has no subfolders: a new folder in it needs a line of its own.
@@ -205,6 +207,20 @@ TEST(HouseTest, NoTwoHeadersDefineATypeOfTheSameName) {
     }
   }
   EXPECT_GT(known.size(), 300U);
+}
+
+TEST(HouseTest, TypesLieInTheNamespaceOfTheirFolder) {
+  for (const auto& file : Sources()) {
+    const auto room = RoomOf(file);
+    if (file.extension() != ".h" || !room) continue;
+    const std::string_view space = kRooms[*room].space;
+    const std::string begin = "fogline::" + std::string(space) + (space.empty() ? "" : "::");
+    for (const std::string& type : TypesOf(Read(SourceDirectory() / file))) {
+      if (type.starts_with("internal::")) continue;  // nested in the namespace of its file
+      EXPECT_THAT(type, StartsWith(begin)) << file;
+      if (space.empty()) EXPECT_EQ(type.rfind("::"), begin.size() - 2) << type << " in " << file;
+    }
+  }
 }
 
 TEST(HouseTest, FindsTheTypesOfAHeader) {

@@ -17,7 +17,7 @@ set(assets
   kUplotCss=uplot/uPlot.min.css
   kUplotLicense=uplot/LICENSE)
 
-set(source "#include \"tools/report/assets.h\"\n\nnamespace fogline::assets {\n\n")
+set(source "#include \"tools/report/assets.h\"\n\nnamespace fogline::report::assets {\n\n")
 foreach(asset IN LISTS assets)
   string(REPLACE "=" ";" asset "${asset}")
   list(GET asset 0 name)
@@ -25,5 +25,5 @@ foreach(asset IN LISTS assets)
   file(READ "${DIR}/${file}" text)
   string(APPEND source "const std::string_view ${name} = R\"asset(${text})asset\";\n")
 endforeach()
-string(APPEND source "\n}  // namespace fogline::assets\n")
+string(APPEND source "\n}  // namespace fogline::report::assets\n")
 file(WRITE "${OUT}" "${source}")

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace fogline::assets {
+namespace fogline::report::assets {
 
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
@@ -21,4 +21,4 @@ extern const std::string_view kUplotJs;
 extern const std::string_view kUplotCss;
 extern const std::string_view kUplotLicense;
 
-}  // namespace fogline::assets
+}  // namespace fogline::report::assets

@@ -76,38 +76,35 @@ struct Figure {
 /// The change of the host's acceleration since the sample before, per second.
 double HostJerk(std::span<const metrics::Sample> samples, std::size_t index);
 
-namespace report_internal {
+namespace internal {
 
 template <double metrics::Sample::*kMember>
 double Get(std::span<const metrics::Sample> samples, std::size_t index) {
   return samples[index].*kMember;
 }
 
-}  // namespace report_internal
+}  // namespace internal
 
 inline constexpr std::array kColumns{
-    Column{"time_s", report_internal::Get<&metrics::Sample::time_s>},
-    Column{"preceding_speed_mps", report_internal::Get<&metrics::Sample::preceding_speed_mps>},
-    Column{"host_speed_mps", report_internal::Get<&metrics::Sample::host_speed_mps>},
-    Column{"follower_speed_mps", report_internal::Get<&metrics::Sample::follower_speed_mps>},
-    Column{"host_gap_m", report_internal::Get<&metrics::Sample::host_gap_m>},
-    Column{"radar_range_m", report_internal::Get<&metrics::Sample::radar_range_m>},
-    Column{"lidar_range_m", report_internal::Get<&metrics::Sample::lidar_range_m>},
-    Column{"fused_distance_m", report_internal::Get<&metrics::Sample::fused_distance_m>},
-    Column{"host_safe_distance_m", report_internal::Get<&metrics::Sample::host_safe_distance_m>},
-    Column{"doc", report_internal::Get<&metrics::Sample::doc>},
-    Column{"threshold", report_internal::Get<&metrics::Sample::threshold>},
-    Column{"lambda_human", report_internal::Get<&metrics::Sample::lambda_human>},
-    Column{"follower_gap_m", report_internal::Get<&metrics::Sample::follower_gap_m>},
-    Column{"follower_safe_distance_m",
-           report_internal::Get<&metrics::Sample::follower_safe_distance_m>},
-    Column{"host_acceleration_mps2",
-           report_internal::Get<&metrics::Sample::host_acceleration_mps2>},
+    Column{"time_s", internal::Get<&metrics::Sample::time_s>},
+    Column{"preceding_speed_mps", internal::Get<&metrics::Sample::preceding_speed_mps>},
+    Column{"host_speed_mps", internal::Get<&metrics::Sample::host_speed_mps>},
+    Column{"follower_speed_mps", internal::Get<&metrics::Sample::follower_speed_mps>},
+    Column{"host_gap_m", internal::Get<&metrics::Sample::host_gap_m>},
+    Column{"radar_range_m", internal::Get<&metrics::Sample::radar_range_m>},
+    Column{"lidar_range_m", internal::Get<&metrics::Sample::lidar_range_m>},
+    Column{"fused_distance_m", internal::Get<&metrics::Sample::fused_distance_m>},
+    Column{"host_safe_distance_m", internal::Get<&metrics::Sample::host_safe_distance_m>},
+    Column{"doc", internal::Get<&metrics::Sample::doc>},
+    Column{"threshold", internal::Get<&metrics::Sample::threshold>},
+    Column{"lambda_human", internal::Get<&metrics::Sample::lambda_human>},
+    Column{"follower_gap_m", internal::Get<&metrics::Sample::follower_gap_m>},
+    Column{"follower_safe_distance_m", internal::Get<&metrics::Sample::follower_safe_distance_m>},
+    Column{"host_acceleration_mps2", internal::Get<&metrics::Sample::host_acceleration_mps2>},
     Column{"follower_acceleration_mps2",
-           report_internal::Get<&metrics::Sample::follower_acceleration_mps2>},
-    Column{"acc_acceleration_mps2", report_internal::Get<&metrics::Sample::acc_acceleration_mps2>},
-    Column{"driver_acceleration_mps2",
-           report_internal::Get<&metrics::Sample::driver_acceleration_mps2>},
+           internal::Get<&metrics::Sample::follower_acceleration_mps2>},
+    Column{"acc_acceleration_mps2", internal::Get<&metrics::Sample::acc_acceleration_mps2>},
+    Column{"driver_acceleration_mps2", internal::Get<&metrics::Sample::driver_acceleration_mps2>},
     Column{"host_jerk_mps3", HostJerk},
 };
 

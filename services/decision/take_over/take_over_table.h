@@ -68,7 +68,7 @@ struct TakeOverRow {
 };
 
 // clang-format off
-namespace take_over_internal {
+namespace internal {
 using enum TakeOverState;
 using enum TakeOverEvent;
 using enum TakeOverGuard;
@@ -120,10 +120,10 @@ inline constexpr std::array kTakeOverTable{
     Row{kMrmFailed,    kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
     Row{kMrmFailed,    kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
 };
-}  // namespace take_over_internal
+}  // namespace internal
 // clang-format on
 
-using take_over_internal::kTakeOverTable;
+using internal::kTakeOverTable;
 
 /// The row that applies in `state`; nullptr if the state stays.
 /// @param manoeuvred whether there has been a minimal risk manoeuvre in this run
