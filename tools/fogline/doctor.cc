@@ -51,7 +51,7 @@ void Attempt(const char* check, doctor::Findings& findings, const std::function<
   }
 }
 
-doctor::Findings runtime::Examine(const std::string& url) {
+doctor::Findings Examine(const std::string& url) {
   const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   doctor::Findings findings;
   Attempt("network", findings, [&] { doctor::ExamineNetwork(url, findings); });
@@ -89,7 +89,7 @@ void PrintAsText(const doctor::Findings& findings) {
 
 int Doctor(const DoctorArguments& arguments) {
   const std::string url = arguments.network.Url();
-  const doctor::Findings findings = runtime::Examine(url);
+  const doctor::Findings findings = Examine(url);
   arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(
       findings, [](const doctor::Finding& finding) { return finding.level == Level::kProblem; });

@@ -36,7 +36,7 @@ std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
       is_mat ? std::vector{arguments.out} : exports::CsvFiles(arguments.out);
   for (const std::filesystem::path& file : files) {
     RefuseToReplace(file, "--out", arguments.force, "export",
-                    is_mat ? IsMatExport : exports::IsCsvExport);
+                    is_mat ? exports::IsMatExport : exports::IsCsvExport);
   }
   return files;
 }

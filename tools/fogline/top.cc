@@ -238,7 +238,7 @@ class Top {
   std::optional<runtime::Bus> followed_;             // the network of the followed run
   std::vector<std::int64_t> unreachable_;            // ids of runs
   TimePoint follow_at_{};
-  std::optional<Terminal> terminal_;
+  std::optional<watch::Terminal> terminal_;
 };
 
 }  // namespace
