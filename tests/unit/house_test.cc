@@ -218,7 +218,9 @@ TEST(HouseTest, TypesLieInTheNamespaceOfTheirFolder) {
     for (const std::string& type : TypesOf(Read(SourceDirectory() / file))) {
       if (type.starts_with("internal::")) continue;  // nested in the namespace of its file
       EXPECT_THAT(type, StartsWith(begin)) << file;
-      if (space.empty()) EXPECT_EQ(type.rfind("::"), begin.size() - 2) << type << " in " << file;
+      if (space.empty()) {
+        EXPECT_EQ(type.rfind("::"), begin.size() - 2) << type << " in " << file;
+      }
     }
   }
 }

@@ -12,7 +12,7 @@ namespace {
 using Buffer = std::vector<std::uint8_t>;
 
 struct Kept {
-  runtime::FrameType type;
+  FrameType type;
   std::string name;
   Buffer payload;
   Buffer wire;
@@ -25,24 +25,24 @@ Buffer Ramp(std::size_t size) {
   return payload;
 }
 
-Buffer Hello(std::uint32_t magic = runtime::kClientMagic) {
+Buffer Hello(std::uint32_t magic = kClientMagic) {
   Buffer stream;
-  runtime::AppendHello(magic, stream);
+  AppendHello(magic, stream);
   return stream;
 }
 
 /// The bytes that a client sends, from its greeting on.
 Buffer ClientStream() {
   Buffer stream = Hello();
-  runtime::AppendFrame(runtime::FrameType::kSubscribe, "TRUTH|HOST_.*", {}, stream);
-  runtime::AppendFrame(runtime::FrameType::kPublish, "TRUTH", Ramp(300), stream);
-  runtime::AppendFrame(runtime::FrameType::kPublish, "EMPTY", {}, stream);
-  runtime::AppendFrame(runtime::FrameType::kUnsubscribe, "TRUTH|HOST_.*", {}, stream);
-  runtime::AppendFrame(runtime::FrameType::kPublish, "LONG", Ramp(5000), stream);
+  AppendFrame(FrameType::kSubscribe, "TRUTH|HOST_.*", {}, stream);
+  AppendFrame(FrameType::kPublish, "TRUTH", Ramp(300), stream);
+  AppendFrame(FrameType::kPublish, "EMPTY", {}, stream);
+  AppendFrame(FrameType::kUnsubscribe, "TRUTH|HOST_.*", {}, stream);
+  AppendFrame(FrameType::kPublish, "LONG", Ramp(5000), stream);
   return stream;
 }
 
-void TakeAll(runtime::FrameParser& parser, std::vector<Kept>& frames) {
+void TakeAll(FrameParser& parser, std::vector<Kept>& frames) {
   while (const auto frame = parser.Next()) {
     frames.push_back({frame->type, std::string(frame->name),
                       Buffer(frame->payload.begin(), frame->payload.end()),
@@ -51,8 +51,8 @@ void TakeAll(runtime::FrameParser& parser, std::vector<Kept>& frames) {
 }
 
 /// The error of a parser that gets this stream at once.
-std::string ErrorOf(const Buffer& stream, const runtime::Limits& limits = {}) {
-  runtime::FrameParser parser(runtime::kClientMagic, limits);
+std::string ErrorOf(const Buffer& stream, const Limits& limits = {}) {
+  FrameParser parser(kClientMagic, limits);
   parser.Append(stream);
   std::vector<Kept> frames;
   TakeAll(parser, frames);
@@ -72,18 +72,18 @@ Buffer Claim(std::initializer_list<std::uint32_t> words, std::string_view name =
 }
 
 TEST(FrameParserTest, GivesBackWhatWasSent) {
-  runtime::FrameParser parser(runtime::kClientMagic, {});
+  FrameParser parser(kClientMagic, {});
   parser.Append(ClientStream());
   std::vector<Kept> frames;
   TakeAll(parser, frames);
   ASSERT_EQ(frames.size(), 5U);
-  EXPECT_EQ(frames[0].type, runtime::FrameType::kSubscribe);
+  EXPECT_EQ(frames[0].type, FrameType::kSubscribe);
   EXPECT_EQ(frames[0].name, "TRUTH|HOST_.*");
   EXPECT_EQ(frames[1].name, "TRUTH");
   EXPECT_EQ(frames[1].payload, Ramp(300));
   EXPECT_EQ(frames[2].name, "EMPTY");
   EXPECT_TRUE(frames[2].payload.empty());
-  EXPECT_EQ(frames[3].type, runtime::FrameType::kUnsubscribe);
+  EXPECT_EQ(frames[3].type, FrameType::kUnsubscribe);
   EXPECT_EQ(frames[4].payload, Ramp(5000));
   EXPECT_EQ(parser.error(), "");
 }
@@ -93,12 +93,12 @@ TEST(FrameParserTest, HasTheWireFormatOfLcm) {
   const Buffer expected{0x28, 0x76, 0x17, 0xfb, 0,   0,   1, 0, 0, 0, 0,    1,
                         0,    0,    0,    2,    'A', 'B', 0, 0, 0, 2, 0xfe, 0x01};
   Buffer stream = Hello();
-  runtime::AppendFrame(runtime::FrameType::kPublish, "AB", Buffer{0xfe, 0x01}, stream);
+  AppendFrame(FrameType::kPublish, "AB", Buffer{0xfe, 0x01}, stream);
   EXPECT_EQ(stream, expected);
 }
 
 TEST(FrameParserTest, KeepsTheWireBytesOfAFrame) {
-  runtime::FrameParser parser(runtime::kClientMagic, {});
+  FrameParser parser(kClientMagic, {});
   const Buffer stream = ClientStream();
   parser.Append(stream);
   std::vector<Kept> frames;
@@ -112,12 +112,12 @@ TEST(FrameParserTest, KeepsTheWireBytesOfAFrame) {
 
 TEST(FrameParserTest, DoesNotCareHowTheStreamIsCut) {
   const Buffer stream = ClientStream();
-  runtime::FrameParser whole(runtime::kClientMagic, {});
+  FrameParser whole(kClientMagic, {});
   whole.Append(stream);
   std::vector<Kept> expected;
   TakeAll(whole, expected);
   for (const std::size_t piece : {1U, 2U, 3U, 5U, 7U, 64U, 1000U}) {
-    runtime::FrameParser parser(runtime::kClientMagic, {});
+    FrameParser parser(kClientMagic, {});
     std::vector<Kept> frames;
     for (std::size_t at = 0; at < stream.size(); at += piece) {
       parser.Append(runtime::Bytes(stream).subspan(at, std::min(piece, stream.size() - at)));
@@ -132,8 +132,7 @@ TEST(FrameParserTest, NamesWhatIsNotTcpq) {
   const std::string http = "GET / HTTP/1.1\r\n\r\n";
   EXPECT_EQ(ErrorOf(Buffer(http.begin(), http.end())),
             "begins with 0x47455420, not with tcpq's 0x287617fb");
-  EXPECT_EQ(ErrorOf(Hello(runtime::kRelayMagic)),
-            "begins with 0x287617fa, not with tcpq's 0x287617fb");
+  EXPECT_EQ(ErrorOf(Hello(kRelayMagic)), "begins with 0x287617fa, not with tcpq's 0x287617fb");
   EXPECT_EQ(ErrorOf({0x28, 0x76, 0x17, 0xfb, 0, 0, 2, 0}),
             "speaks version 0x0200 of tcpq, not 0x0100");
   EXPECT_EQ(ErrorOf(Claim({4})), "frame of unknown type 4");
@@ -142,7 +141,7 @@ TEST(FrameParserTest, NamesWhatIsNotTcpq) {
 }
 
 TEST(FrameParserTest, RefusesWhatIsTooLongBeforeItComes) {
-  const runtime::Limits limits{.channel = 8, .pattern = 16, .payload = 100};
+  const Limits limits{.channel = 8, .pattern = 16, .payload = 100};
   EXPECT_EQ(ErrorOf(Claim({1, 9}), limits), "channel name of 9 bytes; at most 8");
   EXPECT_EQ(ErrorOf(Claim({1, 0xffffffff}), limits), "channel name of 4294967295 bytes; at most 8");
   EXPECT_EQ(ErrorOf(Claim({2, 17}), limits), "pattern of 17 bytes; at most 16");
@@ -152,15 +151,15 @@ TEST(FrameParserTest, RefusesWhatIsTooLongBeforeItComes) {
 }
 
 TEST(FrameParserTest, TakesFramesAtTheLimits) {
-  const runtime::Limits limits{.channel = 8, .pattern = 16, .payload = 100};
+  const Limits limits{.channel = 8, .pattern = 16, .payload = 100};
   Buffer stream = Hello();
-  runtime::AppendFrame(runtime::FrameType::kSubscribe, "0123456789abcdef", {}, stream);
-  runtime::AppendFrame(runtime::FrameType::kPublish, "01234567", Ramp(100), stream);
+  AppendFrame(FrameType::kSubscribe, "0123456789abcdef", {}, stream);
+  AppendFrame(FrameType::kPublish, "01234567", Ramp(100), stream);
   EXPECT_EQ(ErrorOf(stream, limits), "");
 }
 
 TEST(FrameParserTest, GivesNothingMoreAfterAnError) {
-  runtime::FrameParser parser(runtime::kClientMagic, {});
+  FrameParser parser(kClientMagic, {});
   parser.Append(Claim({7}));
   EXPECT_FALSE(parser.Next());
   const std::string error = parser.error();
@@ -172,7 +171,7 @@ TEST(FrameParserTest, GivesNothingMoreAfterAnError) {
 
 TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
   // Every frame of the parser is within the limits, and lies within the input.
-  const runtime::Limits limits{.channel = 63, .pattern = 64, .payload = 6000};
+  const Limits limits{.channel = 63, .pattern = 64, .payload = 6000};
   std::mt19937_64 engine(20'260'101);
   const auto below = [&engine](std::size_t n) { return static_cast<std::size_t>(engine() % n); };
   int refused = 0;
@@ -182,7 +181,7 @@ TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
     for (std::size_t n = below(4); n > 0; --n) {
       stream[below(below(2) == 0 ? 60 : stream.size())] = static_cast<std::uint8_t>(below(256));
     }
-    runtime::FrameParser parser(runtime::kClientMagic, limits);
+    FrameParser parser(kClientMagic, limits);
     std::size_t taken = 0;
     for (std::size_t at = 0; at < stream.size();) {
       const std::size_t piece = std::min(1 + below(2000), stream.size() - at);

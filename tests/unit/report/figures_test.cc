@@ -64,7 +64,7 @@ TEST(FiguresTest, TellTheCurvesOfAFigureApartByColourAndByDash) {
 TEST(FiguresTest, HaveThePaletteOfThePage) {
   for (std::size_t i = 0; i < report::kPaletteSize; ++i) {
     const std::string rule = fmt::format("--p{}: {};", i, report::kPalette[i]);
-    EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
+    EXPECT_NE(report::assets::kPageCss.find(rule), std::string_view::npos) << rule;
   }
 }
 
@@ -74,7 +74,7 @@ TEST(RunStyleTest, TellsTwentyFourRunsApartByClassesOfThePage) {
   EXPECT_EQ(report::RunStyle(7), "c7 r0");
   EXPECT_EQ(report::RunStyle(8), "c0 r1");
   for (const char* rule : {".c7 {", ".r0 {", ".r1 {", ".r2 {"}) {
-    EXPECT_NE(assets::kPageCss.find(rule), std::string_view::npos) << rule;
+    EXPECT_NE(report::assets::kPageCss.find(rule), std::string_view::npos) << rule;
   }
 }
 
