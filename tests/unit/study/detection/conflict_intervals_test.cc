@@ -26,7 +26,7 @@ std::vector<study::ClearRun> ClearAir() {
 }
 
 /// Fog in which the score grows by `slope` in each second, the same for every seed.
-std::vector<study::ScoreRecords> world::Fog(double slope) {
+std::vector<study::ScoreRecords> Fog(double slope) {
   study::ScoreRecords records;
   for (int i = 0; i <= 1000; ++i) records.push_back({slope * 0.01 * i, 0.01 * i});
   return std::vector(kSeeds, records);
@@ -34,7 +34,7 @@ std::vector<study::ScoreRecords> world::Fog(double slope) {
 
 TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const std::vector<study::ClearRun> clear = ClearAir();
-  const std::vector<std::vector<study::ScoreRecords>> fog{world::Fog(0.1)};
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(0.1)};
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
   const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
   const study::Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
@@ -54,8 +54,8 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
 
 TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
   const std::vector<study::ClearRun> clear = ClearAir();
-  const std::vector<std::vector<study::ScoreRecords>> slow{world::Fog(0.1), world::Fog(0.2)};
-  const std::vector<std::vector<study::ScoreRecords>> fast{world::Fog(0.2), world::Fog(0.4)};
+  const std::vector<std::vector<study::ScoreRecords>> slow{Fog(0.1), Fog(0.2)};
+  const std::vector<std::vector<study::ScoreRecords>> fast{Fog(0.2), Fog(0.4)};
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = slow},
                         study::DetectorRuns{.clear = clear, .fog = fast},
                         study::DetectorRuns{.clear = clear, .fog = slow}};
@@ -75,7 +75,7 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
 
 TEST(CompareDetectionTest, ACertainDetectionHasTheIntervalOfClopperAndPearson) {
   const std::vector<study::ClearRun> clear = ClearAir();
-  const std::vector<std::vector<study::ScoreRecords>> fog{world::Fog(1), world::Fog(0)};
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(1), Fog(0)};
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
   const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
   const study::Estimate& all = compared[0].detector.by_visibility[0].detection;
