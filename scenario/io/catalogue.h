@@ -14,7 +14,7 @@ namespace fogline {
 /// values are shared by all callers: read them only.
 const FieldList& Catalogue();
 
-/// The field with this pointer; null if there is none. Any index finds the item of a list. "/" and
+/// Finds the field with this pointer, or returns null. Any index finds the item of a list. "/" and
 /// "" find the whole scenario, which is not in Catalogue().
 const Field* FindField(std::string_view pointer);
 

@@ -39,8 +39,8 @@ struct TransferSection {
                 "For jerk_limited: how fast the command may change after a transfer.",
                 "our choice, because it is below 2.5, the limit of ISO 15622 above 20 m/s");
   FOGLINE_FIELD(double, yield_mps2, 3.5, {0, 20, "m/s2"},
-                "For jerk_limited and gate: whoever drives and brakes harder than this is obeyed "
-                "at once, smooth or not.",
+                "For jerk_limited and gate: a command of the driving side that brakes harder than "
+                "this takes effect at once, even if the change is not smooth.",
                 "ISO 15622: an ACC never brakes harder above 20 m/s");
   FOGLINE_FIELD(Hysteresis, hysteresis, Hysteresis::kNone,
                 "What keeps authority from going to and fro.");

@@ -99,7 +99,7 @@ struct Scenario {
   FOGLINE_FIELD(FollowersSection, followers, {}, "The cars behind the host, and who drives them.");
   FOGLINE_FIELD(HealthSection, health, {}, "Real time: when an input counts as stale or lost.");
   FOGLINE_FIELD(MinimalRiskSection, minimal_risk, {},
-                "Real time: how a car stops that nobody drives any more.");
+                "Real time: how a car stops when neither automation nor human drives it.");
   FOGLINE_FIELD(MeasuresSection, measures, {}, "How runs are judged.");
   FOGLINE_FIELD(std::vector<PublishedRow>, published, {}, {0, 100},
                 "A published table; `fogline table` prints it beside its own.");
