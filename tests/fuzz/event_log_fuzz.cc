@@ -36,8 +36,7 @@ void DemandSameInMemory(runtime::Bytes bytes, const std::vector<log::Event>& eve
     Demand(again && SameBut(event.number, event, *again), "an event in memory is the same");
     bytes = bytes.subspan(log::SizeInFile(event));
   }
-  Demand(!log::ParseEvent(bytes, why) && !why.empty(),
-         "after the last event there is none in memory");
+  Demand(!log::ParseEvent(bytes, why) && !why.empty(), "no event in memory follows the last one");
 }
 
 void DemandLogOrRefusal(runtime::Bytes bytes) {

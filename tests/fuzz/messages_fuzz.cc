@@ -33,10 +33,10 @@ void DemandOneMeaning(runtime::Bytes bytes) {
   Demand(runtime::Decode(bytes, used) && std::ranges::equal(Encoded(used), bytes),
          "nothing is left of an earlier message");
   Demand(!runtime::Decode(bytes.first(bytes.size() - 1), used),
-         "a message without its end is none");
+         "a message without its end is refused");
   Input longer(bytes.begin(), bytes.end());
   longer.push_back(0);
-  Demand(!runtime::Decode(longer, used), "a message with something behind it is none");
+  Demand(!runtime::Decode(longer, used), "a message with more bytes behind its end is refused");
   if (finite) Took();
 }
 
