@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <lcm/lcm.h>
+#include <netinet/in.h>
 #include <sodium.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -27,6 +28,20 @@
 
 namespace fogline::runtime {
 namespace {
+
+/// Whether a socket of this machine receives UDP messages on the port. The kernel delivers a
+/// multicast message to every socket on its port, whichever group the socket has joined.
+bool IsTaken(std::uint16_t port) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return false;  // the caller's own socket fails, and it says why
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  // Without SO_REUSEADDR, which LCM sets, this fails beside any other socket.
+  const bool taken = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  close(probe);
+  return taken;
+}
 
 /// Adds options to a udpm URL that does not give them. Larger buffers survive bursts (a default one
 /// loses 88 % of 5000 messages sent at once); ttl=0 keeps traffic on this machine.
@@ -359,10 +374,17 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
 }
 
 std::string FreshMulticastUrl() {
-  // The registered and dynamic ports above LCM's own 7667. The group is LCM's.
+  // Registered ports above LCM's own 7667 and below 32768, where the ports begin that Linux gives
+  // to sockets that ask for none (ip(7)). The group is LCM's.
   constexpr std::uint32_t kFirstPort = 20000;
-  constexpr std::uint32_t kPorts = 40000;
-  return fmt::format("udpm://239.255.76.67:{}?ttl=0", kFirstPort + randombytes_uniform(kPorts));
+  constexpr std::uint32_t kPorts = 12000;
+  constexpr int kTries = 20;  // where all of them find a taken port, the last one has to do
+  std::uint32_t port = 0;
+  for (int i = 0; i < kTries; ++i) {
+    port = kFirstPort + randombytes_uniform(kPorts);
+    if (!IsTaken(static_cast<std::uint16_t>(port))) break;
+  }
+  return fmt::format("udpm://239.255.76.67:{}?ttl=0", port);
 }
 
 }  // namespace fogline::runtime

@@ -7,8 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
+#include <vector>
 
 #include "common/errors.h"
+#include "services/runtime/transport/lcm_url.h"
 
 namespace fogline {
 namespace {
@@ -104,6 +108,33 @@ TEST(BusTest, HandsAnExceptionOfAHandlerToTheCallerOfWait) {
 TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
   EXPECT_NE(runtime::Bus("udpm://239.255.76.67:23456").url().find("ttl=0"), std::string::npos);
   EXPECT_NE(runtime::FreshMulticastUrl(), runtime::FreshMulticastUrl());
+}
+
+TEST(BusTest, DrawsAPortOnWhichNoSocketReceives) {
+  // GIVEN sockets on 600 of the 12,000 ports, which other sockets may share, as LCM's may
+  std::set<std::uint16_t> taken;
+  std::vector<int> sockets;
+  for (int i = 0; i < 600; ++i) {
+    const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    ASSERT_GE(receiver, 0);
+    sockets.push_back(receiver);
+    const int yes = 1;
+    ASSERT_EQ(setsockopt(receiver, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)), 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(20000 + 20 * i));
+    if (bind(receiver, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
+      taken.insert(ntohs(address.sin_port));
+    }
+  }
+  EXPECT_GT(taken.size(), 500);
+  // WHEN 1,000 URLs are made, THEN none has one of these ports
+  for (int i = 0; i < 1000; ++i) {
+    const auto drawn = runtime::ParseMulticastUrl(runtime::FreshMulticastUrl());
+    ASSERT_TRUE(drawn);
+    EXPECT_FALSE(taken.contains(drawn->port)) << drawn->port;
+  }
+  for (const int receiver : sockets) close(receiver);
 }
 
 runtime::SigningKey KeyOf(std::uint8_t byte) {
