@@ -98,7 +98,7 @@ TEST(WaitTest, OfARunIsAMinuteUnlessSaidOtherwise) {
   Background endless(meeting.Run({"--transport", "udpm", "--external", "acc", "--wait", "0"}));
   EXPECT_TRUE(endless.WaitForErr("waiting for the acc (for ever): ", kPatience)) << endless.Err();
   Background acc(meeting.Command("fogline-acc", {}));
-  EXPECT_EQ(endless.Wait(), 0) << endless.Err();
+  EXPECT_EQ(endless.Wait(), 0) << endless.Err() << acc.Err();
 }
 
 TEST(WaitTest, OfATableHasALimitToo) {

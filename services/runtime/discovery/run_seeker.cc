@@ -9,12 +9,16 @@ std::optional<Announcement> RunSeeker::Look(TimePoint now) {
   listener_.Look();
   const std::vector<Announcement> runs = listener_.Runs();
   for (const Announcement& run : runs) {
-    if (!run.Awaits(role_)) std::erase(in_vain_, run.run_id);
+    if (!run.Awaits(role_)) {
+      std::erase_if(in_vain_, [&](const Try& last) { return last.run_id == run.run_id; });
+    }
   }
+  std::erase_if(in_vain_,
+                [&](const Try& last) { return pauses_.HeldAgainst(last.at, now) >= kTryAgain; });
   if (tried_) return std::nullopt;
   for (const Announcement& run : runs) {
     if (!run.Awaits(role_) || run.run_id == own_ ||
-        std::ranges::find(in_vain_, run.run_id) != in_vain_.end()) {
+        std::ranges::find(in_vain_, run.run_id, &Try::run_id) != in_vain_.end()) {
       continue;
     }
     tried_ = {.run_id = run.run_id, .at = now};
@@ -35,8 +39,8 @@ bool RunSeeker::InVain(TimePoint now) {
   return pauses_.HeldAgainst(tried_->at, now) > kSilentLimit || (would_know && !announced);
 }
 
-void RunSeeker::GiveUp() {
-  in_vain_.push_back(tried_->run_id);
+void RunSeeker::GiveUp(TimePoint now) {
+  in_vain_.push_back({.run_id = tried_->run_id, .at = now});
   tried_.reset();
   if (in_vain_.size() > kMaxInVain) in_vain_.pop_front();
 }

@@ -29,10 +29,10 @@ class RunSeeker {
   /// Whether the run is over, or nothing was heard of it for kSilentLimit. The role then goes back
   /// to the meeting address.
   bool InVain(TimePoint now);
-  /// Look() does not return the run that was tried last again, until an announcement says that the
-  /// run does not wait for the role. Then another process has had the place, and the place may
-  /// become free.
-  void GiveUp();
+  /// Look() does not return the run that was tried last for kTryAgain: a run at the meeting address
+  /// comes first. It may return it sooner when an announcement has said that the run does not wait
+  /// for the role. Then another process has had the place, and the place has become free.
+  void GiveUp(TimePoint now);
   /// Look() does not return this run, in which the role already takes part.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
   /// The role has left this run, and is still at its network.
@@ -42,6 +42,9 @@ class RunSeeker {
   // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
   // by less than this.
   static constexpr Duration kSilentLimit = milliseconds(5000);
+  // A run that was tried in vain may only be slow: a busy machine held it up, or the port of its
+  // network was taken for a moment.
+  static constexpr Duration kTryAgain = milliseconds(5000);
   // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;
 
@@ -55,7 +58,7 @@ class RunSeeker {
   OwnPauses pauses_;
   std::optional<Try> tried_;
   std::optional<std::int64_t> own_;
-  std::deque<std::int64_t> in_vain_;
+  std::deque<Try> in_vain_;
 };
 
 }  // namespace fogline::runtime

@@ -202,7 +202,7 @@ class Service {
   }
 
   void GoBack(const std::string& why) {
-    seeker_->GiveUp();
+    seeker_->GiveUp(Clock::now());
     try {
       Join(MeetingUrl(), std::nullopt);
     } catch (const std::exception&) {  // it stays where it is

@@ -1,0 +1,72 @@
+#include "services/runtime/discovery/run_seeker.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/process/this_process.h"
+#include "services/runtime/transport/bus.h"
+
+namespace fogline {
+namespace {
+
+/// A run that announces itself at a meeting address of this test.
+class RunSeekerTest : public testing::Test {
+ protected:
+  void Announce(const std::vector<std::string>& awaited) {
+    beacon_t beacon{};
+    beacon.header.run_id = 7;
+    beacon.began_us = 1;
+    beacon.url = "udpm://239.255.76.67:7700?ttl=0";
+    beacon.host = HostName();
+    beacon.pid = getpid();
+    beacon.awaited = awaited;
+    beacon.num_awaited = static_cast<std::int32_t>(awaited.size());
+    std::vector<std::uint8_t> bytes;
+    runtime::Encode(beacon, bytes);
+    runner_.Publish(runtime::kBeaconChannel, bytes);
+  }
+
+  /// Announces the run until the driver goes there. @return whether it does
+  bool Finds(TimePoint now) {
+    for (int tries = 0; tries < 100; ++tries) {
+      Announce({"driver"});
+      if (const auto run = driver_.Look(now)) return run->run_id == 7;
+      runner_.Wait(milliseconds(10));
+    }
+    return false;
+  }
+
+  std::string meeting_ = runtime::FreshMulticastUrl();
+  runtime::Bus runner_{meeting_};
+  runtime::RunSeeker driver_{Role::kDriver, meeting_};
+  runtime::RunSeeker acc_{Role::kAcc, meeting_};
+  TimePoint begin_ = Clock::now();
+};
+
+// The times that this test gives are in steps of 0.4 s: a longer one is a pause of the seeker.
+TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
+  // GIVEN a seeker that has tried a run in vain
+  ASSERT_TRUE(Finds(begin_));
+  driver_.GiveUp(begin_);
+  EXPECT_FALSE(driver_.Tries());
+  // WHEN the run still waits, THEN the seeker leaves it alone for five seconds, and tries it again
+  TimePoint now = begin_;
+  for (; now < begin_ + std::chrono::seconds(5); now += milliseconds(400)) {
+    Announce({"driver"});
+    EXPECT_FALSE(driver_.Look(now)) << (now - begin_).count();
+  }
+  EXPECT_TRUE(Finds(now));
+}
+
+TEST_F(RunSeekerTest, GoesOnlyWhereItsRoleIsAwaited) {
+  ASSERT_TRUE(Finds(begin_));
+  EXPECT_FALSE(acc_.Look(begin_));
+}
+
+}  // namespace
+}  // namespace fogline
