@@ -291,8 +291,10 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  const Outcome run =
-      RunCommand(RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm")));
+  // In real speed, so that the run still goes on when a busy machine starts one of them late
+  auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
+  command.insert(command.end(), {"--pace", "1"});
+  const Outcome run = RunCommand(command);
   EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("error: two processes are the driver: pid "));
   EXPECT_THAT(run.err, HasSubstr("pid " + one.pid() + " on "));
