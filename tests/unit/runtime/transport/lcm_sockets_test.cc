@@ -55,10 +55,11 @@ TEST(LcmSocketsTest, KnowWhetherEveryOneThatReceivesIsFiltered) {
 }
 
 TEST(LcmSocketsTest, AreFilteredBeforeTheyAreBound) {
+  const std::string url = runtime::FreshMulticastUrl();
   const runtime::LcmSockets sockets(runtime::ChannelFilter({{"LCM_SELF_TEST"}}), kRoute);
   const runtime::Bus memory("memq://");
   EXPECT_TRUE(sockets.receiving().empty());
-  lcm_t* network = lcm_create(runtime::FreshMulticastUrl().c_str());
+  lcm_t* network = lcm_create(url.c_str());
   ASSERT_NE(network, nullptr);
   EXPECT_GE(lcm_get_fileno(network), 0);
   ASSERT_FALSE(sockets.receiving().empty());
