@@ -129,9 +129,9 @@ INSTANTIATE_TEST_SUITE_P(Campaign, HangTest, testing::ValuesIn(EveryRole()),
                          [](const auto& role) { return role.param; });
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that stands still for longer than a role may be silent
-  // (3 s: half the timeout), which is longer than a busy machine holds up a role
-  WatchedRun watched({"--stall-timeout", "6"}, 3000);
+  // GIVEN a runner that stands still for longer than a role may be silent (3 s, half the timeout,
+  // which is longer than a busy machine holds up a role), but not to the end of the run (8 s)
+  WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
   std::this_thread::sleep_for(milliseconds(3500));  // the pause is what is tested
