@@ -46,7 +46,7 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// The file to which a name leads, link by link.
+/// The file to which a name leads when all its links are followed.
 struct Target {
   fs::path path;
   std::optional<int> descriptor;  // of this process, in place of the path

@@ -9,9 +9,9 @@
 namespace fogline {
 
 /// Writes a file under a random name in the folder of the target file, and renames it at the end.
-/// So several processes can write one file at a time: each writes a whole one, and the last one
-/// stays. A link to a file stays a link, and its target is replaced. A terminal, /dev/null, a pipe
-/// and /dev/stdout cannot be replaced; they get the content at the end.
+/// So several processes can write the same file at a time: each writes a complete file, and the
+/// last one remains. A link to a file stays a link, and its target is replaced. A terminal,
+/// /dev/null, a pipe and /dev/stdout cannot be replaced; they get the content at the end.
 ///
 /// A process that must leave nothing behind after an interrupt watches interrupts (interrupt.h).
 /// Then only kill -9 leaves the file with the random name, ".fogline-*".
@@ -60,8 +60,9 @@ class AtomicFile {
 /// Folder of files without a given place, such as the log of a run.
 inline constexpr const char* kDefaultFolder = "logs";
 
-/// Whether a file of this name can be replaced. It is false for a pipe or device, which is written
-/// into, and for a name that is an open descriptor of this process, such as /dev/stdout.
+/// Whether a file of this name can be replaced. A pipe or device cannot: the bytes are written into
+/// it. A name that stands for an open descriptor of this process, such as /dev/stdout, cannot
+/// either.
 bool IsReplaceable(const std::filesystem::path& file);
 
 /// Opens a file that is not replaceable, for writing. @return a descriptor

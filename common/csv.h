@@ -20,8 +20,8 @@ struct CsvNumber {
 /// The header line's names, without the spaces around them.
 std::vector<std::string_view> CsvHeader(std::string_view text);
 
-/// The wrong separator that a header line seems to use in place of ',', for a message: "';'" or
-/// "tabs"; "" if it seems to use none.
+/// The separator that a header line seems to use in place of ',', as text for a message: "';'" or
+/// "tabs". "" if it seems to use no other separator.
 std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
 /// Called for each cell that is not a finite number, and for each row that lacks a cell.

@@ -29,7 +29,8 @@ constexpr std::size_t kMostEntries = 10'000;
 // Longest wait for data from a pipe; long enough for a remote shell to answer.
 constexpr int kPipeLimit_ms = 5000;
 
-// How often it is asked whether to wait on for room in a pipe: a person does not notice the delay.
+// Time between two checks whether to go on waiting for room in a pipe. A person does not notice a
+// delay of this length.
 constexpr int kRoomPause_ms = 100;
 
 std::string Message(int error) { return std::generic_category().message(error); }
@@ -38,7 +39,6 @@ FileText Unreadable(const std::string& why) {
   return {.text = "", .error = "cannot be read: " + why};
 }
 
-// An open file, closed at the end of a scope.
 // The reason why ReadFile() does not read this type of file; "" for a regular file or a pipe.
 std::string WhyNotRead(mode_t mode) {
   if (S_ISDIR(mode)) return "it is a folder";
@@ -60,7 +60,7 @@ bool HasMore(int fd) {
 bool HasRoom(int fd) {
   pollfd waited{.fd = fd, .events = POLLOUT, .revents = 0};
   const int ready = poll(&waited, 1, kRoomPause_ms);
-  return ready > 0 || (ready < 0 && errno != EINTR);  // the write says what is wrong
+  return ready > 0 || (ready < 0 && errno != EINTR);  // write() reports the error
 }
 
 // The names of the files of a folder, sorted; none if the folder cannot be listed or has more than
@@ -151,8 +151,8 @@ std::string WhyNoRegularFile(const std::filesystem::path& file) {
 }
 
 int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
-  // A signal interrupts one thread, which need not be this one. So it is waited for room here, and
-  // no more is written than room is certain for.
+  // A signal interrupts one thread, which need not be this one. So WriteAll() itself waits for
+  // room, and writes no more bytes than certainly fit.
   const std::size_t most = stop == nullptr ? bytes.size() : PIPE_BUF;
   while (!bytes.empty()) {
     if (stop != nullptr && !HasRoom(fd)) {

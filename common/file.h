@@ -8,8 +8,8 @@
 
 namespace fogline {
 
-/// A call of the operating system is worth its cost from this many bytes on: a call costs as much
-/// as copying thousands of bytes.
+/// The least number of bytes for which a call of the operating system is worth its cost. A call
+/// costs as much as copying thousands of bytes.
 inline constexpr std::size_t kWorthACall = 1 << 16;
 
 /// Result of reading a file: the text, or else the error. `error` is empty if the file was read.
@@ -42,7 +42,7 @@ class OpenFile {
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
-  /// -1, and errno says why, if it could not be opened.
+  /// The descriptor; -1 with errno if the file could not be opened.
   int fd() const { return fd_; }
 
  private:
@@ -50,11 +50,13 @@ class OpenFile {
 };
 
 /// Writes all bytes to an open file. @return 0, or errno
-/// @param stop asked while a pipe or terminal has no room; if it says so, the call ends with EINTR
+/// @param stop called while a pipe or terminal has no room; if it returns true, WriteAll() returns
+///     EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 
 /// Throws if a call failed because the process or the machine has used up descriptors, memory or
-/// disk: then the run fails (exit code 3), although the input is good. Returns at any other error.
+/// disk. The run then fails (exit code 3), although the input is good. Returns after any other
+/// error.
 /// @param error errno of the call
 /// @param what such as the file's name
 /// @throws std::runtime_error "WHAT: Too many open files; ulimit -n 1024 allows more"

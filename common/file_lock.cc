@@ -71,9 +71,10 @@ pid_t ParentOf(pid_t pid) {
 }
 
 /// The process that has locked an open file. Several processes can hold one lock: an owner, and
-/// processes that the owner has started. The owner is named: its parent holds no lock.
-/// /proc/locks has lines "1:
-/// FLOCK ADVISORY READ 4711 08:01:1234 0 EOF", with the device in hexadecimal and the inode.
+/// processes that the owner has started. This function returns the owner, the holder whose parent
+/// holds no lock.
+/// /proc/locks has lines "1: FLOCK ADVISORY READ 4711 08:01:1234 0 EOF", with the device in
+/// hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0) return std::nullopt;

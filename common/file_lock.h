@@ -8,9 +8,9 @@
 
 namespace fogline {
 
-/// A lock on a file or folder (flock(2)). The kernel removes it when the process ends in any way,
-/// and nothing is left on the disk. It binds only processes that ask for it. On a file system
-/// without locks every process gets it.
+/// A lock on a file or folder (flock(2)). The kernel removes the lock when the process ends in any
+/// way, and nothing is left on the disk. The lock stops only processes that ask for it. On a file
+/// system without locks every process gets it.
 class FileLock {
  public:
   enum class Kind {

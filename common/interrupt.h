@@ -1,5 +1,5 @@
 // The signals that ask a process to end: SIGINT (Ctrl-C), SIGTERM, SIGHUP (the terminal is gone).
-// The process notes them and ends at the next convenient moment.
+// The process notes the signal and ends at the next convenient moment.
 #pragma once
 
 #include <csignal>

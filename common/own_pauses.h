@@ -1,7 +1,7 @@
-// The times at which this process was held up itself: stopped (Ctrl-Z), frozen with its container,
-// or waiting for a disk. A silence of others in such a time means nothing.
+// The times in which this process itself could not run: it was stopped (Ctrl-Z), was frozen with
+// its container, or waited for a disk. The silence of another process in such a time means nothing.
 //
-// A suspended machine needs no such record: its Clock stands still meanwhile.
+// The time in which the machine was suspended is no such pause, because its Clock stood still.
 #pragma once
 
 #include <algorithm>

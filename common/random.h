@@ -11,8 +11,8 @@
 
 namespace fogline {
 
-/// The user of the random numbers. A stream's number is part of its random numbers: never reuse or
-/// renumber one.
+/// The user of the random numbers. The random numbers of a stream depend on its number: never reuse
+/// or change a number.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,

@@ -55,7 +55,7 @@ Character FirstCharacter(std::string_view text) {
     code_point = (code_point << 6U) | (byte(i) & 0x3fU);
   }
   constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800,
-                                           0x10000};  // no longer than it must be
+                                           0x10000};  // least code point by length
   const bool is_surrogate = code_point >= 0xd800 && code_point < 0xe000;
   if (code_point < kLeast[bytes] || code_point > 0x10ffff || is_surrogate) return {};
   return {.bytes = bytes, .code_point = code_point};

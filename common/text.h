@@ -52,7 +52,7 @@ std::string Names(std::span<const std::string_view> names);
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `word`, if it is near enough for a suggestion. Of several equally near
-/// ones it is the first.
+/// candidates it is the first.
 std::optional<std::string_view> Nearest(std::string_view word,
                                         std::span<const std::string_view> candidates);
 

@@ -23,14 +23,14 @@
 namespace fogline {
 namespace {
 
-// A process waits no longer than this for a reader that takes nothing, such as a pager that waits
-// for a key: a process that has failed keeps its log locked until it ends.
+// Longest wait for a reader that takes nothing, such as a pager that waits for a key. The wait is
+// limited because a process that has failed keeps its log locked until it ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
-/// Keeps a write from ending or stopping the process, for the length of a scope and in this thread:
-/// one to a pipe without a reader (SIGPIPE), and one from the background to a terminal that is set
-/// to stop that (SIGTTOU; `stty tostop`). Other writes behave as usual: `fogline digest *.lcm |
-/// head` ends.
+/// In this thread and for the length of a scope, keeps two kinds of write from ending or stopping
+/// the process: a write to a pipe without a reader (SIGPIPE), and a write from the background to a
+/// terminal that stops such writers (SIGTTOU; `stty tostop`). Writes outside of such a scope behave
+/// as usual: `fogline digest *.lcm | head` ends.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -62,11 +62,11 @@ class WithoutSignals {
 /// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
 /// wait. O_NONBLOCK on descriptor 2 itself would affect every process that shares it with the same
 /// shell. If the second open fails (a terminal of another user), poll() asks for room before each
-/// piece. A thread with a queue would need neither, but each process would have to wait at its end
-/// for its last lines.
+/// piece. A thread with a queue would need neither the second open nor poll(), but then each
+/// process would have to wait at its end until its last lines are written.
 class Stderr {
  public:
-  /// The only one; never destroyed, since destructors of other objects may write.
+  /// The only object. It is never destroyed, because destructors of other objects may write.
   static Stderr& Get() {
     static auto* const only = new Stderr;
     return *only;
@@ -178,8 +178,8 @@ void Draw(std::string_view text) noexcept {
 void TakeStandardDescriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
-    // open() takes the lowest free descriptor, which is this one. Its use fails, as the use of a
-    // closed one does.
+    // open() takes the lowest free descriptor, which is this one. The mode makes every use of the
+    // descriptor fail, like the use of a closed descriptor.
     open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

@@ -13,8 +13,8 @@ namespace fogline {
 /// characters other than line feeds are escaped. May be called from any thread.
 void Notice(std::string_view line) noexcept;
 
-/// The same for an error or a remark that a person must not miss: waits until a pipe or terminal
-/// has room, 5 s at most.
+/// Prints an error, or a remark that a person must not miss, like Notice(), but waits until a pipe
+/// or terminal has room, 5 s at most.
 void Complain(std::string_view line) noexcept;
 
 /// Prints a text as it is, without a line feed. It does not wait, and dropped text is not reported:

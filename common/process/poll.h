@@ -1,4 +1,4 @@
-// Waiting for a file or socket with a limit to the nanosecond, which poll() has not.
+// Waiting for a file or socket, with a limit to the nanosecond; poll() has only milliseconds.
 #pragma once
 
 #include <poll.h>

@@ -19,8 +19,8 @@ ProcessUse MeasureThisProcess();
 bool RunBeforeOthers(int priority);
 
 /// Makes a write beyond the limit for the size of files (ulimit -f) fail like one on a full disk,
-/// in this process and those that it starts. Otherwise the kernel kills the process (SIGXFSZ),
-/// which then cannot say why.
+/// in this process and those that it starts. Otherwise the kernel kills the process (SIGXFSZ), and
+/// the process cannot report the reason.
 void FailWritesBeyondTheSizeLimit();
 
 /// Why a write failed, and what to do if the limit for the size of files is the reason.

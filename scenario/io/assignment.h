@@ -8,8 +8,8 @@
 
 namespace fogline {
 
-/// A number, integer, flag or choice, by its JSON pointer. The field may lie in an item of a list;
-/// the scenario must then have this item.
+/// Sets the number, integer, flag or choice at a JSON pointer. The field may lie in an item of a
+/// list; the scenario must then have this item.
 class FieldAssignment {
  public:
   /// @throws InputError if the pointer names no such field

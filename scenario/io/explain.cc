@@ -1,4 +1,4 @@
-// ExplainField: what the catalogue knows about one field, or about the fields of a section.
+// ExplainField: the text about one field, or about the fields of a section, from the catalogue.
 #include <algorithm>
 #include <cstddef>
 #include <string>

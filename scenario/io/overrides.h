@@ -9,10 +9,10 @@
 
 namespace fogline {
 
-/// Puts the value of "/pointer=value" into the tree, replaces the value that is there, and adds
-/// missing sections of the path. If the value is not JSON, it is taken as plain text. Reading the
-/// tree checks whether the value suits its field, as for values of the file. Places in it have
-/// source `source`.
+/// Puts the value of "/pointer=value" into the tree, in place of any value that is there, and adds
+/// missing sections of the path. A value that is not JSON is taken as plain text. ReadScenario()
+/// checks later whether the value suits its field, as for values of the file. Places in the value
+/// have the source index `source`.
 void ApplyOverride(std::string_view text, std::uint32_t source, JsonValue& root,
                    DiagnosticList& mistakes);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 100;
 
-// Writes values, each level of the contents of lists and objects indented by two spaces.
+// Writes values. Each level inside a list or an object is indented by two more spaces.
 class Printer {
  public:
   void operator()(const NumberField& number) { out_ += NumberText(*number.value); }
@@ -54,7 +54,7 @@ class Printer {
   std::size_t depth_ = 0;
 };
 
-// Fills the lines.
+// Puts as many numbers into each line as fit.
 void Printer::operator()(const NumbersField& numbers) {
   out_ += '[';
   ++depth_;

@@ -40,7 +40,7 @@ std::optional<std::int64_t> ToInteger(const JsonValue& value) {
   return static_cast<std::int64_t>(*number);
 }
 
-// The number approximately as it is written in the file. @pre ToNumber(value)
+// The number, approximately as it stands in the file. @pre ToNumber(value)
 std::string TextOfNumber(const JsonValue& value) {
   if (const auto* integer = value.As<std::int64_t>()) return std::to_string(*integer);
   return NumberText(*ToNumber(value));
@@ -269,7 +269,7 @@ Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes) {
   }
   Reader reader(mistakes);
   constexpr std::string_view kSchema = "$schema";
-  std::string schema;  // for editors; says nothing about the experiment
+  std::string schema;  // for editors, not part of the experiment
   if (const JsonMember* member = FindMember(*object, kSchema)) {
     reader.Read(member->value, JoinPointer("", kSchema), &schema);
   }

@@ -15,8 +15,7 @@ namespace fogline {
 /// `root` is the tree of the scenario's text, in which mistakes are placed; `sources` are its
 /// sources.
 /// @throws ScenarioError if the file cannot be read, lacks a column, has a cell that is not a
-/// number,
-///     a time that does not ascend or a speed out of range, or does not span the run
+///     number, a time that does not ascend or a speed out of range, or does not span the run
 void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,
                      std::vector<Source> sources, Scenario& scenario);
 
