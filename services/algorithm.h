@@ -1,10 +1,10 @@
-// What the types in an algorithm's Step function say about its role: its inputs and outputs, and,
-// by the graph table, its channels and the role itself.
+// Finds the inputs and outputs of an algorithm from the types of its Step function. The graph table
+// then gives its channels and its role.
 //
-// An algorithm may have one more input, on demand: only some scenarios use it.
+// An algorithm may have one more input, on demand. It uses this input only in some scenarios.
 //
-//     static bool UsesOnDemandInput(const Scenario& scenario);  // whether this scenario does
-//     void SetOnDemandInput(const M& message);                  // called before each Step, if so
+//     static bool UsesOnDemandInput(const Scenario& scenario);  // whether it uses the input
+//     void SetOnDemandInput(const M& message);                  // called before each Step then
 //
 // M is of the same step if its producer comes before this role in the order of evaluation. If its
 // producer comes after this role, M is of the step before; at step 0 it is all zero. In real time
@@ -95,10 +95,10 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
-  /// The message that it may read on demand: a tuple of one type, or of none.
+  /// The message that the algorithm may read on demand: a tuple of one type, or of none.
   using OnDemand = typename internal::OnDemandInputs<A>::Type;
   static constexpr bool kHasOnDemand = std::tuple_size_v<OnDemand> != 0;
-  /// Everything that it can read; the input on demand comes last.
+  /// All messages that the algorithm can read; the input on demand comes last.
   using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
 
   static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
@@ -106,7 +106,7 @@ struct AlgorithmTraits {
   /// before.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
 
-  /// Whether it reads its input on demand in this scenario.
+  /// Whether the algorithm reads its input on demand in this scenario.
   static bool UsesOnDemandInput([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kHasOnDemand) {
       return A::UsesOnDemandInput(scenario);

@@ -95,7 +95,7 @@ struct Channel {
   RoleSet on_demand = {};  // roles that read it only in scenarios that use it
 };
 
-/// Every channel. The order of the kStep channels is one in which a step can be evaluated.
+/// Every channel. The kStep channels stand in an order in which a step can be evaluated.
 inline constexpr std::tuple kGraph{
     Channel<run_t>{"RUN", Pace::kControl, Role::kRunner, kEveryone,
                    "phase of the run; the scenario, in parts"},

@@ -92,9 +92,9 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
 // The u from which the rate limit counts: the last own u if the car followed its command, otherwise
 // the u that would hold the acceleration that the car has. It is clamped to the limits of u,
 // because the driver may brake harder than the automation is allowed to. A vehicle never follows
-// its command exactly. Its u continues from the last own u, but stays near the u that would hold
-// the acceleration: no further ahead than a ramp at the jerk limit is ahead of an engine with the
-// model's lag. So u cannot drift away while the human drives.
+// its command exactly. Its u continues from the last own u, but its distance from the u that would
+// hold the acceleration is limited. The limit is the lead that a ramp at the jerk limit has over an
+// engine with the model's lag. So u cannot drift away while the human drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;
   double control = holding;

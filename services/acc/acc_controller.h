@@ -14,15 +14,15 @@
 namespace fogline::acc {
 
 /// Model predictive adaptive cruise control: holds the safe distance d_r = T_hw v + d_0 to the
-/// preceding car. Uses distances and speeds; sensors, messages and authority have no place here.
+/// preceding car. Uses distances and speeds, and knows nothing of sensors, messages and authority.
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
 /// of this gain meets every limit, the controller uses it; otherwise it solves the quadratic
 /// program. A point mass applies its command at once. Its command is the model's acceleration one
-/// step ahead, and starts from the acceleration that the car really has, so it is continuous after
-/// a take-over. A vehicle has its own lag in place of the model's. Its command is -K_e u, the
-/// acceleration to which u leads in the end. Its u is ahead of the acceleration that the vehicle
-/// has by no more than the lag of the model's engine at the jerk limit.
+/// step ahead. The command starts from the acceleration that the car really has, so it is
+/// continuous after a take-over. A vehicle has its own lag in place of the model's. Its command is
+/// -K_e u, the acceleration to which u leads in the end. This command differs from the acceleration
+/// that the vehicle has by no more than the lag of the model's engine at the jerk limit.
 class AccController {
  public:
   struct Input {
@@ -56,8 +56,8 @@ class AccController {
   Output Step(const Input& input);
 
   /// Resets the object to the state of a new AccController(section, step_s, vehicle). If section
-  /// and step_s are unchanged, it keeps what is computed once, which is most of the cost of a short
-  /// run.
+  /// and step_s are unchanged, the results of the construction are kept. Computing them is most of
+  /// the cost of a short run.
   /// @throws InputError as the constructor; the object is then unchanged.
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);

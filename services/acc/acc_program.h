@@ -17,8 +17,9 @@ struct AccSituation {
   double previous_control;  // u of the step before, within MinControl() to MaxControl()
 };
 
-/// Condensed over a horizon of N steps of h seconds: the states are eliminated, the unknowns are
-/// z = [s, u_0, ..., u_{N-1}], and the preceding car is predicted to hold its speed.
+/// The quadratic program over a horizon of N steps of h seconds. It is condensed: the states are
+/// eliminated, and the unknowns are z = [s, u_0, ..., u_{N-1}]. The preceding car is predicted to
+/// hold its speed.
 ///
 ///     min  sum_{j=1..N}   w_d delta_d_j^2 + w_v delta_v_j^2 + w_a a_j^2
 ///        + sum_{j=0..N-1} w_u u_j^2 + w_du (u_j - u_{j-1})^2     + w_s s^2
@@ -29,18 +30,19 @@ struct AccSituation {
 ///     no reversing        w_j >= -s / (1 s)
 ///     of the gap          d_j >= d_min - s (N + 1 - j) / N
 ///
-/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. As
-/// T_e v' = w - v, a speed below v_max stays there while w does, between the steps too, and v >= 0
-/// likewise. (Limits on v_j itself would be less cautious, but u acts on v with a delay, and an
-/// optimum that touches them swings from step to step.)
+/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. Because
+/// T_e v' = w - v, the speed stays below v_max as long as w does, also between the steps. In the
+/// same way it stays at or above 0. (Limits on v_j itself would be less cautious. But u acts on v
+/// with a delay, and an optimum that touches such limits swings from step to step.)
 ///
 /// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
 /// allow it) at the fastest allowed change of u. It meets the first three limits in every
-/// situation, and s >= 0 can grow until the last two are met, so the program always has a solution.
-/// If the human drove faster than v_max, the car comes back below v_max no later than with the
-/// fall-back plan. s, in m, is the shortfall of the gap that the plan allows. The allowed part of s
-/// decreases towards the end of the horizon; otherwise a gap that is too small at the start could
-/// stay too small. The program needs no limit s >= 0, because s < 0 is never cheaper than 0.
+/// situation. s >= 0 can grow until the last two limits are met, so the program always has a
+/// solution. If the human drove faster than v_max, the car comes back below v_max no later than
+/// with the fall-back plan. s, in m, is the shortfall of the gap that the plan allows. The allowed
+/// part of s decreases towards the end of the horizon; otherwise a gap that is too small at the
+/// start could stay too small. The program needs no limit s >= 0, because s < 0 is never cheaper
+/// than 0.
 class AccProgram {
  public:
   /// A limit that is broken by no more than this (m/s2, m/s or m) counts as met: far above

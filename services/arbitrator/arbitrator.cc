@@ -59,7 +59,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
-  // The mode names the side with more authority; the human if both have half.
+  // The mode names the side with more authority. If both sides have half, it names the human.
   out_.mode = state.lambda_human < models::kMainAuthority ? arbitration_t::AUTOMATION
                                                           : arbitration_t::HUMAN;
   if (take_over_) {

@@ -56,20 +56,20 @@ class Arbitrator {
   /// way. If the driver must be asked: whether he has taken over and has at least half of the
   /// authority.
   bool wants_human() const { return granted_ >= models::kMainAuthority; }
-  /// The driver must be asked, and has not taken over.
+  /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {
     return take_over_ && take_over_->outcome().authority != take_over::Authority::kHuman;
   }
-  /// A request is pending, or the host is in the manoeuvre that follows an unanswered request. This
-  /// manoeuvre needs only the odometry as input.
+  /// Whether a request is pending, or the host is in the manoeuvre that follows an unanswered
+  /// request. This manoeuvre needs only the odometry as input.
   bool asks() const {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
   bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
   /// An automation that is not there does not get authority back from a driver who was asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }
-  /// To call if another command than that of the last decision was sent: the next one continues
-  /// from the command that was sent.
+  /// Call it if the command that was sent is not that of the last decision. The next command then
+  /// continues from the command that was sent.
   void Overrule(const arbitration_t& sent);
 
  private:

@@ -12,9 +12,10 @@
 
 namespace fogline::arbitrator {
 
-/// DoC = 1/(1 + exp(-slope (x - centre))). x is z (services/decision/conflict/one_step/doc.h), as
-/// in the paper, or the score of another row of services/decision/conflict/conflict_measures.cc, as
-/// the scenario's measure says. With measure_scale probability the DoC is the score itself.
+/// DoC = 1/(1 + exp(-slope (x - centre))). The scenario's measure says what x is: as in the paper
+/// it is z (services/decision/conflict/one_step/doc.h); with another measure it is the score of
+/// this measure (services/decision/conflict/conflict_measures.cc). With measure_scale probability
+/// the DoC is the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is probability but the measure's score is not a probability

@@ -5,9 +5,9 @@
 namespace fogline::arbitrator {
 namespace {
 
-// The automation can drive if its command is there, the track from which the command is computed,
-// and both sensors in pairs of one step. Without pairs no Degree of Conflict says whether to trust
-// the automation. The result is the worst of these.
+// The automation can drive if three things are there: its command, the track from which the command
+// is computed, and values of both sensors in pairs of one step. Without pairs there is no Degree of
+// Conflict, which would say whether to trust the automation. The result is the worst of the three.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});

@@ -43,11 +43,12 @@ class FailsafeArbitrator {
   /// their age.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
-  /// The manoeuvre begins at the next step, whatever the inputs. To call if the vehicle, or an
-  /// earlier instance of this role, is already in a manoeuvre.
+  /// Makes the manoeuvre begin at the next step, whatever the inputs are. Call it if the vehicle,
+  /// or an earlier instance of this role, is already in a manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
-  /// Text that says what it does instead of its regular work; "" if it does its regular work.
+  /// Text about what the arbitrator does in place of its regular work; "" if it does its regular
+  /// work.
   std::string_view fallback() const { return FallbackText(decision_); }
   /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
   std::int8_t minimal_risk() const {

@@ -90,8 +90,8 @@ static_assert(
     }(),
     "exactly one row of kFailsafeTable applies to each case");
 
-/// Text for STATUS that says what the arbitrator does instead of its regular work; "" if it does
-/// that.
+/// Text for STATUS about what the arbitrator does in place of its regular work; "" if it does its
+/// regular work.
 constexpr std::string_view FallbackText(Decision decision) {
   switch (decision) {
     case Decision::kRegular:

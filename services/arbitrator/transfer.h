@@ -44,8 +44,8 @@ class Transfer {
     return Smooth(wanted, offers, applied_mps2);
   }
 
-  /// To call if authority and command of this step were decided elsewhere: later steps continue
-  /// from them.
+  /// Call it if authority and command of this step were decided elsewhere. Later steps continue
+  /// from `actual`.
   void Overrule(const State& actual);
 
  private:

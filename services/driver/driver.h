@@ -25,7 +25,7 @@ class Driver {
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
   static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
-  /// The command of the step that ends with the next Step(): it says who drove.
+  /// Takes the command of the step that ends with the next Step(). It says which side drove.
   void SetOnDemandInput(const arbitration_t& host);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a

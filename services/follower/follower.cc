@@ -28,7 +28,8 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
   }
 }
 
-/// The driver of this car: `before`, restarted, if both are an ACC; otherwise a new one.
+/// The driver of this car. If both `before` and this driver are an ACC, it is `before`, restarted.
+/// Otherwise it is a new object.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {
   const DriverAssignment assignment = AssignmentOf(scenario, car);

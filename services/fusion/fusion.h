@@ -17,9 +17,9 @@
 namespace fogline::fusion {
 
 /// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
-/// one value after the other in this order. The predicted value is that of the state after the
-/// values before it. The noises of the values are independent, so without lateral offsets the
-/// result is that of a joint correction. Values that are missing or that the gate refuses are
+/// one value after the other in this order. Each value is compared with the state that the values
+/// before it have corrected. The noises of the values are independent, so without lateral offsets
+/// the result is that of a joint correction. Values that are missing or that the gate refuses are
 /// skipped.
 ///
 /// The assumed noise is that of the scenario's section `fusion`. The filter does not use the

@@ -54,7 +54,8 @@ std::optional<Lidar::Echo> Lidar::PlainEcho(const truth_t& truth, double target_
 std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target_m) {
   CollectEchoes(truth, target_m);
   if (2 * static_cast<std::int64_t>(echoes_.size()) < lidar_.beam.beams) return std::nullopt;
-  // Of an even number it is the nearer one of the middle two, so that the range is that of an echo.
+  // If the number of echoes is even, the median is the nearer of the middle two, so that the range
+  // is that of an echo.
   const auto median = echoes_.begin() + static_cast<std::ptrdiff_t>((echoes_.size() - 1) / 2);
   std::nth_element(echoes_.begin(), median, echoes_.end());
   // The variance of the time of arrival has a part proportional to 1 / SNR. At the detection

@@ -1,8 +1,8 @@
 // Reads and writes LCM event logs; it reads them by mapping the file. A log of Fogline is a
-// standard LCM event log whose event times are simulated times. LCM's own library needs seven calls
-// and a copy of all data for each event that it reads or writes, and the format is simple enough to
-// do without it (LCM, eventlog.c). An event is, all big endian: sync word 0xEDA1DA01, int64 event
-// number, int64 timestamp in us, int32 channel length, int32 data length, channel, data.
+// standard LCM event log whose event times are simulated times. LCM's own library is not used: it
+// needs seven calls and a copy of all data for each event, and the format is simple (LCM,
+// eventlog.c). All numbers of an event are big endian, in this order: sync word 0xEDA1DA01, int64
+// event number, int64 timestamp in us, int32 channel length, int32 data length, channel, data.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ inline constexpr std::size_t kEventHeader = 28;
 /// The most bytes that an event takes besides its data.
 inline constexpr std::size_t kMostEventOverhead = kEventHeader + runtime::kLongestChannel;
 
-/// The part of a log that is kept when a writer continues it: its first bytes, which hold so many
-/// whole events.
+/// The part of a log that is kept when a writer continues it: its first bytes, and the number of
+/// whole events in them.
 struct LogHead {
   std::int64_t bytes = 0;
   std::int64_t events = 0;
@@ -64,11 +64,11 @@ class EventLogWriter {
   void Flush();
   /// Bytes of all events so far, including those that Flush() has not handed over.
   std::int64_t size() const { return size_; }
-  /// The same, with the number of events.
+  /// The same bytes, with the number of events in them.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
   /// The part of the log that the operating system has. In a continued log it begins with the last
-  /// kTailBytes of the old head, with their bytes as they were found: the earlier writer has
-  /// reported the bytes before them.
+  /// kTailBytes of the old head, as they were found in the file. The earlier writer has reported
+  /// the bytes before them.
   const WrittenLog& written() const { return written_; }
 
  private:
@@ -126,7 +126,7 @@ class EventLogReader {
 
   /// The next event; nullopt at the end or at a torn tail.
   std::optional<Event> Next();
-  /// Continues to read behind these bytes, which hold so many events.
+  /// Continues to read behind `head`.
   void GoTo(const LogHead& head);
   /// What is wrong with the end of the file; "" if nothing is. It is known once Next() has reached
   /// the end.

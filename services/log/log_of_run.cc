@@ -27,7 +27,7 @@ bool IsInVain(const std::filesystem::path& log) {
   }
 }
 
-/// Makes an empty file with the rights of a file, and a name of its own, in its folder.
+/// Makes an empty file with a new name in the folder of `file`. It has the same rights as `file`.
 std::optional<std::filesystem::path> EmptyFileBeside(const std::filesystem::path& file) {
   struct stat info {};
   std::string name = (file.parent_path() / ".fogline-XXXXXX").string();

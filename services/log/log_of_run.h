@@ -9,7 +9,7 @@
 namespace fogline::log {
 
 /// Keeps a log locked against other runs until the end of this object. A log without a step is then
-/// removed, because its run never began; an older log that it replaces comes back.
+/// removed, because its run never began. An older log that it has replaced comes back.
 class LogOfRun {
  public:
   /// A run without a log.

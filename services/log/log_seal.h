@@ -1,7 +1,7 @@
 // The seal of a log: its last event, which describes the log at the end of the run
-// (lcmtypes/log_seal_t.lcm). It shows whether the log was changed since then. Without a key a
-// person could change the log and make another seal; with a key only a person who has the key
-// could. The seal is not part of the run and not in its digest.
+// (lcmtypes/log_seal_t.lcm). It shows whether the log was changed since the end of the run. Without
+// a key a person can change the log and make another seal. With a key only a person who has the key
+// can do this. The seal is not part of the run and not in its digest.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,8 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
              const runtime::SigningKey* key);
 
 /// Why a file is not the one that was sealed; "" if it is. The events of a copy have other times
-/// than those of the file that was sealed. So for a copy the result is "" if its bytes differ.
+/// than those of the sealed file, so the bytes of a copy must differ: for a copy the result is ""
+/// if they do.
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.

@@ -37,7 +37,8 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
       late += status.input_late[static_cast<std::size_t>(input - status.input.begin())];
     }
   }
-  // With several processes no number is known: a restarted process may compute a step once more.
+  // With several processes the number of published messages is not known, because a restarted
+  // process may compute a step a second time.
   return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
 }
 

@@ -21,18 +21,19 @@ struct RealtimeFigures {
   std::int64_t ticks_late = 0;
   std::int64_t ticks_missed = 0;
   std::int64_t jitter_p99_us = 0;
-  // From the world's TRUTH out to the arbitrator's HOST_COMMAND in, at the world.
+  // Time, at the world, from sending TRUTH to receiving the arbitrator's HOST_COMMAND.
   std::int64_t latency_p50_us = 0;
   std::int64_t latency_p99_us = 0;
   std::int64_t latency_max_us = 0;
   // Steps that a role left out, or computed without an input that was due.
   std::int64_t deadline_misses = 0;
-  // Messages that came too late to be used; messages that are not in the log, published or not; and
-  // the least number of these that were published and did not come too late at the recorder.
+  // In this order: messages that came too late to be used; messages that are not in the log,
+  // published or not; the least number of missing messages that were published and did not come too
+  // late at the recorder.
   std::int64_t late_messages = 0;
   std::int64_t missed_messages = 0;
   std::int64_t unlogged_messages = 0;
-  // The first fallbacks, and how many came after these.
+  // The first fallbacks, and the number of those after them.
   std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
 };

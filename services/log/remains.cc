@@ -13,8 +13,8 @@ namespace fogline::log {
 namespace {
 
 static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
-// While a log is read from front to back, STATUS is sent after each so many bytes. A slow disk
-// reads them in less than one or two heartbeats.
+// While a log is read from front to back, STATUS is sent each time that this many bytes have been
+// read. A slow disk reads them in less than one or two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
 // More steps than a run can lose in a row before it ends for another reason.
 constexpr std::int64_t kLongestGap = 1'000'000;
@@ -102,8 +102,8 @@ Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps
   return follower.remains();
 }
 
-/// A place in a log at which reading can begin: the first event of a step. In real time, where an
-/// event does not show which came before it, it is any event of a step.
+/// A place in a log at which reading can begin. In lockstep it is the first event of a step. In
+/// real time it is any event of a step, because an event does not show which event came before it.
 struct Start {
   std::int64_t step;
   LogHead head;

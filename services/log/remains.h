@@ -1,5 +1,5 @@
-// What the log of an unfinished run contains. The time to find that out does not depend on the
-// length of the log.
+// Finds what the log of an unfinished run contains, in a time that does not depend on the length of
+// the log.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ struct Remains {
 };
 
 /// Looks for the last complete step of a log that a recorder was writing, at the end of the file.
-/// If that end is not as a recorder leaves it, it reads the log from front to back, and stops at
-/// the first event that does not continue the log.
+/// If a recorder does not leave such an end, the function reads the log from front to back, and
+/// stops at the first event that does not continue the log.
 /// @param front of the log, with its whole scenario
 /// @param alive is called from time to time while it reads the whole log, with the number of steps
 ///     so far

@@ -46,7 +46,7 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
-  // In real time, the most steps by which a message may stand behind its place.
+  // In real time, the largest number of steps by which a message may stand too late in the log.
   static constexpr std::int64_t kLongestOverdue = 64;
 
   struct Pending {

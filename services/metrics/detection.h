@@ -45,7 +45,7 @@ class DetectionAccumulator {
 
  private:
   bool IsDeceived(const Sample& sample) const;
-  /// Integrates the findings of the step before.
+  /// Adds the findings of the step before, which hold for `duration_s`.
   void Pass(double duration_s);
 
   double tolerance_m_;

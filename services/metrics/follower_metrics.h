@@ -53,7 +53,7 @@ class FollowerAccumulator {
 
  private:
   struct Car {
-    FollowerMeasures measures;  // those that need no final division
+    FollowerMeasures measures;  // measures without a final division
     Mean compromised_safety_fog_m;
   };
   static void AddSafety(bool fog, double compromised_m, Car& car);

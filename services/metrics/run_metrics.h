@@ -48,8 +48,8 @@ struct RunMeasures {
   /// services/models/minimal_risk/modes.h. In traded control he then drives; in shared control he
   /// may have a small part.
   std::optional<double> rhe_pct;
-  /// Time during which the human is engaged, s. It ends with the last step: its command is never
-  /// carried out.
+  /// Time during which the human is engaged, s. It ends with the last step, because the command of
+  /// that step is never carried out.
   double human_time_s = 0;
   /// Hand-overs in either direction: the human drives in only one of two successive steps, by
   /// HumanDrives(lambda_H) in services/models/minimal_risk/modes.h. `fogline events` lists the same
@@ -123,7 +123,7 @@ class MeasureAccumulator {
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;
-  RunMeasures measures_;  // those that need no final division
+  RunMeasures measures_;  // measures without a final division
   Mean compromised_safety_fog_m_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
@@ -162,7 +162,8 @@ class SafetyImprovement {
   std::int64_t relevant_steps_ = 0;
 };
 
-/// SI of two whole runs. Where one of them ended early (a collision), over the steps of both.
+/// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
+/// both runs have.
 /// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
 std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
                                            std::span<const Sample> traded, double floor_m);

@@ -76,7 +76,7 @@ class PairAccumulator {
   PairMeasures Result() const;
 
  private:
-  /// Integrates the findings of the step before.
+  /// Adds the findings of the step before, which hold for `duration_s`.
   void Pass(double duration_s);
 
   MeasuresSection section_;

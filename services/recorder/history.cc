@@ -16,7 +16,7 @@
 namespace fogline::recorder {
 namespace {
 
-// More than twice the size of any step, so that a step begins wherever this many bytes are read.
+// More than twice the size of any step, so that a step begins in every piece of this many bytes.
 constexpr std::int64_t kLook = 32 << 10;
 static_assert(kLook > 2 * log::kMostStepBytes);
 

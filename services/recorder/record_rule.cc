@@ -11,8 +11,8 @@ namespace {
 constexpr double kOverduePeriods = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
-// The most incomplete steps. Producers keep kRingSteps; the other half leaves time for their
-// answers.
+// The most incomplete steps: half of the steps that producers keep. The other half leaves time for
+// their answers.
 constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
 // The most STATUS messages that wait to be written: several of each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
@@ -44,7 +44,8 @@ runtime::StepRing::Verdict RecordRule::Classify(std::size_t input, std::int64_t 
                                                 runtime::Bytes bytes) {
   const runtime::StepRing::Verdict verdict = runtime::RealtimeRule::Classify(input, step, bytes);
   const runtime::StepRing& ring = inputs()[input].ring;
-  // A message of the step that stands in the ring is in the log; of an older one it is not known.
+  // The log has the message if the ring has its step. Whether the log has the message of a step
+  // older than the ring is not known.
   if (verdict != runtime::StepRing::Verdict::kLate || ring.Has(step) ||
       step <= ring.newest() - runtime::kRingSteps) {
     return verdict;

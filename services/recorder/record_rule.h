@@ -22,7 +22,8 @@ class RecordRule final : public runtime::RealtimeRule {
                                       runtime::Bytes bytes) override;
   void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
   void OnProgress() override;
-  /// Late is only what the log does not have: `unlogged_messages` is counted with that.
+  /// Counts as late only messages that the log lacks, because `unlogged_messages` is computed from
+  /// this count.
   void WriteStatus(TimePoint now) override;
 
   /// Passes the STATUS messages that came in this step or before to `use`, each once.
@@ -41,15 +42,15 @@ class RecordRule final : public runtime::RealtimeRule {
     std::vector<std::uint8_t> bytes;
   };
 
-  /// Messages of an input that came when their step was written, each counted once.
+  /// Messages of an input that came after their step was written. Each is counted once.
   struct Refused {
     std::int64_t count = 0;
     std::array<std::int64_t, runtime::kRingSteps>
-        steps{};  // plus one: those that were counted last
+        steps{};  // plus one: the steps that were counted last
   };
 
   TimePoint Fire(TimePoint now) override;
-  /// Steps up to this one are under way. From now on a message of them that has not come counts as
+  /// Notes that the steps up to this one are under way. From now on their missing messages count as
   /// late.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);

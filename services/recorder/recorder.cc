@@ -20,10 +20,11 @@ constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
-// A role that asks within this time after an answer has that answer.
+// A request within this time after an answer gets no second answer, because the role receives the
+// first one.
 constexpr Duration kAnswerHolds = milliseconds(2);
-// The number of last STATUS messages: the runner cannot ask a recorder that has left. If a third of
-// all messages is lost, at least one of so many arrives, except one time in 700.
+// How often the last STATUS is sent: the runner cannot ask a recorder that has left. If a third of
+// all messages is lost, all of them are lost in only one of 700 cases.
 constexpr int kLastWords = 6;
 // The most old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
@@ -201,7 +202,7 @@ void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimeP
   const std::size_t place = ChannelNamed(channel);
   if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
-    // All roles receive an answer, so one is enough.
+    // All roles receive each answer, so one answer is enough.
     const Answered& last = answered_[place][runtime::RingSlot(k)];
     if (last.step == k && now - last.at < kAnswerHolds) continue;
     asked_.Add(k, AskedSteps::Channels{1} << place);

@@ -22,8 +22,8 @@ class Recorder final : public runtime::Node {
   /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
 
-  /// With a run id an existing file is replaced at once, without one as soon as a run has been
-  /// found.
+  /// With a run id an existing file is replaced at once. Without a run id it is replaced as soon as
+  /// a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);

@@ -30,7 +30,7 @@ class FailsafeWorld {
   /// The next step.
   const Output& Step(const WorldInputs& inputs);
 
-  /// Text that says what cars without a command do; "" if every car has one.
+  /// Text about what cars without a command do; "" if every car has one.
   const std::string& fallback() const { return fallback_; }
   /// Cars that are in a minimal risk manoeuvre, as bits of status_t.
   std::int8_t minimal_risk() const;

@@ -34,7 +34,7 @@ class CarFallback {
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
               double applied_mps2);
 
-  /// The manoeuvre begins, unless it has begun already.
+  /// Begins the manoeuvre, unless it has begun already.
   void BeginMinimalRisk(double applied_mps2) { minimal_risk_.Begin(applied_mps2); }
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
 
@@ -60,10 +60,10 @@ class VehicleFallback {
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
-  /// Puts the host into the manoeuvre, because an earlier process had it there.
+  /// Puts the host into the manoeuvre, because it was in the manoeuvre under an earlier process.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// Puts all following cars into the manoeuvre: it is not known which of them the earlier process
-  /// had there.
+  /// Puts all following cars into the manoeuvre, because it is not known which of them were in it
+  /// under the earlier process.
   void ResumeFollowers(const truth_t& now);
 
   /// The host's command as carried out. While the vehicle stops by itself, its mode is MINIMAL_RISK
@@ -71,14 +71,14 @@ class VehicleFallback {
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
-  /// The host is in a manoeuvre that no command ends: its own, or one that the arbitrator has
-  /// commanded.
+  /// Whether the host is in a manoeuvre that no command ends: its own, or one that the arbitrator
+  /// has commanded.
   bool host_in_minimal_risk() const {
     return host_.in_minimal_risk() || (commanded_ && models::IsLocked(host_out_.mode));
   }
-  /// The vehicle makes the manoeuvre by itself; the arbitrator has to know this.
+  /// Whether the vehicle makes the manoeuvre by itself; the arbitrator has to know this.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
-  /// Any of the following cars is in the manoeuvre.
+  /// Whether any of the following cars is in the manoeuvre.
   bool follower_in_minimal_risk() const;
   /// State of the followers' commands: the worst of all cars. For a car, a message without an
   /// acceleration for it counts as missing.
@@ -94,7 +94,7 @@ class VehicleFallback {
   void StepFollower(std::size_t car, const truth_t& now,
                     const Heard<follower_command_t>& followers);
 
-  /// State of a command that was missing in this number of last messages, by the limits of inputs.
+  /// State of a command that the last `steps` messages lacked, by the limits for inputs.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;

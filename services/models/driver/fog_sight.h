@@ -24,7 +24,8 @@ class FogSight {
   /// @throw std::invalid_argument for a parameter out of its range.
   explicit FogSight(const FogSightParameters& parameters);
 
-  /// Range in air of this meteorological optical range, above 0; infinity is clear air.
+  /// The distance up to which the driver sees outline or lamps of the car ahead, m. `visibility_m`
+  /// is the meteorological optical range, above 0; infinity is clear air.
   double OutlineRange(double visibility_m) const;
   double LampRange(double visibility_m) const;
   Seen At(double gap_m, double visibility_m) const;

@@ -50,12 +50,12 @@ class HumanDriver {
   /// continue from step to step. Until T_r has passed, he acts on the first situation.
   double Step(std::int64_t step, const Situation& seen);
   /// The same for a driver whose attention changes. A reaction time above that of the constructor
-  /// counts as the latter.
+  /// is lowered to it.
   double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:
   Situation Misjudged(std::int64_t step, const Situation& seen, const Attention& attention);
-  // The situation seen this time ago.
+  // The situation that the driver saw `reaction_time_s` ago.
   Situation Remembered(double reaction_time_s) const;
   const Situation& SeenAgo(std::size_t steps) const;
 

@@ -31,8 +31,7 @@ struct ResponseParameters {
 /// - RSS: full braking while the gap is below the safe distance; it has its response time rho in
 ///   place of the perception time, and no delay
 /// - fuzzy safety model: FuzzyDeceleration; it has its response time in place of the perception
-/// time,
-///   and no delay
+///   time, and no delay
 ///
 /// If the model demands nothing, the response ends; at the next danger it starts from the
 /// beginning.
@@ -45,7 +44,7 @@ class SafetyResponse {
   /// Deceleration in this step in m/s2, 0 if none. Call it once per step.
   double Step(const Situation& seen);
 
-  /// Whether the model sees danger at the last step.
+  /// Whether the model saw danger in the last step.
   bool alarmed() const { return alarmed_; }
 
  private:

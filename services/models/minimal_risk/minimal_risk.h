@@ -17,10 +17,10 @@ namespace fogline::models {
 /// car stands exactly when a step ends: n steps of r, r - j h, r - 2 j h, ... add up to v, and the
 /// last of them is at most j h. So the end is as smooth as the beginning. Two cases exceed a limit,
 /// each as little as possible:
-///   - a car that brakes harder than d at the start releases the brake at the rate j, down to d;
-///   - a car that brakes harder than r(v) at the start (it is about to stand) stops before the
-///   brake is
-///     released; its acceleration then jumps to 0.
+///
+/// - A car that brakes harder than d at the start releases the brake at the rate j, down to d.
+/// - A car that brakes harder than r(v) at the start (it is about to stand) stops before the brake
+///   is released; its acceleration then jumps to 0.
 ///
 /// The manoeuvre ends with the process: UN R157, 5.5.5, allows another activation only after a new
 /// run cycle. A car that stands is held with the command 0 and does not roll backwards.

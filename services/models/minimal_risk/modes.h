@@ -7,28 +7,28 @@
 
 namespace fogline::models {
 
-/// The host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs of a run
-/// in real time, or a request that the driver did not answer in time.
+/// Whether the host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs
+/// of a run in real time, or a request that the driver did not answer in time.
 constexpr bool InMinimalRisk(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode >= arbitration_t::MRM_COMFORT;
 }
 
-/// The mode lasts until the end of the run.
+/// Whether the mode lasts until the end of the run.
 constexpr bool IsLocked(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
 }
 
-/// Least authority with which the human counts as the driver: half, also if the automation has as
-/// much.
+/// Least authority with which the human counts as the driver. It is half, so the human also drives
+/// if both sides have half.
 inline constexpr double kMainAuthority = 0.5;
 
-/// The human drives if he has half of the authority or more; a transfer is a change of this. He is
-/// engaged if he has any authority.
+/// Whether the human drives: he does if he has half of the authority or more. A transfer is a
+/// change of this result. He is engaged if he has any authority.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
-/// The human drives according to the mode. If he need not be asked, he has half of the authority or
-/// more. If he must be asked, he has a share of it; under a policy that shares, or on a ramp, the
-/// mode does not say how much.
+/// Whether the human drives, by the mode. A human who need not be asked then has half of the
+/// authority or more. A human who must be asked has a share of it; under a policy that shares, or
+/// on a ramp, the mode does not say how large the share is.
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

@@ -25,11 +25,10 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 /// - Traction and brake each have delay and lag (actuator.h).
 /// - Engine: F_t <= min(m a_traction, P / v). Brakes: F_b <= m a_brake.
 /// - Tyres: they transmit m dv/dt + drag + slope, without the rolling resistance and the inertia of
-/// the
-///   wheels. This force is at least -mu m g cos(theta), and at most mu m g cos(theta) times the
+///   the wheels. This force is at least -mu m g cos(theta), and at most mu m g cos(theta) times the
 ///   driven share.
 ///
-/// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan); slope and power
+/// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan). Slope and power
 /// limit are those of the middle of the step. The remaining error is of second order in the step.
 /// Cars do not roll backwards: at rest the brakes hold them.
 ///

@@ -38,18 +38,20 @@ struct VehicleParameters {
   /// separate limit. Cars: estimate, more than any road allows, so that the tyres are the limit.
   double max_brake_mps2 = 10.5;
 
-  /// Time from the demand to the first change of traction, s, at least 0. Cars: estimate, usual are
-  /// 0.1 to 0.3.
+  /// Time from the demand to the first change of traction, s, at least 0. Cars: estimate; 0.1 to
+  /// 0.3 is usual.
   double powertrain_delay_s = 0.2;
 
-  /// Time constant of traction, s, at least 0. Takahama & Akasaka 2018, by public ports: 0.460.
+  /// Time constant of traction, s, at least 0. Source: 0.460 in public implementations of Takahama
+  /// & Akasaka 2018.
   double powertrain_lag_s = 0.46;
 
-  /// Time from the demand to the first change of braking, s, at least 0. Cars: estimate, usual are
-  /// 0.05 to 0.15.
+  /// Time from the demand to the first change of braking, s, at least 0. Cars: estimate; 0.05 to
+  /// 0.15 is usual.
   double brake_delay_s = 0.1;
 
-  /// Time constant of braking, s, at least 0. Takahama & Akasaka 2018, by public ports: 0.193.
+  /// Time constant of braking, s, at least 0. Source: 0.193 in public implementations of Takahama &
+  /// Akasaka 2018.
   double brake_lag_s = 0.193;
 
   /// Half the width of the band of demands around 0 in which the foot does not change pedals, as
