@@ -10,15 +10,15 @@
 namespace fogline::runtime {
 namespace {
 
-// A role that lost its inputs to the network recovers within a second. Twice that is long enough,
-// unless the period is so long that kDeafPeriods last longer.
+// A role that lost its inputs to the network recovers within a second. Twice that is long enough.
+// With a long period it is kDeafPeriods periods, if they last longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
 // Three signs of life. A longer pause between two STATUS messages says nothing about the time in
 // between.
 constexpr Duration kSteady = milliseconds(600);
-// By so many steps a role may be ahead of what is known of its producer: a STATUS is on its way for
-// less than 100 ms, which are five steps at 50 Hz.
+// The number of steps by which a role may be ahead of the last known step of its producer. A STATUS
+// is on its way for less than 100 ms, which are five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace

@@ -32,12 +32,12 @@ class DeafRoles {
   ///     counts as deaf
   explicit DeafRoles(Duration period);
 
-  /// A STATUS of the role has been accepted.
+  /// Takes note of an accepted STATUS of the role.
   void Heard(Role role, const status_t& status, TimePoint now);
-  /// The role's process is dead.
+  /// Forgets what is known of the role, because its process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
-  /// The input that the role has missed for longest, if that is long enough to be sure.
+  /// The input that the role has missed for longest, if the time is long enough to be sure.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
   /// The same for a run that is over; half the time is enough, because no further message will
   /// come.

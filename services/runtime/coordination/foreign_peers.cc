@@ -34,7 +34,7 @@ void ForeignPeers::Hear(const status_t& status) {
     return;
   }
   if (watched_.size() == kMaxWatched) {
-    // The oldest of those that were heard least.
+    // Forgets the oldest of the processes that were heard least.
     watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));
     forgotten_ = true;
   }

@@ -36,7 +36,8 @@ class ForeignPeers {
   /// names are shortened and made safe to print.
   void Hear(const status_t& status);
 
-  /// The most heard ones, at most kMax, in the order in which they were first heard.
+  /// The processes that were heard most often, at most kMax, in the order in which they were first
+  /// heard.
   std::vector<ForeignPeer> known() const;
   /// One line each, "ignored: ...", and one more if there were more than kMax; "" if there are
   /// none.

@@ -19,7 +19,7 @@ class RestartPolicy {
   /// @param limit restarts in one run
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
-  /// The role has died when the run was at this step.
+  /// Notes that the role has died when the run was at this step.
   /// @return how long to wait before it is started again; nullopt if it is not started again
   std::optional<Duration> OnDeath(std::int64_t step) {
     if (restarts_ >= limit_) return std::nullopt;
@@ -30,8 +30,8 @@ class RestartPolicy {
     return wait_;
   }
 
-  /// It could not be started. A try does not count as a restart; the run's stall timeout ends the
-  /// tries.
+  /// Notes that the role could not be started. A failed try does not count as a restart; the run's
+  /// stall timeout ends the tries.
   /// @return how long to wait before the next try
   Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
 

@@ -15,17 +15,17 @@ namespace fogline::runtime {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
-// While the run goes on: the interval of the runner's signs of life, which roles that were started
-// elsewhere wait for.
+// The interval of the runner's signs of life while the run goes on. Roles that were started
+// elsewhere wait for these signs.
 constexpr Duration kRepeatEvery = milliseconds(200);
 // Requests for parts of the scenario that come within this time get one answer.
 constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the recorder is asked for it at this
 // interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time the steps by which a role may be ahead of the runner's clock: one because a tick may
-// be early by the delay of an earlier tick, which is less than a period, and one for the step with
-// which the world begins.
+// In real time, the number of steps by which a role may be ahead of the runner's clock. The first
+// step: a tick may be early by the delay of an earlier tick, which is less than a period. The
+// second step: the world begins with a step.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {

@@ -61,13 +61,13 @@ class RunCoordinator {
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// The probability that a role that has been silent for so long is alive and the network has lost
-  /// all that it has sent.
+  /// The probability that a role with this silence is alive, and the network has lost all messages
+  /// that it sent in this time.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
-  /// In real time: the channel that a role has not heard for long although its producer publishes
-  /// it.
+  /// In real time, a channel that the role has not heard for a long time although its producer
+  /// publishes it.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
   /// The longest time that the runner was held up since the last call, 0 if it was not.
   Duration TakeLongestPause() { return pauses_.TakeLongest(); }
@@ -106,12 +106,12 @@ class RunCoordinator {
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
-  /// The role's process on this machine is dead and will be started again. From now on late
-  /// messages of that process are ignored, and another instance may take its place.
+  /// Notes that the role's process on this machine is dead and will be started again. From now on
+  /// late messages of that process are ignored, and another instance may take its place.
   void MarkDead(Role role, std::int32_t pid, TimePoint now);
   /// Stores why the role cannot be started again at present, for the error message of a stall.
   void Hinder(Role role, std::string why);
-  /// The role has been started again, as this process on this machine.
+  /// Notes that the role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
   /// Calls `handler` for every STATUS that is accepted, in the order of its sender.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {
@@ -150,9 +150,9 @@ class RunCoordinator {
   /// Ends the run when the world is done and, in lockstep, the recorder has reported what it has
   /// written of the last step. The caller compares the log with that report.
   void FinishWhenRecorded(TimePoint now);
-  /// The last step is over and recorded: the run is done, or fails if a role is deaf at its end.
+  /// Ends the run after its last step is recorded. The run fails if a role is deaf at its end.
   void OnDone();
-  /// The role has reported that it failed.
+  /// Handles the role's report that it failed.
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
@@ -163,7 +163,7 @@ class RunCoordinator {
   bool Admit(Role role, const status_t& status, TimePoint now);
   /// Admit() for a STATUS that does not come from the role's present process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
-  /// A process that counts as dead speaks.
+  /// Handles a STATUS of a process that counts as dead.
   void OnUndead(Role role, const status_t& status, TimePoint now);
   void FailForTwo(const status_t& one, const status_t& other);
   bool HasRival(Role role, TimePoint now) const;

@@ -1,6 +1,6 @@
-// Whether a process that is not heard is silent, or the network loses its messages. All processes
-// speak in the same rhythm over the same network. So the share of the others' messages that arrives
-// gives the probability that no message of this one arrived.
+// Judges whether a process that is not heard is silent, or the network loses its messages. All
+// processes speak in the same rhythm over the same network. So the share of the other processes'
+// messages that arrives gives the probability that a living process is not heard.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@ class SignsOfLife {
   /// @param every the longest interval between two messages of a living process
   explicit SignsOfLife(Duration every) : every_(every) {}
 
-  /// A message of a role has come. @param lost how many messages of the role before it were lost
+  /// Takes note of a message of a role. @param lost how many messages of the role before it were
+  /// lost
   void Heard(Role role, std::int64_t lost, TimePoint now) {
     ++heard_;
     lost_ += std::max<std::int64_t>(0, lost);
     Since(role, now);
   }
-  /// The role can be heard from `now` on.
+  /// Notes that the role can be heard from `now` on.
   void Since(Role role, TimePoint now) {
     since_[static_cast<std::size_t>(role)] = {.time = now, .heard = heard_, .lost = lost_};
   }
@@ -40,8 +41,9 @@ class SignsOfLife {
     const double signs = Seconds(silence) / Seconds(every_);
     const auto heard = static_cast<double>(heard_ - last.heard);
     const auto lost = static_cast<double>(lost_ - last.lost);
-    // The share of lost messages: the larger of two estimates, by the number that the others must
-    // have sent at least, and by the number that is known to be lost.
+    // The share of lost messages. It is the larger of two estimates: one by the number of messages
+    // that the other roles must have sent at least, one by the number of messages that are known to
+    // be lost.
     const double share_lost =
         std::max(1 - heard / (static_cast<double>(others) * signs), lost / (heard + lost));
     return std::pow(std::clamp(share_lost, 0.0, 1.0), signs);

@@ -88,7 +88,7 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
 
 void Announcements::Keep(Announcement announcement, TimePoint now) {
   if (entries_.size() == kMax) {
-    // The oldest of those that were heard least.
+    // Forgets the oldest of the runs that were heard least.
     entries_.erase(std::ranges::min_element(entries_, {}, &Entry::times));
   }
   entries_.push_back({.announcement = std::move(announcement), .heard = now, .times = 1});

@@ -13,9 +13,10 @@
 
 namespace fogline::runtime {
 
-/// The channel of beacon_t. It is no part of kGraph: no run has it.
+/// The channel of beacon_t. It is no part of kGraph, because no run uses it.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// The interval at which a run announces itself: a few times while a person looks for it.
+/// The interval at which a run announces itself. It is so short that a person who looks for the run
+/// need not wait.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
 /// A run as its beacon describes it. Its texts are safe to print.

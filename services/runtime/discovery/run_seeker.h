@@ -1,6 +1,6 @@
-// Where a role looks for a run if it was given neither a network nor a run. It looks at the meeting
-// address (lcm_url.h), and at the network of each run that is announced there and waits for the
-// role.
+// Decides where a role looks for a run if it was given neither a network nor a run. The role looks
+// at the meeting address (lcm_url.h), and at the network of each run that is announced there and
+// waits for the role.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,13 @@ class RunSeeker {
   /// Whether the run is over, or nothing was heard of it for kSilentLimit. The role then goes back
   /// to the meeting address.
   bool InVain(TimePoint now);
-  /// Look() does not return the run that was tried last for kTryAgain: a run at the meeting address
-  /// comes first. It may return it sooner when an announcement has said that the run does not wait
-  /// for the role. Then another process has had the place, and the place has become free.
+  /// Excludes the run that was tried last from Look() for kTryAgain, so that a run at the meeting
+  /// address comes first. The run returns sooner when an announcement has said that it does not
+  /// wait for the role: another process has had the place then, and the place has become free.
   void GiveUp(TimePoint now);
-  /// Look() does not return this run, in which the role already takes part.
+  /// Excludes this run from Look(), because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
-  /// The role has left this run, and is still at its network.
+  /// Notes that the role has left this run and is still at its network.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:

@@ -21,8 +21,8 @@ namespace fogline::runtime {
 /// The age is the time since the last new step arrived, or since the beginning. The limits are
 /// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
 /// steps. Each of them but the first must come within `stale` of the one before, and together they
-/// must last as long as so many steps should. So a sender that was stopped and sends its backlog at
-/// once recovers only when it is back in its rhythm.
+/// must take as long as this number of steps takes at the normal rate. So a sender that was stopped
+/// and sends its backlog at once recovers only when it is back in its rhythm.
 ///
 /// The loss of an input is detected `lost` periods after its last step. That is at most `lost`
 /// periods after its sender's death, plus the time until the receiver looks: see NextChange().
@@ -32,7 +32,7 @@ class InputHealth {
   /// @param began from when on the input is expected
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
-  /// A message of step `step` has arrived. A repetition of the newest step changes nothing. An
+  /// Takes note of a message of step `step`. A repetition of the newest step changes nothing. An
   /// older step is late and counted.
   void Arrived(std::int64_t step, TimePoint now);
 

@@ -8,9 +8,9 @@
 namespace fogline::runtime {
 namespace {
 
-// The steps by which the world may be ahead of the estimate: one because a tick may be early by the
-// delay of an earlier one, which is less than a period, and one because a message was on its way
-// for a moment.
+// The number of steps by which the world may be ahead of the estimate. The first step: a tick may
+// be early by the delay of an earlier tick, which is less than a period. The second step: a message
+// was on its way for a moment.
 constexpr std::int64_t kSlack = 2;
 // The greatest age of the progress that the runner reports: five signs of life of the roles, some
 // of which may be lost.

@@ -77,7 +77,7 @@ class RealtimeRule : public FireRule {
   std::int64_t newest() const { return newest_; }
   /// Newest step that can be under way.
   std::int64_t NewestPossible(TimePoint now) const;
-  /// This step is under way, by the runner's word or by a message of the step.
+  /// Notes that this step is under way, as the runner's progress or a message of the step shows.
   void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
   void Begun(std::int64_t step, TimePoint now);
   RealtimeStatistics& statistics() { return statistics_; }

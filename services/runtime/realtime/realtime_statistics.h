@@ -15,19 +15,19 @@ class status_t;
 namespace fogline::runtime {
 
 /// A tick is the moment at which a step is due: the beginning of a period at the world, the arrival
-/// of an input at another role. Latency goes from sensor to command: from when the world has sent a
-/// step's TRUTH to when that step's HOST_COMMAND is back at the world. Both times are on the
-/// world's clock, so no clocks of two hosts are compared.
+/// of an input at another role. Latency goes from sensor to command: it begins when the world has
+/// sent a step's TRUTH, and ends when the HOST_COMMAND of this step reaches the world. Both times
+/// are on the world's clock, so no clocks of two hosts are compared.
 class RealtimeStatistics {
  public:
   /// A tick that is later than this counts as late.
   static constexpr Duration kLate = milliseconds(5);
 
-  /// A tick that was due at `due` happened at `now`.
+  /// Counts a tick that was due at `due` and happened at `now`.
   void Tick(TimePoint due, TimePoint now);
-  /// The command of a step came back after this time.
+  /// Counts the time after which the command of a step came back.
   void Latency(Duration duration) { latency_.Add(duration); }
-  /// A step lacked an input that was due.
+  /// Counts a step that lacked an input that was due.
   void Miss() { ++deadline_misses_; }
 
   std::int64_t ticks() const { return jitter_.count(); }

@@ -12,16 +12,16 @@ namespace fogline::runtime {
 
 /// The clock runs with the wall clock while the run goes on. It stands still when the next step is
 /// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
-/// were skipped in between, they took their time, and the clock makes up for it. A message that
-/// comes late (a TRUTH that was lost and sent again) shows a step, not a pause: the next message
-/// that is in time sets the clock right. The clock never goes backwards, nor ahead of the wall
-/// clock. Before the first step it stands at its beginning.
+/// were skipped in between, the clock advances by their periods as well. A message that comes late
+/// (a TRUTH that was lost and sent again) shows a step, not a pause: the next message that is in
+/// time sets the clock right. The clock never goes backwards, nor ahead of the wall clock. Before
+/// the first step it stands at its beginning.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)
       : period_(period), heard_(began), then_(began), due_(began), limit_(began) {}
 
-  /// A message that claims to be of this step has come now: the world has begun the step.
+  /// Takes note of a message that claims to be of this step: the world has begun the step.
   void Heard(std::int64_t step, TimePoint now) {
     if (step <= step_) return;
     then_ = At(now);

@@ -19,12 +19,12 @@ class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
   /// @param slack steps by which the world can be further than the best proof says
-  /// @param remembered time for which a proof counts at least; twice as long at most. Proofs must
-  ///     not all come late for so long.
+  /// @param remembered least time for which a proof counts; the longest is twice that. At least one
+  ///     of the proofs of such a time must come without delay.
   StepHorizon(Duration period, std::int64_t slack, Duration remembered)
       : period_(period), slack_(slack), remembered_(remembered) {}
 
-  /// The world had begun `step` by `now`.
+  /// Takes note of a proof that the world had begun `step` by `now`.
   void Heard(std::int64_t step, TimePoint now) {
     const Proof proof{.step = step, .time = now};
     if (known_ && now - recent_since_ >= remembered_) {

@@ -147,7 +147,7 @@ TimePoint TickRule::Resume(TimePoint now) {
 
 std::int64_t TickRule::FirstAsked() { return std::max<std::int64_t>(0, progress() - kProgressAge); }
 
-// The TRUTH must be of this run, and near the known progress.
+// The TRUTH must be of this run, and its step must be near the known progress.
 bool TickRule::CanResume(const truth_t& truth) {
   return truth.header.run_id == status().header.run_id && truth.header.step >= 0 &&
          truth.header.step < std::min(steps_, FirstAsked() + kRingSteps);

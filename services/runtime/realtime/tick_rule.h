@@ -1,12 +1,12 @@
 // The real-time rule for the role that begins the steps (the world): one step at each tick of the
 // wall clock, even if roles have not answered.
 //
-// Step k is due k periods after the start, on a grid that does not drift. Ticks at which the
-// process did not run (it was stopped, or the machine was) are not made up for: of the ticks that
-// have passed, only the last one begins a step. If the machine stood still, the step before may not
-// be finished: the other roles get a moment for it, and the next tick is not close behind the late
-// one. Simulated time is the number of steps. So it stands still with the world's process, and no
-// step is ever left out. Missed ticks are counted.
+// Step k is due k periods after the start, on a grid that does not drift. While the process or its
+// machine is stopped, ticks pass without a step. They are not made up for: only the last of them
+// begins a step. After a stop of the machine the step before may not be finished. The other roles
+// then get a moment for it, and the next tick keeps a distance from the late one. Simulated time is
+// the number of steps. So it stands still with the world's process, and no step is ever left out.
+// Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
@@ -46,7 +46,7 @@ class TickRule final : public RealtimeRule {
   TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
-  /// A step's command has come, in time or late: takes its latency, once.
+  /// Takes the latency of a step's command, which has come in time or late. Each step counts once.
   void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
   /// Whether the commands for the next step are there, or it needs none.
   bool Answered() const;

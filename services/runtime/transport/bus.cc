@@ -108,8 +108,9 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
   bool routed = false;
   {
-    // From its first datagram on, a socket takes only LCM's self-test. This does not hold for
-    // mpudpm, which announces its ports on a channel of its own.
+    // Until LCM's self-test is over, each socket accepts only the messages of this test, from its
+    // first datagram on. mpudpm gets no such filter, because it announces its ports on a channel of
+    // its own.
     std::optional<LcmSockets> sockets;
     if (url_.starts_with("udpm://")) {
       const LcmSockets::Reach reach = ReachOf(url_);

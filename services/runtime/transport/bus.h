@@ -48,7 +48,7 @@ class Bus {
   /// From now on signs the messages that it sends, and refuses messages without a correct
   /// signature.
   /// @throws InputError if the kernel does not filter the messages that reach LCM's parser, which
-  ///     runs before the signature is checked: with mpudpm, or if the kernel takes no filter
+  ///     runs before the signature is checked: with mpudpm, or if the kernel accepts no filter
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
   /// From now on receives messages as over a bad network.
@@ -83,7 +83,7 @@ class Bus {
   /// Messages that could not be sent.
   struct FailedSends {
     std::int64_t count = 0;  // since the beginning
-    std::string error;       // why the last of these could not
+    std::string error;       // why the last one could not
     // Since then nothing could be sent; nullopt if the last message was sent.
     std::optional<TimePoint> since;
   };

@@ -38,7 +38,7 @@ class Faults {
  public:
   Faults(const FaultRates& rates, Role role) : rates_(rates), role_(role) {}
 
-  /// A message has come.
+  /// Takes a message that has come.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
 
   struct Message {

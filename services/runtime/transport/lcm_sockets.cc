@@ -112,7 +112,8 @@ void GroupMembership::Renew() {
   }
   std::string trouble;
   for (const int socket : sockets_) {
-    // A socket remembers a group that its interface has lost, so it leaves it in any case.
+    // A socket remembers a group even after its interface has lost the group. So the socket leaves
+    // the group in any case.
     SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &joined_, sizeof(joined_));
     ip_mreqn there = joined_;
     there.imr_ifindex = index;

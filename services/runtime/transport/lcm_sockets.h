@@ -2,8 +2,8 @@
 // first datagram arrives, and a network of this machine alone uses the loopback interface.
 //
 // LCM uses the interface of the route to the group, even if no message is to leave the machine
-// (ttl=0). Such traffic ends when that interface, its address or its route goes away: a cable, a
-// Wi-Fi, a lease. Loopback needs none of them.
+// (ttl=0). Such traffic ends when that interface, its address or its route goes away, for example
+// with a cable, a Wi-Fi or a lease. Loopback depends on none of them.
 #pragma once
 
 #include <linux/filter.h>
@@ -34,7 +34,8 @@ class LcmSockets {
   const std::vector<int>& receiving() const { return receiving_; }
   /// The sockets that have joined a group: LCM's sending socket does so, too.
   const std::vector<int>& members() const { return members_; }
-  /// Whether there are sockets that receive, and the kernel has taken the filter for each of them.
+  /// Whether there are sockets that receive, and the kernel has accepted the filter for each of
+  /// them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
 
   // These replace the C library's functions and return what those would return.
@@ -63,8 +64,9 @@ class GroupMembership {
  public:
   /// @param sockets LCM's sockets, which have just joined the group on the interface of the route
   GroupMembership(std::vector<int> sockets, const std::string& url);
-  /// Joins the group on the interface of the present route, if that is another interface or has
-  /// lost the group, and leaves the group on the former one. Prints on stderr why it cannot join.
+  /// Joins the group again, on the interface of the present route, if the route leads to another
+  /// interface or the interface has lost the group. The sockets first leave the group where they
+  /// joined it. Prints on stderr why a socket cannot join.
   void Renew();
 
  private:

@@ -18,8 +18,8 @@ std::optional<std::string> UrlOfEnvironment();
 /// $LCM_DEFAULT_URL; else LCM's default address.
 std::string NetworkUrl(const std::string& given);
 
-/// The network on which a program listens that was given no URL, and on which a run announces
-/// itself (beacon.h).
+/// The network on which programs without a URL listen, and on which runs announce themselves
+/// (beacon.h).
 inline std::string MeetingUrl() { return NetworkUrl(""); }
 
 /// Whether the text begins like the URL of an LCM network, memq included.

@@ -15,7 +15,8 @@ class LoadShedder {
   /// @param per_second messages that the process can handle
   explicit constexpr LoadShedder(double per_second) : per_second_(per_second) {}
 
-  /// One message has come. @return the share of messages to let in from now on, if that changes
+  /// Counts a message that has come. @return the share of messages to let in from now on, if that
+  /// changes
   std::optional<double> Count(TimePoint now) {
     ++count_;
     const std::chrono::duration<double> passed = now - since_;

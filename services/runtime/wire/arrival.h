@@ -13,7 +13,7 @@ namespace fogline::runtime {
 /// the first message allocates memory.
 class Arrival {
  public:
-  /// Another message has come. Its bytes stay valid while its readers are being called.
+  /// Takes the next message. Its bytes stay valid while its readers are being called.
   void Renew(Bytes bytes, TimePoint time) {
     bytes_ = bytes;
     time_ = time;

@@ -2,9 +2,9 @@
 //
 // Every process of an LCM network receives every message, and LCM's receiving thread wakes up for
 // each, only to throw most of them away. With ten processes and nine messages a step, two thirds of
-// a machine's work for a step is waking threads for nothing. The kernel can read the channel's name
-// when the datagram arrives, and wake no thread (a socket filter, see socket(7)). Nothing else
-// changes: subscribed messages arrive in the same order.
+// a machine's work for a step goes into waking threads that then have nothing to do. The kernel can
+// read the channel's name when the datagram arrives, and wake no thread (a socket filter, see
+// socket(7)). Nothing else changes: subscribed messages arrive in the same order.
 //
 // The filter also keeps from LCM's parser datagrams that no Fogline process sends: fragments, whose
 // bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap write), and datagrams that

@@ -27,7 +27,7 @@ class Hash {
 };
 
 /// BLAKE2b-256 over the payloads of all kStep channels in the order of the graph table, step by
-/// step, with the run id left out: it names a run, it does not describe one.
+/// step, without the run id, which names a run but does not describe it.
 class Digest {
  public:
   /// Adds one encoded message (at least kHeaderEnd bytes).

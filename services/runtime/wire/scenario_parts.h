@@ -16,7 +16,7 @@ namespace fogline::runtime {
 inline constexpr std::size_t kPartBytes = 1000;
 
 /// The range of simulated seconds per second that a run may have: a step of 0.1 s takes between 0.1
-/// ms and 100 s. It keeps all times that are computed from the speed finite.
+/// ms and 100 s. The range keeps all times that are computed from the speed finite.
 inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
 inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }

@@ -73,7 +73,7 @@ class FrameParser {
   std::string error_;
 };
 
-/// Adds the first two words of a side.
+/// Adds the two words with which a side begins: its magic and the version.
 void AppendHello(std::uint32_t magic, std::vector<std::uint8_t>& out);
 /// Adds a frame. `payload` is used only for PUBLISH.
 void AppendFrame(FrameType type, std::string_view name, Bytes payload,
