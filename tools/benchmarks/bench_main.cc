@@ -35,7 +35,7 @@ std::vector<Comparison> AllComparisons(Effort effort) {
   return all;
 }
 
-/// "" if a comparison has this name, or else why not.
+/// Why no comparison has this name; "" if one has it.
 std::string WhyNoComparison(const std::string& name) {
   const std::vector<Comparison> all = AllComparisons(Effort::kQuick);
   if (std::ranges::find(all, name, &Comparison::name) != all.end()) return "";

@@ -97,7 +97,7 @@ void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text));
 
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json) {
   std::error_code ignored;
-  // What nothing reads may have both.
+  // /dev/null may get both texts, because nothing reads it.
   if (!json || !IsStdout(document) ||
       std::filesystem::canonical(document, ignored) == "/dev/null") {
     return;

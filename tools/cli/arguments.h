@@ -92,7 +92,8 @@ void PrintJson(const std::string& text);
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
 
-/// What a verb says of its result: on stdout, or on stderr if its document goes to stdout.
+/// Prints what a verb says about its result: on stdout, or on stderr if its document goes to
+/// stdout.
 void PrintBeside(const std::filesystem::path& document, std::string_view text);
 
 /// 16 hexadecimal digits, or null for an unknown build.

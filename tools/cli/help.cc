@@ -52,7 +52,7 @@ void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
 }
 
 std::string HelpText(const CLI::App& app, const CLI::App& of) {
-  // of.help() would print the verb of the command line.
+  // of.help() would print the name of the verb on the command line, in place of the name of `of`.
   const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
   return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
 }

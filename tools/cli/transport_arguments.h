@@ -14,8 +14,7 @@ namespace fogline::cli {
 class TransportArguments {
  public:
   /// @param transport default transport. If it starts the roles as processes and $LCM_DEFAULT_URL
-  /// is
-  ///     set, that URL is the default instead.
+  ///     is set, that URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.

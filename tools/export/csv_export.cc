@@ -108,7 +108,7 @@ void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
   files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
   for (AtomicFile& file : files) file.Close();
   if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
-  // The scenario first: where it stands, all channels do.
+  // Removes the scenario first: a folder that has the scenario also has all channels.
   for (auto file = files.rbegin(); file != files.rend(); ++file) file->RemoveOld();
   for (AtomicFile& file : files) file.Finish();
 }

@@ -16,8 +16,7 @@ bool IsMatExport(const std::filesystem::path& file);
 /// int32, int8 and double. The variable `scenario` is the scenario's text. Equal logs give equal
 /// files.
 /// @throws InputError if the file cannot be created, or a channel is larger than the format can
-/// hold;
-///     std::runtime_error when the disk is full; Interrupted
+///     hold; std::runtime_error when the disk is full; Interrupted
 void WriteMat(const RunTables& tables, const std::filesystem::path& file);
 
 }  // namespace fogline::exports

@@ -64,9 +64,9 @@ nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   return json;
 }
 
-/// What is known of the bytes of a log. Of a copy, which was played and recorded again, the seal
-/// holds for scenario and steps alone: its events have times of their own, and STATUS may have gone
-/// missing.
+/// What the seal says about the bytes of a log. A copy was played and recorded again: its events
+/// have other times, and STATUS messages may be missing. So the seal covers only the scenario and
+/// the steps of a copy.
 std::string_view SealState(const log::RunLog& run) {
   if (!run.seal) return "none";
   if (run.altered) return "broken";

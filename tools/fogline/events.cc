@@ -1,5 +1,5 @@
-// fogline events: which driver had control when, and the outcome of every request to take over,
-// from logs alone.
+// fogline events: when which side drove, and the outcome of every request to take over, from logs
+// alone.
 #include <array>
 #include <memory>
 #include <optional>

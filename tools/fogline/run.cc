@@ -52,7 +52,8 @@ Examples:
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// In this time nine processes must pass on a step. Their signs of life must arrive within 64 steps.
+// The shortest step on the wall clock. Nine processes must pass on a step in this time, and their
+// signs of life must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {

@@ -48,8 +48,8 @@ struct Verification {
   std::string Trouble() const;
 };
 
-/// The roles of which the seal of a log says that they were of another build than the programs
-/// here, or does not say of which; none for a log without a seal.
+/// The roles whose build, by the seal of a log, is unknown or differs from that of the programs
+/// here. None for a log without a seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
 /// @param others roles of another build; their algorithms are not in this program

@@ -46,8 +46,8 @@ struct ExperimentOptions {
   Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
-  /// Whether to compute the roles' steps again from the log, and compare. Unsaid: with roles that
-  /// are started elsewhere, and for a run that goes on.
+  /// Whether to compute the roles' steps again from the log, and compare. By default this is done
+  /// if roles are started elsewhere or the run is resumed.
   std::optional<bool> verify;
   bool same_build = false;  // end the run if a role is of another build than the runner's
   runtime::TrafficOptions traffic;
@@ -99,9 +99,9 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 struct LoggedRun : log::RunLog {
   ExperimentResult result;
 };
-/// With the samples of all its steps. @throws InputError
+/// Reads a run with the samples of all its steps. @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
-/// Without samples, in memory that does not grow with the length of the run.
+/// Reads a run without samples, in memory that does not grow with the length of the run.
 /// @param scenario the one in the log
 /// @throws InputError
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);

@@ -1,5 +1,5 @@
-// The log of a run from the view of its runner: checks that the file on the disk has the bytes that
-// the run's recorder has written, and seals it, so that a later change shows.
+// Keeps the log of a run for its runner. It checks that the file on the disk has the bytes that the
+// run's recorder has written, and seals the file so that a later change is noticed.
 #pragma once
 
 #include <sys/types.h>

@@ -65,7 +65,7 @@ class Supervisor {
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
-  /// Reports deaf roles that are not restarted here, once for each time.
+  /// Reports deaf roles that are not restarted here, once for each time that they become deaf.
   void NameTheDeaf();
 
   runtime::Bus& bus_;

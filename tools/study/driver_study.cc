@@ -1,4 +1,4 @@
-// Study `driver`: humans who perceive and judge less than the truth.
+// Study `driver`: humans with imperfect perception and judgement.
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Description of a sweep file, in "FILE.json" beside it: grid, seeds, scenario, and which shard of
-// them the file has. By it a sweep recognises its own file, and a merge recognises shards of one
+// them the file has. With it a sweep recognises its own file, and a merge recognises shards of one
 // sweep.
 #pragma once
 

@@ -67,8 +67,9 @@ class SweepPlan {
   }
   std::int64_t ShardEnd(const Shard& shard) const { return units() * shard.index / shard.count; }
 
-  /// Sets `scenario` to the one of a unit's row, 0 to rows_per_unit() - 1. `scenario` must be a
-  /// copy of base(); it may hold the values of any other row.
+  /// Makes `scenario` the scenario of a row. `row` counts within the unit, from 0 to
+  /// rows_per_unit() - 1. `scenario` must be a copy of base(); it may have the values of another
+  /// row.
   void Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const;
   /// The value of every axis in a row, in the order in which the axes were given.
   std::vector<std::string_view> ValuesOf(std::int64_t unit, std::int64_t row) const;

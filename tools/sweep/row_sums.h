@@ -1,6 +1,7 @@
-// Checksums of the rows in a sweep's file, one line for each row in "FILE.sums" beside it. By them
-// a continued sweep and a merge detect a row that differs from the written one: an edited digit, or
-// a file that a power cut has damaged. They do not protect against deliberate changes.
+// Checksums of the rows in a sweep's file, one line for each row in "FILE.sums" beside it. With
+// them a continued sweep and a merge detect a row that differs from the written one, for example
+// because a digit was edited or a power cut has damaged the file. Checksums do not protect against
+// deliberate changes.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ std::string SumLine(std::string_view row);
 /// Bytes of such a line.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
-/// Whether a file has the lines of rows and nothing else. What a kill or a power cut may leave of
-/// the last line counts as one.
+/// Whether a file has the lines of rows and nothing else. The part of the last line that a kill or
+/// a power cut may leave counts as a line.
 bool IsSums(const std::filesystem::path& file);
 
 /// Checks the rows of a file in their order.

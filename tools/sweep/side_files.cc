@@ -7,7 +7,7 @@
 namespace fogline::sweep {
 
 void RefuseForeignSideFiles(const std::filesystem::path& csv) {
-  // With --force, because a file that a sweep has written is replaced without it, too.
+  // `force` is true, because a file that a sweep has written is replaced without --force, too.
   RefuseToReplace(DescriptionFile(csv), "--out", true, "sweep description",
                   [&csv](const std::filesystem::path&) { return IsSweep(csv); });
   RefuseToReplace(SumsFile(csv), "--out", true, "file of checksums", IsSums);

@@ -226,7 +226,7 @@ void SweepFile::RequireInPlace() const {
 }
 
 void SweepFile::Write(std::string_view text, const Handle& file) const {
-  // A file takes what comes; a pipe may never be read.
+  // A write to a file does not wait. A pipe may never be read, so an interrupt ends the write.
   const int error = WriteAll(file.fd, text, sums_.fd < 0 ? WasInterrupted : nullptr);
   if (error == 0) return;
   if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));

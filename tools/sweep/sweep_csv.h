@@ -17,8 +17,8 @@ namespace fogline::sweep {
 
 class SweepFile {
  public:
-  /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. What is
-  /// incomplete at its end is cut off. With `force` what is there is replaced.
+  /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. An
+  /// incomplete end of the file is cut off. With `force` an existing file is replaced.
   /// @throws InputError if the file is there and is not of the same sweep, if another process is
   ///     writing it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error
   ///     when the disk is full

@@ -1,5 +1,5 @@
-// Study `threshold`: compares thresholds that move with the situation with fixed ones of equal
-// redundant engagement, in a mix of situations.
+// Study `threshold`: compares adaptive thresholds, which depend on the situation, and fixed
+// thresholds with the same redundant engagement, in a mix of situations.
 #include <algorithm>
 #include <array>
 #include <cmath>
