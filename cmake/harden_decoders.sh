@@ -7,8 +7,8 @@
 #    refuses a length below 0 or above the number of bytes left in the message.
 # 2. A string may lack its terminator, have the length 0 or less, or have a zero before its end. Such a
 #    message, encoded again, would be another message. The check refuses all three.
-# 3. An array of numbers that has no elements is not touched: the object would keep the elements of an earlier message. The
-#    array is cleared first.
+# 3. An array of numbers that has no elements is not touched: the object would keep the elements of an earlier
+#    message. The array is cleared first.
 #
 # Each place must get its check; otherwise this lcm-gen writes other code than Debian 12's, and the script
 # fails. No message type needs to be known here.

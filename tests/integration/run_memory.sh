@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 fogline=$1
 transport=$2
-# Where tools/test removes what a test that was killed has left behind.
+# tools/test removes what killed tests have left in this folder.
 scratch="$(dirname "$fogline")/../Testing/tmp"
 mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")

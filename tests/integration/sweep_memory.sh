@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../.."
 fogline=$1
 runs=$2
 shift 2
-# Where tools/test removes what a test that was killed has left behind.
+# tools/test removes what killed tests have left in this folder.
 scratch="$(dirname "$fogline")/../Testing/tmp"
 mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")

@@ -34,7 +34,7 @@ compare() {
 make || fail "failed"
 compare "seven shards"
 
-# One shard is torn as by a kill, one is missing, and the merged file does not exist yet.
+# One shard is torn as after a kill, one is missing, and the merged file does not exist yet.
 truncate --size=-10000 "${out%.csv}.shard-3-of-7.csv"
 rm "${out%.csv}.shard-5-of-7.csv" "$out" "$out.json"
 make || fail "failed the second time"
