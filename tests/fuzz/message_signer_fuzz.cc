@@ -20,7 +20,8 @@ bool IsGood(const runtime::MessageSigner& signer, std::string_view channel,
   return signer.Open(channel, message).verdict == runtime::MessageSigner::Verdict::kGood;
 }
 
-/// A message with a good verdict was signed with the key, by a role that may publish it.
+/// Demands that a message with a good verdict was signed with the key, by a role that may publish
+/// it.
 void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& channel,
                        runtime::Bytes message) {
   const runtime::MessageSigner::Opened opened = signer.Open(channel.name, message);
@@ -40,7 +41,7 @@ void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& 
   Took();
 }
 
-/// A signed message is good only with its own channel, its own key and its own bytes.
+/// Demands that a signed message is good only with its own channel, its own key and its own bytes.
 void DemandBinding(runtime::MessageSigner& signer, std::size_t place, Cutter& cutter,
                    runtime::Bytes payload) {
   const ChannelInfo& channel = kChannels[place];

@@ -1,4 +1,4 @@
-// The traffic of a run is changed on its way: the steps, computed again from the log, show it.
+// A message of a run is altered on its way. The steps, computed again from the log, show this.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ class Bridge {
     for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
   }
 
-  /// The range of this step becomes larger on its way.
+  /// Makes the range of this step larger on its way.
   void Alter(std::int64_t step) { altered_ = step; }
 
   void RunUntilTheEndOf(const Background& program) {

@@ -227,7 +227,7 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
   Background run(
       meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "8"}));
   ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
-  // GIVEN that both have gone there, and one has found its place taken
+  // GIVEN that both drivers have joined the run, and one of them has found its place taken
   const auto is_other = [](const Background& driver) {
     const std::string said = driver.Err();
     return said.find("another process is the driver") != std::string::npos ||
@@ -248,7 +248,7 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
   EXPECT_EQ(other.Wait(), 0) << other.Err();
 }
 
-/// A run with a driver from elsewhere, whose runner is killed under way.
+/// Starts a run with a driver from elsewhere, and kills its runner while the run is under way.
 void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"--external", "driver", "--pace", "1"};
   arguments.insert(arguments.end(), more.begin(), more.end());

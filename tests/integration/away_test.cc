@@ -28,7 +28,8 @@ struct RunOnTwoMachines {
   const Background& driver;
 };
 
-/// What is away meanwhile, and how the run is told of it.
+/// The processes or the cable that go away and come back, and the options with which a run allows
+/// for that.
 struct Absence {
   std::string name;
   std::vector<std::string> options;
@@ -37,7 +38,7 @@ struct Absence {
 };
 void PrintTo(const Absence& absence, std::ostream* out) { *out << absence.name; }
 
-// As an absence is announced that is longer than a run waits for a role.
+// The option for an absence that is longer than a run waits for a role by default.
 const std::vector<std::string> kWaitLonger{"--stall-timeout", "60"};
 
 Absence Stopped(std::string name, std::vector<std::string> options,
@@ -73,7 +74,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
 TEST_P(AwayTest, CostsNoRunThatWaitsForLonger) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  // Five seconds, of which the first are over when something goes away.
+  // A run of five seconds. Something goes away after the first of them.
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   std::vector<std::string> command{Program("fogline"),
@@ -94,7 +95,7 @@ TEST_P(AwayTest, CostsNoRunThatWaitsForLonger) {
   ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
   const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
   GetParam().begin(both);
-  std::this_thread::sleep_for(kAway);  // longer than a role waits: what is tested
+  std::this_thread::sleep_for(kAway);  // longer than a role waits, which is what is tested
   GetParam().end(both);
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());

@@ -170,7 +170,7 @@ TEST(ConsoleTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
                                             "--set", "/steps=60", "--pace", "2", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
-  // WHEN a role is killed THEN the run starts it again, although it cannot report so
+  // WHEN a role is killed THEN the run starts it again, although the run cannot report this
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
   kill(radar, SIGKILL);

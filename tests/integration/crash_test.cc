@@ -55,7 +55,8 @@ TEST(CrashTest, OfEveryRoleAtOnceChangesNoResult) {
 }
 
 TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
-  // GIVEN a driver whose awareness depends on the arbitrator, who reads his command
+  // GIVEN a driver whose awareness depends on HOST_COMMAND, while the arbitrator reads
+  // DRIVER_COMMAND
   WatchedRun watched({}, kSteps, kPace,
                      {"--set", "/human/loses_awareness=true", "--set", "/human/misjudges=true",
                       "--set", "/arbitrator/threshold=0.5", "--set", "/fog/start_s=5"});
@@ -73,7 +74,8 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
   WatchedRun watched;
   watched.WaitForStep(100);
-  // Again as soon as anything is heard of the next one: before, while or after it catches up.
+  // The next process is killed as soon as anything is heard of it: before, while or after it
+  // catches up.
   for (int i = 0; i < 5; ++i) {
     for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
   }
@@ -160,7 +162,7 @@ TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
   const Background first(command);
   watched.WaitForStep(100);
   watched.Signal("driver", SIGKILL);
-  // It knows nothing of the run but what it hears.
+  // This process knows nothing of the run except what it hears.
   const Background second(command);
   const auto result = watched.ExpectSameResult();
   ASSERT_EQ(WatchedRun::RestartsOf(result, "driver"), 1);
@@ -211,7 +213,8 @@ TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
     return MachineLacks("mount namespaces: " + own.err);
   }
   const ScratchFolder folder;
-  // 64 KiB are about fifty steps. It is mounted for these two commands alone.
+  // A file system of 64 KiB has room for about fifty steps. It is mounted for these two commands
+  // alone.
   const Outcome outcome =
       RunCommand({"unshare", "--mount", "sh", "-c",
                   "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
@@ -273,7 +276,7 @@ TEST(CrashCampaignTest, KillsAtRandomStepsChangeNoResult) {
     const auto result = watched.ExpectSameResult();
     int restarts = 0;
     for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
-    // Who is killed at the very end may not be needed again.
+    // A process that is killed at the very end may not be needed again.
     const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
     EXPECT_GE(restarts, needed) << watched.run().Err();
     EXPECT_LE(restarts, kills);

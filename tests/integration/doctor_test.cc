@@ -57,7 +57,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
-  do {  // until it has become the program that it is to be
+  do {  // until exec() has made it the program that it is to be
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
@@ -126,7 +126,7 @@ constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const Machine island("island");
-  // Without one LCM's own programs do not work, and no run of several machines.
+  // Without a route neither LCM's own programs nor runs on several machines work.
   const Outcome here = Doctor(island, kHere);
   EXPECT_EQ(here.code, 0) << here.err;
   const json own = json::parse(here.out);
@@ -142,7 +142,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(route["level"], "problem");
   EXPECT_EQ(route["what"], "no route to 239.255.76.67: Network is unreachable");
   EXPECT_THAT(route["remedy"].get<std::string>(), HasSubstr(std::string(runtime::kLoopbackRoute)));
-  // WHEN that is done
+  // WHEN the remedy is applied
   island.Do(std::string(runtime::kLoopbackRoute));
   const Outcome after = Doctor(island, kHere);
   EXPECT_EQ(after.code, 0) << after.out << after.err;

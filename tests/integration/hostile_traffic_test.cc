@@ -1,5 +1,5 @@
-// A run under datagrams that are none of its messages: 20,000 a second in the campaign, up to 4,000
-// where other work is done, and then at least 1,000 in all.
+// A run receives datagrams that are none of its messages. In the campaign they are 20,000 a second.
+// In the plain tests, beside other work, they are up to 4,000 a second and at least 1,000 in all.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -36,7 +36,7 @@ class HostileTrafficTest : public NetworkTest {
     nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run that takes so many seconds. The network of its machine is full of hostile traffic from
+  /// Makes a run that takes `seconds`. The network of its machine is full of hostile traffic from
   /// before the start. The run must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, double seconds) {

@@ -1,5 +1,5 @@
-// The log of a run is changed while it goes on, or later: the run, or the reader of the log, says
-// so.
+// The log of a run is changed during the run or later. The run, or the reader of the log, reports
+// the change.
 #include <fcntl.h>
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
@@ -131,8 +131,8 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
 
 class FlippedBitTest : public LogIntegrityTest {
  protected:
-  /// Lets a run begin, stops its driver, and has `disturb` change the log of what is on the disk.
-  /// @return what has come of the run
+  /// Lets a run begin, stops its driver, and calls `disturb`, which changes the log on the disk.
+  /// @return the outcome of the run
   Outcome Disturbed(const std::function<void(Background& run)>& disturb) {
     Background run(Run({"--pace", "10", "--set", "/steps=60"}));
     Background driver(Driver());
@@ -353,7 +353,7 @@ TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
   const Place radar = PlaceOf(log_, "RADAR");
   FlipLowestBit(log_, radar.at + radar.size - 17);
   expect_refused(key, "the log is not the one that was sealed: ");
-  // THEN it goes on with what was sealed alone
+  // THEN the run does not continue this log, but continues the log that was sealed
   FlipLowestBit(log_, radar.at + radar.size - 17);
   EXPECT_EQ(resume(key).code, 0);
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");

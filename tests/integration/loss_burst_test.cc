@@ -38,9 +38,10 @@ struct Plan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// What became of a role after a burst: from when the network was clean until it computed in time,
-/// which is within a period after the world began the step; the world itself, within two periods
-/// after it began the step before.
+/// A role, and the time from the moment at which the network was clean again until the role
+/// computed in time. A role computes in time if it computes within a period after the world began
+/// the step. The world computes in time if it begins a step within two periods after the step
+/// before.
 struct Back {
   Role role;
   std::optional<double> after_s;

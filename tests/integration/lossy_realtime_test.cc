@@ -72,12 +72,12 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
     machine_.emplace("lossy");
     machine_->RouteMulticastToItself();
   }
-  /// A run in real time of so many steps, with 50 steps per second.
+  /// The command line of a run in real time, with 50 steps per second.
   std::vector<std::string> RealtimeRun(int steps) {
     return machine_->On(Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kRate_hz),
                              "--set", "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
-  /// The network loses everything for this time, which is what is tested.
+  /// Makes the network lose everything for this time. The tests are about this time.
   void LoseEverythingFor(Duration time) const {
     machine_->LoseUdp(100);
     std::this_thread::sleep_for(time);

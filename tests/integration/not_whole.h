@@ -1,4 +1,4 @@
-// How a run in real time ends whose network has lost messages for good.
+// How a run in real time ends if its network has lost messages for good.
 #pragma once
 
 namespace fogline::test {

@@ -49,7 +49,7 @@ class OutageTest : public NetworkTest {
     more.insert(more.end(), {"--pace", "20"});
     return Run(more);
   }
-  /// While some fifty steps of a run that goes on come into its log.
+  /// Waits until some fifty more steps are in the log of the run.
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
@@ -176,11 +176,11 @@ TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
                             "--realtime", "--set", "/steps=50", "--external", "driver", "--lcm-url",
                             kUrl, "--stall-timeout", "1", "--log", Log()}));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN that one can send nothing for longer
+  // WHEN the driver can send nothing for a longer time
   lab[1].Do(kFirewall);
   LastFor(milliseconds(1800));
   lab[1].Do("nft delete table inet reload");
-  // THEN it takes part to the end, and what it could not send is told
+  // THEN the driver takes part to the end, and the run reports what the driver could not send
   run.Wait();
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);

@@ -84,7 +84,8 @@ TEST_F(OutputFilesTest, TwoReportsAtOnceOnOneFileEachWriteAWholePage) {
     pages.push_back(Content(page_));
   }
   ASSERT_NE(pages[0], pages[1]);
-  // WHEN they are reported at once, often enough that the two meet, THEN the page is one of them
+  // WHEN both are reported at once, so often that two reports meet, THEN the page is one of the two
+  // pages
   constexpr int kPairs = 20;
   for (int pair = 0; pair < kPairs; ++pair) {
     Background one(report(log_));
@@ -214,7 +215,7 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   Background sweep({Program("fogline"), "sweep", "scenario/paper.json", "--set", "/steps=20",
                     "--seeds", "1:100000", "--jobs", "2", "--out", pipe});
-  // Until there is much in it, and then no more comes.
+  // Waits until the pipe has many bytes and gets no more.
   constexpr std::chrono::milliseconds kPause(300);
   int bytes = 0;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -229,7 +230,7 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   close(reader);
 }
 
-/// The verbs that write a document into a file, with arguments but for that file.
+/// The verbs that write a document into a file, with all arguments except that file.
 class DocumentTest : public OutputFilesTest {
  protected:
   DocumentTest() {
@@ -276,7 +277,7 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
     EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: stdout is taken by " +
                                words.back() + " /dev/stdout; give " + words.back() + " a file\n");
   }
-  // What nothing reads may have both.
+  // /dev/null may get both texts, because nothing reads it.
   EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);
 }
 

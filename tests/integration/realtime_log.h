@@ -57,7 +57,7 @@ struct Log {
 
   std::int64_t last() const { return truth.rbegin()->first; }
 
-  /// How many steps a role had to do without an input that was due, by its own count.
+  /// The number of steps for which a role lacked an input that was due, by its own count.
   std::int64_t MissesOf(const std::string& role) const {
     std::map<std::int64_t, std::int64_t> of_instance;
     for (const status_t& said : status) {
@@ -89,8 +89,8 @@ struct Log {
     return std::nullopt;
   }
 
-  /// The silence of a channel that lasts at a step: its last step before, and the first one after
-  /// (last() + 1 if it does not come back).
+  /// The silence of a channel around a step: the channel's last step before it, and its first step
+  /// after it (last() + 1 if the channel does not come back).
   struct Silence {
     std::int64_t before;
     std::int64_t back;
@@ -102,7 +102,7 @@ struct Log {
             .back = after == there.end() ? last() + 1 : *after};
   }
 
-  /// The most steps in succession that a channel lacks from a step on.
+  /// The longest sequence of steps that a channel lacks, from a step on.
   std::int64_t LongestSilence(const std::string& channel, std::int64_t from) const {
     std::int64_t longest = 0;
     std::int64_t silent = 0;
@@ -165,7 +165,8 @@ class Obedience {
   std::int64_t late_ = 0;
 };
 
-/// The host does in each step what the command for it says, and that is the human's when he drives.
+/// Expects that the host follows the command of each step, and that this is the human's offer while
+/// the human drives.
 inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
   Obedience world(log, "world");
   Obedience arbitrator(log, "arbitrator");
@@ -183,7 +184,7 @@ inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::
   }
 }
 
-/// The same of the following car.
+/// Expects that the following car follows its command in each step.
 inline void ExpectFollowerObeys(const Log& log, std::int64_t from, std::int64_t to) {
   Obedience world(log, "world");
   for (std::int64_t step = from; step < to; ++step) {
@@ -194,7 +195,7 @@ inline void ExpectFollowerObeys(const Log& log, std::int64_t from, std::int64_t 
   }
 }
 
-/// From `step` on a car brakes to standstill within the limits, and stays there.
+/// Expects that a car brakes to standstill within the limits from `step` on, and stays there.
 inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
                                          Car (*car)(const truth_t&)) {
   EXPECT_EQ(car(log.truth.at(log.last())).speed_mps, 0) << "does not stand at the end";
@@ -219,7 +220,7 @@ inline void ExpectNoCollision(const Log& log) {
   }
 }
 
-/// Who drives the host in these steps, as far as there are commands.
+/// Expects that `holds` accepts the mode of each command in these steps.
 template <class Predicate>
 void ExpectMode(const Log& log, std::int64_t from, std::int64_t to, Predicate&& holds,
                 const char* what) {

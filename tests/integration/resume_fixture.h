@@ -86,7 +86,8 @@ class ResumeTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-/// Copies a log event by event. `change` may alter an event, add others, and end the copy by false.
+/// Copies a log event by event. `change` may alter an event, add other events, and end the copy by
+/// returning false.
 template <class Change>
 void Copy(const std::string& from, const std::string& to, const Change& change) {
   log::EventLogReader reader(from);

@@ -21,7 +21,7 @@ constexpr int kSteps = kResumeSteps;
 
 class ResumeOfCompleteLogTest : public ResumeTest {
  protected:
-  /// Copies whole.lcm without its seal, as a runner leaves it that dies after the last step.
+  /// Copies whole.lcm without its seal, like the log of a runner that died after the last step.
   void LeaveUnsealed() const {
     Copy(File("whole.lcm"), log_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
@@ -62,7 +62,7 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
 
 TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   Undisturbed();
-  // GIVEN a log that was changed before the steps that every role says again
+  // GIVEN a log that was changed before the steps that every role publishes again
   const auto resume = [&](std::int64_t steps, const Words& more) {
     Copy(File("whole.lcm"), log_,
          [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {

@@ -86,7 +86,8 @@ TEST_F(ResumeCampaignTest, RunnersKilledAtRandomStepsChangeNoResult) {
 
 TEST_F(ResumeCampaignTest, RunsInOneProcessGoOnToTheSameResult) {
   std::mt19937 random(2026);
-  // The quicker one takes 0.2 s for so many, and is killed in the first half of that.
+  // The quicker transport takes 0.2 s for this many steps. The run is killed in the first half of
+  // that time.
   constexpr int kMany = 20'000;
   // A busy machine may let the test look too late.
   constexpr int kTries = 10;

@@ -122,7 +122,7 @@ TEST_F(SweepMergeTest, DoesNotBelieveARowWithoutAChecksum) {
                            ":5: error: the row has no checksum; run its sweep again to have it "
                            "computed again\n");
   EXPECT_FALSE(std::filesystem::exists(File("merged.csv")));
-  // WHEN it is done as it is said
+  // WHEN the sweep is run again, as the error text says
   EXPECT_EQ(Made(shards[1], sweep + Words{"--shard", "2/2"}), whole);
   EXPECT_EQ(Merge(shards, "merged.csv").code, 0);
 }

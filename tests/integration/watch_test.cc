@@ -87,7 +87,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   runtime::Bus bus(runtime::FreshMulticastUrl());
   std::int64_t step = -1;
   TimePoint heard{};
-  int uneven = 0;  // steps that the machine held up, or that make up for such a one
+  int uneven = 0;  // steps that the machine held up, and those that make up for it
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Bytes bytes) {
     step = runtime::ReadInt64(bytes, runtime::kStepOffset);
     const TimePoint now = Clock::now();
@@ -255,8 +255,8 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
                                                                       &lcm_destroy);
-  // Of a burst at least what a small socket holds is heard, some 250 names; all are where top has a
-  // processor to itself.
+  // Of each burst top hears at least the messages that a small socket holds, some 250 names. It
+  // hears all of them if it has a processor to itself.
   constexpr int kNames = 4000;
   constexpr int kEnough = 50'000;  // 10 MB of names
   int invented = 0;
@@ -269,7 +269,7 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
     }
     ASSERT_TRUE(top.CatchUp("BURST" + std::to_string(burst)));
   }
-  // THEN it keeps few of them, and LCM has forgotten them, too
+  // THEN top keeps few of the names, and LCM has forgotten them, too
   EXPECT_LE(top.Last()["others"].size(), 64U);
   EXPECT_LT(MemoryOf(top.pid()) - before, 6'000'000);
 }

@@ -30,7 +30,7 @@ inline std::vector<std::string> PaperOf(int steps, const std::vector<std::string
   return command;
 }
 
-/// Digest of the run that nothing happens to, of the paper's scenario with such changes.
+/// Digest of an undisturbed run of the paper's scenario with these changes.
 inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& changes) {
   static std::map<std::pair<int, std::vector<std::string>>, std::string> known;
   std::string& digest = known[{steps, changes}];
@@ -44,7 +44,7 @@ inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& 
   return digest;
 }
 
-/// A run over the network whose STATUS messages tell this test who is who.
+/// A run over the network whose STATUS messages tell this test which process has which role.
 class WatchedRun {
  public:
   /// @param changes of the scenario, as "--set", "/steps=10"
@@ -65,7 +65,7 @@ class WatchedRun {
     });
   }
 
-  /// Handles messages until something is so. @throws std::runtime_error if it never is
+  /// Handles messages until the condition holds. @throws std::runtime_error if it never does
   template <class Condition>
   void WaitUntil(const Condition& condition, const std::string& what) {
     const TimePoint end = Clock::now() + kRunPatience;
@@ -80,7 +80,7 @@ class WatchedRun {
     WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
   }
 
-  /// The process that is a role now: one that this test has not killed.
+  /// The process that has a role now, and that this test has not killed.
   pid_t PidOf(const std::string& role) {
     pid_t pid = 0;
     WaitUntil(
@@ -98,7 +98,7 @@ class WatchedRun {
     gone_[pid] = true;
     kill(pid, signal);
   }
-  /// What a process has said last of its state, -1 if nothing.
+  /// The state that a process has reported last; -1 if it has reported none.
   std::int8_t StateOf(const std::string& role, pid_t pid) {
     return last_[role].contains(pid) ? last_[role][pid].state : std::int8_t{-1};
   }

@@ -20,7 +20,7 @@ double Uniform(Random& random, double low, double high) {
 double LogUniform(Random& random, double low, double high) {
   return std::exp(Uniform(random, std::log(low), std::log(high)));
 }
-/// Waits: the fault lasts so long.
+/// Waits for as long as the fault lasts.
 void Last(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 const Machine& AMachine(const SoakedRun& run, Random& random) {
@@ -42,12 +42,13 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Has a machine lack something for so long, and until `felt`, a command of the shell, says that a
-/// message was lost by it: on a busy machine nothing may be sent for a moment.
-/// @return whether one was
+/// Makes a machine lack something for this time, and then until a message was lost because of it:
+/// on a busy machine no message may be sent for a moment. `felt` is a command of the shell that
+/// succeeds if a message was lost.
+/// @return whether a message was lost
 bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
           const std::string& felt) {
-  constexpr int kTenths = 50;  // how long that may take; a role says something five times a second
+  constexpr int kTenths = 50;  // limit of that wait; a role says something five times a second
   return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
                                 "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
                                 "done; {}; echo $hit",
@@ -76,7 +77,7 @@ bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
   return RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
 }
 
-/// Takes something without which a machine has no route for multicast. The kernel counts the
+/// Takes away something without which a machine has no route for multicast. The kernel counts the
 /// datagrams for which there is none (OutNoRoutes).
 bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
                 double seconds) {

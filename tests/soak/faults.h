@@ -21,8 +21,8 @@ struct Limits {
 struct FaultKind {
   std::string_view name;
   std::string_view what;
-  bool three_machines;  // some of its runs are on three machines: all of them if none is on one
-  std::optional<SoakedRun::Place> alone;  // where its other runs are
+  bool three_machines;  // some runs are on three machines; all of them if `alone` is empty
+  std::optional<SoakedRun::Place> alone;  // place of the other runs
   /// Options of `fogline run` that make it; empty if Strike does.
   std::vector<std::string> (*options)(std::mt19937_64& random);
   /// Strikes once. @return whether it has hit the run @pre the run goes on

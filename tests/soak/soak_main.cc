@@ -36,8 +36,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 struct Options {
   double minutes = 60;
-  std::int64_t runs = 0;  // 0: as many as the time lets
-  std::int64_t each = 0;  // so many of each kind, in place of `runs`
+  std::int64_t runs = 0;  // 0: as many as the time allows
+  std::int64_t each = 0;  // this many of each kind, in place of `runs`
   std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::string only;
@@ -183,7 +183,8 @@ class Soak {
     fmt::print("{} runs in {:.1f} min, {} failed\n", done_, Elapsed_s() / 60, failed_);
   }
 
-  /// Says of what nothing was learnt. @return how many such things there are
+  /// Prints an error for each kind of fault that hit no run, and if no run was made. @return the
+  /// number of errors
   int Complains() const {
     if (done_ == 0) fmt::print(stderr, "soak: error: no run was made: --minutes is too short\n");
     int complaints = done_ == 0 ? 1 : 0;
@@ -198,7 +199,7 @@ class Soak {
   }
 
   const Options options_;
-  std::int64_t runs_ = 0;  // 0: as many as the time lets
+  std::int64_t runs_ = 0;  // 0: as many as the time allows
   const SteadyClock::time_point began_ = SteadyClock::now();
   std::vector<const FaultKind*> kinds_;
   std::atomic<std::int64_t> next_;

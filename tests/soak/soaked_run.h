@@ -54,11 +54,11 @@ class SoakedRun {
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
 
-  // Strikes. @return whether there was such a process, and it had not ended by itself
+  // Each of these strikes. @return whether there was such a process that had not ended by itself
 
   /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
   bool KillARole(std::mt19937_64& random);
-  /// Stops one that the runner has started.
+  /// Stops a role's process that the runner has started, drawn at random.
   bool StopARole(std::mt19937_64& random) const;
   /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
   bool KillTheRunnerAndResume();

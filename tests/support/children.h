@@ -11,7 +11,8 @@
 
 namespace fogline::test {
 
-/// Those that have not ended; of its main thread, which is the one that starts them in Fogline.
+/// The children of `parent` that have not ended. It finds only those that the main thread has
+/// started. In Fogline this thread starts all of them.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   const std::string id = std::to_string(parent);
   std::ifstream in("/proc/" + id + "/task/" + id + "/children");

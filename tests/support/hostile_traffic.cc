@@ -1,6 +1,7 @@
 // Sends datagrams to a multicast group that no process there should accept: noise, and datagrams
-// that resemble the messages of a run, to whose genuine ones it listens. It never sends a message
-// that only a signature could tell from a genuine one (right type, run and step, finite values).
+// that resemble the messages of a run. It listens to the genuine messages of this run. It never
+// sends a message that only a signature could tell from a genuine one (right type, run and step,
+// finite values).
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -120,7 +121,6 @@ class Group {
 
 /// Makes one number of a genuine message of type M infinite or NaN. @return false if `genuine` is
 /// of another type or has no numbers
-/// is not, or has no numbers.
 template <class M>
 bool Poison(runtime::Bytes genuine, double value, std::uint64_t which, std::int64_t later,
             Buffer& payload) {

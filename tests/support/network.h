@@ -39,8 +39,8 @@ class Machine {
 
   /// Makes this machine's multicast stay on it.
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
-  /// From now on the kernel loses so many of 100 UDP datagrams that arrive here, also those of this
-  /// machine.
+  /// From now on the kernel loses `per_cent` of 100 UDP datagrams that arrive here, also those of
+  /// this machine.
   void LoseUdp(int per_cent) const;
   /// From now on the kernel loses the datagrams of one LCM channel.
   void LoseChannel(const std::string& channel) const;
@@ -69,7 +69,7 @@ class Lab {
   void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
   void Plug(std::size_t machine) const { SetPort(machine, "up"); }
 
-  /// From now on the switch sends so many of 100 UDP datagrams from each machine to the next
+  /// From now on the switch sends `per_cent` of 100 UDP datagrams from each machine to the next
   /// machine twice. @throws std::runtime_error if the kernel cannot do this
   void RepeatUdp(int per_cent) const;
   /// The number of datagrams that the switch has sent twice.

@@ -1,4 +1,4 @@
-// The order of the table of channels is one in which a step can be computed.
+// The channels of the table stand in an order in which a step can be computed.
 #include "services/graph.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The order of the folders: which may use which, how full one may be, and one meaning for each
-// name.
+// The order of the folders: which folder may use which, how many files a folder may have, and one
+// meaning for each name.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 

@@ -80,7 +80,7 @@ class RealTimeLoop {
     silent_from_.fill(std::numeric_limits<std::int64_t>::max());
   }
 
-  /// The role sends nothing from this step on.
+  /// Makes the role send nothing from this step on.
   void Silence(Role role, std::int64_t step) {
     silent_from_[static_cast<std::size_t>(role)] = step;
   }

@@ -49,7 +49,6 @@ namespace {
 
 // Allocations during random steps of the ACC with and without a target, calm and hopeless. It
 // counts the steps in which the solver ran.
-// which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
   acc::AccController acc(AccSection{}, 0.1);

@@ -14,7 +14,7 @@
 
 namespace fogline::test {
 
-/// A recorded leader drives for many minutes. So many steps of it prove as much.
+/// A recorded leader drives for many minutes. This many steps prove as much as all of them.
 inline constexpr std::int64_t kMostSteps = 1000;
 
 struct Shipped {

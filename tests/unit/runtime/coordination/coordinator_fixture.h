@@ -36,7 +36,7 @@ class RunCoordinatorTest : public testing::Test {
     ++role(who).sequence;
     script_.Say(role(who));
   }
-  /// Says something on behalf of everybody, so that the run is at a step.
+  /// Publishes a STATUS of every role, so that the run is at a step.
   void BeAtStep(std::int64_t step) {
     for (const RoleInfo& info : kRoles) {
       role(info.role).header.step = step;
@@ -54,7 +54,7 @@ class RunCoordinatorTest : public testing::Test {
     for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) coordinator.Poll(now);
     coordinator.Poll(end);
   }
-  /// Another process takes the place of a role.
+  /// Replaces the process of a role by another one.
   void Replace(Role who) {
     role(who).pid += 1000;
     role(who).instance += 1000;

@@ -34,8 +34,8 @@ class DeafRolesTest : public testing::Test {
     status.input_late = {ear.late};
     deaf_.Heard(Role::kRadar, status, now_);
   }
-  /// So many STATUS messages of the world, which computes two steps between them, and of the radar.
-  /// The radar's input gets 200 ms older each time.
+  /// Passes `signs` STATUS messages of the world, which computes two steps between them, and of the
+  /// radar. The radar's input gets 200 ms older each time.
   void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
     for (int i = 0; i < signs; ++i) {
       now_ += milliseconds(200);
@@ -112,7 +112,8 @@ TEST_F(DeafRolesTest, AMessageNowAndThenOrALateOneIsHeard) {
 }
 
 TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
-  // GIVEN a role that takes all that is genuine for late, since it has computed what was forged
+  // GIVEN a role that has computed a forged step far ahead, so that all genuine messages come too
+  // late for it
   const auto pass_ahead = [this](std::int64_t steps) {
     for (int i = 1; i <= 12; ++i) {
       now_ += milliseconds(200);

@@ -17,7 +17,7 @@ TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
   coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   SayStatus(Role::kFusion);
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
-  // Unless the system has given its number to the next one.
+  // The next process of the role may have the same process id. Its STATUS counts.
   coordinator_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   SayStatus(Role::kFusion);
   EXPECT_TRUE(coordinator_.member(Role::kFusion).status);
@@ -64,7 +64,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
 /// A run whose driver is started elsewhere.
 class ExternalDriverTest : public RunCoordinatorTest {
  protected:
-  /// What the run says of who is its driver.
+  /// The instance that the run names as its driver.
   std::int64_t Holder() {
     PassTime(milliseconds(300));  // it repeats itself in less
     script_.bus().Drain();
@@ -127,10 +127,11 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
   EXPECT_EQ(Holder(), OtherDriver().instance);
 }
 
-/// The same while time passes, as it does for what is heard.
+/// The same with real time, because the coordinator takes the time of each message from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
-  /// The driver, or a process that has its place, says so often that it is there.
+  /// Publishes a STATUS of this process every 100 ms. It is the driver, or a process that has the
+  /// driver's place.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);
@@ -154,7 +155,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   SpeakFor(milliseconds(1300), driver);
   Say(other);
   EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
-  // Unless it goes on.
+  // The run fails if the rival goes on.
   for (int i = 0; i < 12; ++i) {
     Say(other);
     SpeakFor(milliseconds(100), driver);

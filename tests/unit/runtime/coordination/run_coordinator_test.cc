@@ -42,11 +42,11 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   Poll(Clock::now());
   EXPECT_EQ(said_.back().phase, run_t::PREPARE);
   EXPECT_EQ(said_.back().progress, 40);
-  // AND a last word of it comes, THEN that does not count
+  // AND its last STATUS comes late, THEN this STATUS does not count
   SayStatus(Role::kFusion);
   Poll(Clock::now());
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
-  // WHEN the next one is there
+  // WHEN the next process is there
   Replace(Role::kFusion);
   SayStatus(Role::kFusion);
   Poll(Clock::now());
@@ -90,7 +90,7 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
   EXPECT_GE(coordinator_.TakeLongestPause(), milliseconds(4900));
   EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
-  // What is not heard from then on counts.
+  // The silence after the pause counts.
   for (TimePoint now = again; now < again + milliseconds(3990); now += milliseconds(20)) {
     coordinator_.Poll(now);
   }
@@ -238,7 +238,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kWorld).state = status_t::DONE;
   SayStatus(Role::kWorld);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
-  // WHEN the word of the recorder was lost, THEN it is asked for
+  // WHEN the report of the recorder was lost, THEN the runner asks for it
   PollUntil(coordinator_, Clock::now() + milliseconds(40));
   script_.bus().Drain();
   ASSERT_FALSE(requests.empty());
@@ -248,7 +248,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kRecorder).log_bytes = 4711;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kDone);
-  // AND what it says when it leaves counts
+  // AND the report that it sends when it leaves counts
   role(Role::kRecorder).log_bytes = 4712;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.member(Role::kRecorder).status->log_bytes, 4712);

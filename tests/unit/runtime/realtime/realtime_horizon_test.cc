@@ -118,7 +118,8 @@ TEST_F(RealtimeHorizonTest,
   ASSERT_TRUE(IsComputed());
   // WHEN forged messages claim steps further and further ahead
   for (std::int64_t ahead = 1; ahead < 2000; ++ahead) Say(Now() + ahead);
-  // THEN what is genuine is computed again as soon as the run is where the runner's word lets it be
+  // THEN genuine steps are computed again as soon as the progress that the runner reports allows
+  // them
   const TimePoint end = Clock::now() + kPatience;
   bool computed = false;
   for (std::int64_t step = Now(); !computed && Clock::now() < end; step = Now()) {

@@ -326,7 +326,7 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
   other.range_m = 17;
   script_.Say(other);
   EXPECT_EQ(late(), 0) << "the one of the log is there";
-  // WHEN one comes twice that was given up before
+  // WHEN a message comes twice after its step was given up
   say_all_but_radar(2);
   say_all_but_radar(3);
   Say<radar_t>(3);

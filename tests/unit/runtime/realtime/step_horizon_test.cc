@@ -47,7 +47,7 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // Each is as late as possible without being a whole period later than the first.
+  // Each step is as late as possible without being a whole period later than the first.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }
@@ -56,7 +56,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // Not at once: that could be the one message in time among many that are late.
+  // It does not forget the step at once: the message could be the only one in time among many late
+  // ones.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
   Hear(10 + kRemembered, kRemembered + 20, 5);
@@ -65,7 +66,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
 
 TEST_F(StepHorizonTest, RemembersWhatWasInTimeHoweverMuchIsSentAgain) {
   Hear(0, 10);
-  // WHEN the recorder gets all that it has asked for at once: 32 steps of nine channels, and again
+  // WHEN the recorder gets all messages that it has asked for at once, twice: 32 steps of nine
+  // channels
   for (int i = 0; i < 2 * 32 * 9; ++i) horizon_.Heard(10 + i % 32, At(6000 + i));
   EXPECT_EQ(horizon_.Newest(At(7000)), 70 + kSlack);
 }
