@@ -29,7 +29,7 @@ class Follower {
       : front_(front), remains_{.head = head, .steps = steps, .last = head.bytes} {}
 
   /// @param head ends with the event
-  /// @return false at the first event that does not continue what the recorder wrote
+  /// @return false at the first event that does not continue the steps of the recorder
   bool Take(const Event& event, const LogHead& head) {
     if (event.number != head.events - 1) return false;
     const std::int64_t step = StepOf(event, front_.run_id);

@@ -56,7 +56,7 @@ class Cutter {
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
   /// A datagram: its length in two bytes, big endian, then its bytes. It is shorter than that
-  /// length if the input ends, or if a message may not be so long.
+  /// length if the input ends, or if the length is above the limit for messages.
   runtime::Bytes Datagram();
 
  private:

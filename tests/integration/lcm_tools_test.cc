@@ -219,7 +219,7 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
-// After so many steps the driver waits for lcm-spy, so lcm-spy is ready for the next messages. It
+// After this many steps the driver waits for lcm-spy, so lcm-spy is ready for the next messages. It
 // may lose later messages of this interval if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 class RawSocket {
  public:
   explicit RawSocket(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    // A call that blocks for so long counts as blocked for ever.
+    // A call that blocks for this time counts as blocked for ever.
     const timeval limit{.tv_sec = kPatience.count(), .tv_usec = 0};
     setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));

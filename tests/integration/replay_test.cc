@@ -91,7 +91,7 @@ TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
 
 TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
   // With bayes the arbitrator reads TRUTH on demand; with oracle the fusion does. The driver reads
-  // who drives.
+  // HOST_COMMAND on demand.
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;

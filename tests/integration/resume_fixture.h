@@ -60,7 +60,7 @@ class ResumeTest : public testing::Test {
                                                     (is_signed ? runtime::kSignatureBytes : 0));
     return result;
   }
-  /// Kills the runner, not its roles, as soon as there are so many bytes in the log.
+  /// Kills the runner, not its roles, as soon as the log has `bytes` bytes.
   /// @return whether it had not ended by itself
   bool KillAt(std::uintmax_t bytes, const Words& command) const {
     Background run(command + Words{"--log", log_});

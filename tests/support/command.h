@@ -58,7 +58,7 @@ struct Outcome {
   std::string err;
 };
 
-/// Waits until a file has so many bytes. @return false after the time limit
+/// Waits until a file has `bytes` bytes. @return false after the time limit
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = std::chrono::seconds(20));
 

@@ -51,7 +51,8 @@ class RunCoordinator {
 
   RunCoordinator(Bus& bus, RunCoordinatorOptions options);
 
-  /// Does what is due. Call it after every Bus::Wait(). @return the latest time for the next call
+  /// Does the work that is due. Call it after every Bus::Wait(). @return the latest time for the
+  /// next call
   TimePoint Poll(TimePoint now);
 
   /// Notes that the runner looks at the clock. If two looks are far apart, the runner itself was

@@ -1,5 +1,5 @@
-// What went wrong in a run in real time and how its roles reacted, by their STATUS. A person reads
-// it during the run, and afterwards from the log.
+// The failures in a run in real time and the reactions of its roles, by their STATUS. A person
+// reads them during the run, and afterwards from the log.
 #pragma once
 
 #include <array>

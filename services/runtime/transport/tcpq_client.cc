@@ -24,8 +24,8 @@ namespace {
 // How long a relay may take to answer, and how long it may accept no byte.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
-// kAnswerLimit for a relay that the client connects to again. The process does nothing else
-// meanwhile.
+// The limit in place of kAnswerLimit when the client connects to a relay again. It is short,
+// because the process does nothing else in this time.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 // The most bytes from the relay that are kept while the relay takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;

@@ -20,7 +20,7 @@ Scenario Shipped() {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/world/end_on_collision=false"});
 }
 
-/// The paper's scenario with so many followers of any kind.
+/// The paper's scenario with `count` followers of any kind.
 Scenario Drawn(std::int64_t seed, std::int64_t count) {
   Scenario scenario = Shipped();
   scenario.seed = seed;

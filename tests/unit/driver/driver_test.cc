@@ -89,7 +89,7 @@ models::Situation SituationOf(const truth_t& truth) {
 
 constexpr std::int64_t kSteps = 60;
 
-/// Expects that he does in every step what this model computes.
+/// Expects that the driver follows this model in every step.
 void ExpectDrives(const Scenario& scenario,
                   const std::function<double(const truth_t& truth)>& model) {
   driver::Driver driver(scenario);

@@ -23,7 +23,7 @@ namespace {
 constexpr double kStep_s = 0.5;  // a power of two: all times and jerks below are exact
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A run without events of so many steps. The following car is exactly at its safe distance.
+// A run of `steps` steps without events. The following car is exactly at its safe distance.
 std::vector<metrics::Sample> QuietRun(std::size_t steps) {
   std::vector<metrics::Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {

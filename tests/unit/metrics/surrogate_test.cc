@@ -27,7 +27,7 @@ metrics::PairMeasures Collect(std::initializer_list<metrics::CarPair> pairs,
   return accumulator.Result();
 }
 
-// A pair that collides after so many seconds: 10 m/s faster.
+// A pair that collides after `ttc_s`: the car behind is 10 m/s faster.
 metrics::CarPair CollidingWithin(double ttc_s) { return {10 * ttc_s, 30, 20}; }
 
 TEST(SurrogateTest, TimeToCollisionIsGapOverClosingSpeed) {

@@ -51,7 +51,7 @@ void WriteFront(log::EventLogWriter& log) {
 
 class HistoryTest : public testing::Test {
  protected:
-  /// Writes a log of so many steps.
+  /// Writes a log of `steps` steps.
   void Write(std::int64_t steps) const {
     log::EventLogWriter log(file_);
     WriteFront(log);

@@ -269,7 +269,8 @@ TEST_F(RecorderTest, ReadsOfALongLogOnlyItsEndWhenItGoesOn) {
   EXPECT_EQ(status_.back().state, status_t::READY);
   EXPECT_EQ(status_.back().header.step, steps + kLastSteps - 1);
   EXPECT_EQ(status_.back().log_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
-  // AND has read some megabytes of it, twice the end at most and what the memory of a process takes
+  // AND it has read only some megabytes: at most twice the end of the log, and the pages of the
+  // process itself
   EXPECT_LT(BytesRead() - before, 64 << 20);
 }
 

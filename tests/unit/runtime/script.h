@@ -84,7 +84,7 @@ class Script {
     Say(resend);
   }
 
-  /// Lets the node do once what is due at this time, however much time has passed since the last
+  /// Lets the node do its due work once, at this time, however much time has passed since the last
   /// call.
   void Poll(runtime::Node& node, TimePoint now = Clock::now()) {
     wakes_[&node] = std::max(node.Poll(now), now + milliseconds(1));

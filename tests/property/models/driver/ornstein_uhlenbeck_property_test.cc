@@ -19,7 +19,7 @@ struct Moments {
   double covariance = 0;  // covariance with the first value
 };
 
-// Moments over independent processes after so many steps.
+// Moments over independent processes after `steps` steps.
 Moments After(std::int64_t steps, double correlation_time_s, double step_s) {
   Moments m;
   for (std::int64_t i = 0; i < kProcesses; ++i) {

@@ -160,8 +160,9 @@ TEST_P(ConsoleTest, ALineWithoutAReaderEndsNoProcess) {
 INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
                          [](const auto& ends) { return ends.index == 0 ? "Pipe" : "Socket"; });
 
-/// Says something in the background of a terminal that stops whatever writes there (stty tostop).
-/// @return the status of the process that says it, as waitpid() tells it
+/// Prints a line in the background of a terminal that stops background processes that write (stty
+/// tostop).
+/// @return the status of the process that prints it, as waitpid() gives it
 int StatusInBackground(const char* terminal) {
   setsid();
   const int own = open(terminal, O_RDWR);  // controls this process and its children: setsid(2)

@@ -1,4 +1,4 @@
-// A coordinator of a run that hears what a test says on behalf of its roles.
+// A run coordinator that hears the messages that a test publishes for the roles.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@ constexpr Duration kPeriod = milliseconds(100);
 
 class DeafRolesTest : public testing::Test {
  protected:
-  /// What the radar's STATUS says of its input.
+  /// The radar's input as its STATUS reports it.
   struct Ear {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;

@@ -33,7 +33,7 @@ class RealtimeRulesTest : public testing::Test {
     script_.SayRun(run_t::GO, -1, kSpeed);
     go_ = Clock::now();
   }
-  /// The time so many periods after GO.
+  /// The time `periods` periods after GO.
   TimePoint At(double periods) const { return go_ + duration_cast<Duration>(periods * kPeriod); }
   template <class... M>
   void Say(std::int64_t step) {

@@ -45,7 +45,7 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   // with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
   // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
-  // apart. The deviation of so many spacings is 28 %, because each spacing varies by its own
+  // apart. The deviation of this many spacings is 28 %, because each spacing varies by its own
   // length.
   const double width_s = 2 * 1.96 * deviation_s;
   EXPECT_NEAR(delay.high - delay.low, width_s, 2 * 0.28 * width_s);
