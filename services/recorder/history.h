@@ -35,7 +35,7 @@ class History {
 
   /// Calls `use` with each message of this step, in the order of the log.
   /// @pre the step is known, and the operating system has its bytes
-  /// @throws std::runtime_error if it cannot be read
+  /// @throws std::runtime_error if the file cannot be read
   void ForEachMessage(std::int64_t step,
                       const std::function<void(std::string_view channel, runtime::Bytes)>& use);
 

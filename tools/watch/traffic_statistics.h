@@ -20,8 +20,8 @@
 
 namespace fogline::watch {
 
-/// Messages that could not be decoded, counted by the type that their fingerprint names (then the
-/// channel or the size is wrong), or by "unknown".
+/// The number of messages that could not be decoded, by the type that their fingerprint names, or
+/// by "unknown". If the fingerprint names a type, the channel or the size is wrong.
 using Undecodable = std::map<std::string, std::int64_t>;
 
 struct ChannelView {

@@ -104,9 +104,9 @@ class Bus {
     std::int64_t badly_signed = 0;  // refused
     std::int64_t no_key = 0;        // signed, but this process has no key: the decoder refuses them
   };
-  /// Since the beginning.
+  /// The counts since the beginning.
   const Unverified& unverified() const { return unverified_; }
-  /// Since the last call: for several users of a bus whose counts are added up.
+  /// The counts since the last call, for several users of a bus whose counts are added up.
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
   /// Readable when Wait(0) would handle a message; with tcpq only once all earlier messages are
