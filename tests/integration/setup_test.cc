@@ -1,0 +1,139 @@
+// tools/setup installs what package-lock.json names once, and again if it is not whole.
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+
+/// What npm installs.
+constexpr const char* kFile = "node_modules/chart/chart.js";
+
+/// A clone of a user without root. The machine has all Debian packages but npm, an npm of its own,
+/// and only the programs below. `$user` is who calls a program.
+class SetupTest : public testing::Test {
+ protected:
+  SetupTest() {
+    for (const char* folder : {"tools", "bin", "tmp"}) {
+      std::filesystem::create_directory(machine_.path() / folder);
+    }
+    for (const char* file : {"tools/setup", "tools/progress", "package-lock.json"}) {
+      std::filesystem::copy_file(SourceDirectory() / file, machine_.path() / file);
+    }
+    for (const char* program : {"bash", "cat", "cmp", "cp", "dirname", "env", "find", "mkdir",
+                                "mktemp", "rm", "sh", "sort", "touch"}) {
+      std::filesystem::create_symlink(std::filesystem::path("/usr/bin") / program,
+                                      machine_.path() / "bin" / program);
+    }
+    Write("id", "echo 1000");
+    Write("sudo", "user=root exec \"$@\"");
+    Write("dpkg-query", "for name; do :; done; [ $name = npm ] || echo installed");
+    Write("apt-get", "echo $user apt-get $* >>calls; [ $1 = update ] || cp tmp/npm bin/npm");
+    Write("npm", std::string("[ $1 = ci ] || exit 0; echo $user npm $* >>calls\n") +
+                     "mkdir -p node_modules/chart; echo chart >" + kFile);
+  }
+
+  std::string File(const std::string& name) const { return machine_.File(name); }
+
+  /// Makes a program of this machine.
+  void Write(const std::string& program, const std::string& script) const {
+    const std::string file = File("bin/" + program);
+    std::ofstream(file) << "#!/bin/sh\n" << script << "\n";
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+
+  Outcome Setup() const {
+    return RunCommand({"/usr/bin/env", "-i", "-C", machine_.path().string(), "user=driver",
+                       "PATH=" + File("bin"), "TMPDIR=" + File("tmp"), "tools/setup", "run"});
+  }
+
+  /// Runs Setup(), which must succeed. @return the calls of npm and apt-get
+  std::string Calls() const {
+    std::filesystem::remove(File("calls"));
+    const Outcome outcome = Setup();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Content(File("calls"));
+  }
+
+ private:
+  ScratchFolder machine_;
+};
+
+TEST_F(SetupTest, InstallsOnceAsTheUser) {
+  const Outcome outcome = Setup();
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "npm ci: installing the packages of package-lock.json ...\n");
+  EXPECT_THAT(Content(File("calls")), MatchesRegex("driver npm ci [^\n]*\n"));
+  for (const char* option :
+       {" --prefer-offline", " --ignore-scripts", " --no-audit", " --no-fund"}) {
+    EXPECT_THAT(Content(File("calls")), HasSubstr(option));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(File("tmp")));
+
+  // WHEN nothing could be installed
+  Write("npm", "exit 1");
+  const Outcome again = Setup();
+  EXPECT_EQ(again.code, 0);
+  EXPECT_EQ(again.out + again.err, "");
+}
+
+TEST_F(SetupTest, InstallsAgainWhatIsNotWhole) {
+  EXPECT_THAT(Calls(), HasSubstr("npm ci"));
+  EXPECT_EQ(Calls(), "");
+  std::filesystem::remove(File(kFile));
+  EXPECT_THAT(Calls(), HasSubstr("npm ci")) << "after a file was lost";
+  std::ofstream(File(kFile)) << "ch";
+  EXPECT_THAT(Calls(), HasSubstr("npm ci")) << "after a file was cut";
+  std::filesystem::remove_all(File("node_modules"));
+  EXPECT_THAT(Calls(), HasSubstr("npm ci")) << "after all was lost";
+  std::ofstream(File("package-lock.json"), std::ios::app) << "\n";
+  EXPECT_THAT(Calls(), HasSubstr("npm ci")) << "after the lock file changed";
+  EXPECT_EQ(Calls(), "");
+}
+
+TEST_F(SetupTest, InstallsAgainAfterAnInterrupt) {
+  // GIVEN an installation that ends in its middle, with setup
+  std::filesystem::copy_file(File("bin/npm"), File("tmp/npm"));
+  Write("npm", "[ $1 = ci ] || exit 0; mkdir -p node_modules/chart; kill -KILL $PPID");
+  EXPECT_EQ(Setup().code, 128 + 9);
+  std::filesystem::rename(File("tmp/npm"), File("bin/npm"));
+  EXPECT_THAT(Calls(), HasSubstr("npm ci"));
+  EXPECT_EQ(Calls(), "");
+}
+
+TEST_F(SetupTest, SaysWhyNpmFailed) {
+  Write("npm", "[ $1 = ci ] || exit 0; echo no network; exit 1");
+  for (int round = 0; round < 2; ++round) {
+    const Outcome outcome = Setup();
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("\nno network\ntools/setup: error: npm ci failed"),
+                                   EndsWith(" lacks what package-lock.json names\n")));
+  }
+}
+
+TEST_F(SetupTest, InstallsDebiansNpmOnlyIfItNeedsOneAndThereIsNone) {
+  EXPECT_THAT(Calls(), Not(HasSubstr("apt-get")));
+  std::filesystem::rename(File("bin/npm"), File("tmp/npm"));
+  EXPECT_EQ(Calls(), "");
+  std::filesystem::remove_all(File("node_modules"));
+  EXPECT_THAT(Calls(), MatchesRegex("root apt-get update -qq\n"
+                                    "root apt-get install .*--no-install-recommends .* npm\n"
+                                    "driver npm ci [^\n]*\n"));
+}
+
+}  // namespace
+}  // namespace fogline::test
