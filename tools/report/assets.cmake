@@ -1,5 +1,6 @@
 # cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions of assets.h, each file as a raw
 # string. With them the program contains its page and needs no path to it at run time.
+set(uplot ../../node_modules/uplot)
 set(assets
   kPageHtml=page.html
   kPageCss=page.css
@@ -13,9 +14,9 @@ set(assets
   kStudyHtml=study.html
   kStudyCss=study.css
   kStudyJs=study.js
-  kUplotJs=uplot/uPlot.iife.min.js
-  kUplotCss=uplot/uPlot.min.css
-  kUplotLicense=uplot/LICENSE)
+  kUplotJs=${uplot}/dist/uPlot.iife.min.js
+  kUplotCss=${uplot}/dist/uPlot.min.css
+  kUplotLicense=${uplot}/LICENSE)
 
 set(source "#include \"tools/report/assets.h\"\n\nnamespace fogline::report::assets {\n\n")
 foreach(asset IN LISTS assets)
@@ -25,5 +26,8 @@ foreach(asset IN LISTS assets)
   file(READ "${DIR}/${file}" text)
   string(APPEND source "const std::string_view ${name} = R\"asset(${text})asset\";\n")
 endforeach()
+file(READ "${DIR}/${uplot}/package.json" package)
+string(JSON version GET "${package}" version)
+string(APPEND source "const std::string_view kUplotVersion = \"${version}\";\n")
 string(APPEND source "\n}  // namespace fogline::report::assets\n")
 file(WRITE "${OUT}" "${source}")

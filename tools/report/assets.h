@@ -20,5 +20,6 @@ extern const std::string_view kStudyJs;
 extern const std::string_view kUplotJs;
 extern const std::string_view kUplotCss;
 extern const std::string_view kUplotLicense;
+extern const std::string_view kUplotVersion;
 
 }  // namespace fogline::report::assets

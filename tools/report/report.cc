@@ -203,6 +203,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
                {"data", EscapeScript(PageData(runs, curves))},
                {"uplot", std::string(assets::kUplotJs)},
                {"uplot_license", EscapeHtml(assets::kUplotLicense)},
+               {"uplot_version", std::string(assets::kUplotVersion)},
                {"script", fmt::format("{}", fmt::join(scripts, "\n"))}});
 }
 

@@ -133,6 +133,7 @@ std::string MakeStudyPage(const std::string& command, std::span<const StudySecti
        {"data", EscapeScript(figures.dump())},
        {"uplot", std::string(assets::kUplotJs)},
        {"uplot_license", EscapeHtml(assets::kUplotLicense)},
+       {"uplot_version", std::string(assets::kUplotVersion)},
        {"script", fmt::format("{}\n{}", assets::kScrollJs, assets::kStudyJs)}});
 }
 

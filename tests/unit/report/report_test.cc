@@ -94,6 +94,16 @@ TEST(MakeReportTest, CarriesTheLicenceOfTheChartLibrary) {
   EXPECT_THAT(page, HasSubstr("THE SOFTWARE IS PROVIDED &quot;AS IS&quot;"));
 }
 
+TEST(MakeReportTest, NamesTheVersionOfTheChartLibrary) {
+  const std::string page = report::MakeReport({}, {});
+  const std::string before = "Charts by uPlot ";
+  const std::size_t begin = page.find(before);
+  ASSERT_NE(begin, page.npos);
+  const std::size_t at = begin + before.size();
+  const std::string version = page.substr(at, page.find(',', at) - at);
+  EXPECT_THAT(page, HasSubstr("uPlot (v" + version + ") */"));
+}
+
 TEST(MakeReportTest, StaysBelowTwoMegabytesForFourRunsOfFiveHundredSteps) {
   EXPECT_LT(report::MakeReport(ExampleRuns(), ExampleTable()).size(), 2'000'000U);
 }
