@@ -3,9 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <string_view>
 
+#include "scenario/sections/decision.h"
 #include "scenario/sections/engagement.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/take_over.h"
@@ -94,33 +93,6 @@ struct DriverSection {
                 "our choice, because tyres have a friction of 0.9 to 1.0 on a dry road");
   FOGLINE_FIELD(double, readiness, 1.0, {0, 1}, "Reported readiness.",
                 "Sourav & Cheng 2024: the driver is always ready");
-};
-
-/// Policy for the authority over the host: the index of a row of the table in
-/// services/decision/policies/policies.cc. Only the two rows that other code refers to have an
-/// enumerator.
-enum class Policy : std::uint8_t { kNone, kTraded };
-template <>
-struct ChoiceNames<Policy> {
-  static const std::span<const std::string_view> kNames;
-  static const std::span<const std::string_view> kDocs;
-};
-
-/// A measure of conflict: the index of a row of the first table in
-/// services/decision/conflict/conflict_measures.cc.
-enum class MeasureChoice : std::uint8_t { kDoc };
-template <>
-struct ChoiceNames<MeasureChoice> {
-  static const std::span<const std::string_view> kNames;
-  static const std::span<const std::string_view> kDocs;
-};
-
-/// A measure of which sensor is wrong: the index of a row of the second table in that file.
-enum class BlameChoice : std::uint8_t { kNis };
-template <>
-struct ChoiceNames<BlameChoice> {
-  static const std::span<const std::string_view> kNames;
-  static const std::span<const std::string_view> kDocs;
 };
 
 /// How a measure's score becomes the DoC.

@@ -24,7 +24,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
 
 namespace fogline {
@@ -76,9 +75,7 @@ constexpr auto ColumnOf(const std::array<Choice, size>& choices, std::string_vie
 }
 
 /// Names and meanings of an enumeration's values in their order. Each enumeration has a function
-/// `constexpr auto ChoicesOf(Enum)` that returns them as an std::array of Choice. If the values are
-/// the rows of a table in another file, a specialisation declares both as `static const
-/// std::span<const std::string_view>`, and the file of the table defines them.
+/// `constexpr auto ChoicesOf(Enum)` that returns them as an std::array of Choice.
 template <class Enum>
 struct ChoiceNames {
   static constexpr auto kNames = ColumnOf(ChoicesOf(Enum()), &Choice::name);

@@ -1,10 +1,9 @@
 #include "services/decision/conflict/conflict_measures.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <utility>
 
+#include "scenario/sections/decision.h"
 #include "services/decision/conflict/one_step/binned_belief.h"
 #include "services/decision/conflict/one_step/consonant_belief.h"
 #include "services/decision/conflict/one_step/divergence.h"
@@ -76,86 +75,60 @@ constexpr std::string_view kUnchanged = "by rule; skipped: no change";
 
 using Beliefs = ConsonantBeliefs;
 
-// One row for each measure.
+// One row for each measure, in the order of scenario/sections/decision.h.
 constexpr ConflictMeasureRow kConflictMeasures[] = {
-    {"doc", "1/(1 + exp(-10 (z - 1 m))), z the windowed |radar - LiDAR|", "Sourav & Cheng 2024",
-     kUnit, kWindowed, Make<Doc>},
-    {"nis", "d^2/S of the step", "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kMomentary,
+    {"doc", "Sourav & Cheng 2024", kUnit, kWindowed, Make<Doc>},
+    {"nis", "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kMomentary,
      OfDisagreement<NormalisedSquare>},
-    {"nis_window", "mean of d^2/S over the window", "Bar-Shalom, Li & Kirubarajan 2001", kPositive,
-     kWindowed, Make<WindowedNis>},
-    {"nis_signed", "sum of d/sqrt(S) over the window, over sqrt(n): LiDAR short > 0",
-     "Bar-Shalom, Li & Kirubarajan 2001", "(-inf, inf)", kWindowed, Make<SignedNis>},
-    {"bhattacharyya", "d^2/(4 S): the part of the means", "Bhattacharyya 1943", kPositive,
-     kMomentary, OfDisagreement<BhattacharyyaOfMeans>},
-    {"hellinger", "sqrt(1 - exp(-d^2/(4 S))): the part of the means", "Hellinger 1909", kUnit,
-     kMomentary, OfDisagreement<HellingerOfMeans>},
-    {"dempster_bins", "k, mass on disjoint bins", "Dempster 1967", kUnit, kMomentary,
-     OnBins<DempsterConflict>},
-    {"jousselme_bins", "d_J, distance under |A and B|/|A or B|, on bins", "Jousselme et al. 2001",
-     kUnit, kMomentary, OnBins<JousselmeDistance>},
-    {"pignistic_bins", "difBetP, largest difference of pignistic probability, on bins", "Liu 2006",
-     kUnit, kMomentary, OnBins<PignisticDistance>},
-    {"cosine_bins", "1 - cosine of the masses, on bins", "Wen et al. 2008", kUnit, kMomentary,
-     OnBins<CosineConflict>},
-    {"correlation_bins", "1 - r, cosine under |A and B|/|A or B|, on bins", "Jiang 2016", kUnit,
-     kMomentary, OnBins<CorrelationConflict>},
-    {"dempster_consonant", "k(d) = P(s1 Y1 + s2 Y2 < |d|), Maxwell Y", "Smets 2005; Dempster 1967",
-     kUnit, kMomentary, OfDisagreement<ConsonantConflict>},
-    {"jousselme_consonant", "d_J of nested intervals", "Smets 2005; Jousselme et al. 2001", kUnit,
-     kMomentary, OnConsonant<&Beliefs::JousselmeDistance>},
-    {"pignistic_consonant", "total variation of the two Gaussians", "Smets 2005; Liu 2006", kUnit,
-     kMomentary, OfDisagreement<ConsonantPignisticDistance>},
-    {"cosine_consonant", "1 - cosine of the contours", "Smets 2005; Wen et al. 2008", kUnit,
-     kMomentary, OnConsonant<&Beliefs::CosineConflict>},
-    {"correlation_consonant", "1 - r of nested intervals", "Smets 2005; Jiang 2016", kUnit,
-     kMomentary, OnConsonant<&Beliefs::CorrelationConflict>},
-    {"cusum", "one-sided cumulative sum of d/sqrt(S) - kappa", "Page 1954", "[0, ceiling]",
-     kUnchanged, Make<Cusum>},
-    {"glr", "log likelihood ratio of the likeliest jump in the window", "Willsky & Jones 1976",
-     kPositive, kWindowed, Make<Glr>},
-    {"sprt", "log likelihood ratio of a LiDAR short by delta", "Wald 1947",
-     "[ln(beta/(1 - alpha)), ceiling]", kUnchanged, Make<Sprt>},
-    {"lidar_modes", "P(LiDAR ranges fog or nothing)", "Blom & Bar-Shalom 1988", kUnit,
-     "evidence of a mode", Make<LidarModeConflict>, true},
-    {"witness_nis", "larger squared residual of a sensor against the prediction",
-     "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kWindowed, Make<NisWitness>},
-    {"witness_deng", "larger loss of credibility among three bodies of evidence",
-     "Deng et al. 2004", kUnit, kMomentary, OfLargestBlame<DengSupport>},
-    {"witness_murphy", "larger loss of support by the average of the others", "Murphy 2000", kUnit,
-     kMomentary, OfLargestBlame<MurphySupport>},
-    {"witness_mutual", "larger loss of mutual support, by the law of cosines",
-     "after Zhang et al. 2014", kUnit, kMomentary, OfLargestBlame<MutualSupport>},
+    {"nis_window", "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kWindowed, Make<WindowedNis>},
+    {"nis_signed", "Bar-Shalom, Li & Kirubarajan 2001", "(-inf, inf)", kWindowed, Make<SignedNis>},
+    {"bhattacharyya", "Bhattacharyya 1943", kPositive, kMomentary,
+     OfDisagreement<BhattacharyyaOfMeans>},
+    {"hellinger", "Hellinger 1909", kUnit, kMomentary, OfDisagreement<HellingerOfMeans>},
+    {"dempster_bins", "Dempster 1967", kUnit, kMomentary, OnBins<DempsterConflict>},
+    {"jousselme_bins", "Jousselme et al. 2001", kUnit, kMomentary, OnBins<JousselmeDistance>},
+    {"pignistic_bins", "Liu 2006", kUnit, kMomentary, OnBins<PignisticDistance>},
+    {"cosine_bins", "Wen et al. 2008", kUnit, kMomentary, OnBins<CosineConflict>},
+    {"correlation_bins", "Jiang 2016", kUnit, kMomentary, OnBins<CorrelationConflict>},
+    {"dempster_consonant", "Smets 2005; Dempster 1967", kUnit, kMomentary,
+     OfDisagreement<ConsonantConflict>},
+    {"jousselme_consonant", "Smets 2005; Jousselme et al. 2001", kUnit, kMomentary,
+     OnConsonant<&Beliefs::JousselmeDistance>},
+    {"pignistic_consonant", "Smets 2005; Liu 2006", kUnit, kMomentary,
+     OfDisagreement<ConsonantPignisticDistance>},
+    {"cosine_consonant", "Smets 2005; Wen et al. 2008", kUnit, kMomentary,
+     OnConsonant<&Beliefs::CosineConflict>},
+    {"correlation_consonant", "Smets 2005; Jiang 2016", kUnit, kMomentary,
+     OnConsonant<&Beliefs::CorrelationConflict>},
+    {"cusum", "Page 1954", "[0, ceiling]", kUnchanged, Make<Cusum>},
+    {"glr", "Willsky & Jones 1976", kPositive, kWindowed, Make<Glr>},
+    {"sprt", "Wald 1947", "[ln(beta/(1 - alpha)), ceiling]", kUnchanged, Make<Sprt>},
+    {"lidar_modes", "Blom & Bar-Shalom 1988", kUnit, "evidence of a mode", Make<LidarModeConflict>,
+     true},
+    {"witness_nis", "Bar-Shalom, Li & Kirubarajan 2001", kPositive, kWindowed, Make<NisWitness>},
+    {"witness_deng", "Deng et al. 2004", kUnit, kMomentary, OfLargestBlame<DengSupport>},
+    {"witness_murphy", "Murphy 2000", kUnit, kMomentary, OfLargestBlame<MurphySupport>},
+    {"witness_mutual", "after Zhang et al. 2014", kUnit, kMomentary, OfLargestBlame<MutualSupport>},
 };
 
 constexpr BlameMeasureRow kBlameMeasures[] = {
-    {"nis", "erf(|T|/sqrt(2)), T the residual against the prediction",
-     "Bar-Shalom, Li & Kirubarajan 2001", kUnit, kWindowed, MakeBlame<NisBlame>},
-    {"deng", "loss of credibility among three bodies of evidence", "Deng et al. 2004", kUnit,
-     "by rule; conflict: all the blame", OfSupport<DengSupport>},
-    {"murphy", "loss of support by the average of the others", "Murphy 2000", kUnit,
-     "by rule; conflict: all the blame", OfSupport<MurphySupport>},
-    {"mutual", "loss of mutual support, by the law of cosines", "after Zhang et al. 2014", kUnit,
-     "by rule; conflict: all the blame", OfSupport<MutualSupport>},
-    {"lidar_modes", "P(LiDAR ranges fog or nothing); never the radar", "Blom & Bar-Shalom 1988",
-     kUnit, "evidence of a mode", MakeBlame<LidarModeBlame>},
+    {"nis", "Bar-Shalom, Li & Kirubarajan 2001", kUnit, kWindowed, MakeBlame<NisBlame>},
+    {"deng", "Deng et al. 2004", kUnit, "by rule; conflict: all the blame", OfSupport<DengSupport>},
+    {"murphy", "Murphy 2000", kUnit, "by rule; conflict: all the blame", OfSupport<MurphySupport>},
+    {"mutual", "after Zhang et al. 2014", kUnit, "by rule; conflict: all the blame",
+     OfSupport<MutualSupport>},
+    {"lidar_modes", "Blom & Bar-Shalom 1988", kUnit, "evidence of a mode",
+     MakeBlame<LidarModeBlame>},
 };
 
-// A column of either table, for the scenario.
-template <auto kMember, class Row, std::size_t kRows>
-consteval auto Column(const Row (&rows)[kRows]) {
-  std::array<std::string_view, kRows> column;
-  std::ranges::transform(rows, column.begin(), kMember);
-  return column;
-}
-
-constexpr auto kConflictNames = Column<&ConflictMeasureRow::name>(kConflictMeasures);
-constexpr auto kConflictDocs = Column<&ConflictMeasureRow::definition>(kConflictMeasures);
-constexpr auto kBlameNames = Column<&BlameMeasureRow::name>(kBlameMeasures);
-constexpr auto kBlameDocs = Column<&BlameMeasureRow::definition>(kBlameMeasures);
-// The defaults of the scenario.
-static_assert(kConflictNames[static_cast<std::size_t>(MeasureChoice::kDoc)] == "doc");
-static_assert(kBlameNames[static_cast<std::size_t>(BlameChoice::kNis)] == "nis");
+static_assert(std::ranges::equal(kConflictMeasures, ChoiceNames<MeasureChoice>::kNames, {},
+                                 &ConflictMeasureRow::name),
+              "each measure of conflict has a line in scenario/sections/decision.h and a row here, "
+              "in the same order");
+static_assert(std::ranges::equal(kBlameMeasures, ChoiceNames<BlameChoice>::kNames, {},
+                                 &BlameMeasureRow::name),
+              "each measure of blame has a line in scenario/sections/decision.h and a row here, in "
+              "the same order");
 
 template <class Row>
 const Row* Find(std::span<const Row> rows, std::string_view name) {
@@ -177,13 +150,3 @@ const BlameMeasureRow* FindBlameMeasure(std::string_view name) {
 }
 
 }  // namespace fogline::conflict
-
-namespace fogline {
-
-using Names = std::span<const std::string_view>;
-constinit const Names ChoiceNames<MeasureChoice>::kNames = conflict::kConflictNames;
-constinit const Names ChoiceNames<MeasureChoice>::kDocs = conflict::kConflictDocs;
-constinit const Names ChoiceNames<BlameChoice>::kNames = conflict::kBlameNames;
-constinit const Names ChoiceNames<BlameChoice>::kDocs = conflict::kBlameDocs;
-
-}  // namespace fogline

@@ -13,8 +13,7 @@ namespace fogline::conflict {
 /// One measure. `Measure` is ConflictMeasure or BlameMeasure.
 template <class Measure>
 struct MeasureRow {
-  std::string_view name;        // lower_snake, unique in its table
-  std::string_view definition;  // in one line
+  std::string_view name;  // in the scenario (scenario/sections/decision.h)
   std::string_view source;
   std::string_view range;    // with unit, if it has one
   std::string_view missing;  // treatment of a step without radar or LiDAR value

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "scenario/sections/decision.h"
 #include "services/decision/policies/adaptive.h"
 #include "services/decision/policies/availability.h"
 #include "services/decision/policies/bayes.h"
@@ -16,32 +17,23 @@
 namespace fogline::policies {
 namespace {
 
-// One row for each policy. Scenario files, their schema and every list of policies have this order.
+// One row for each policy, in the order of scenario/sections/decision.h.
+// clang-format off
 constexpr std::array kPolicies{
-    RowFor<None>("none", "lambda_A = 1 throughout: no traded control"),
-    RowFor<Traded>("traded", "the human drives while DoC >= threshold"),
-    RowFor<Isolate>("isolate", "the automation drives, without the sensor that is to blame"),
-    RowFor<Oracle>("oracle", "the automation drives, on the sensor that is nearer to the truth"),
-    RowFor<Blend>("blend", "both drive, the human in proportion to the conflict"),
-    RowFor<Adaptive>("adaptive", "as traded, with a threshold that moves with the situation"),
-    RowFor<Bayes>("bayes", "as traded, with the threshold of least expected cost"),
-    RowFor<Availability>("availability",
-                         "as isolate, and as traded if the driver can be there in time"),
+    RowFor<None>("none"),
+    RowFor<Traded>("traded"),
+    RowFor<Isolate>("isolate"),
+    RowFor<Oracle>("oracle"),
+    RowFor<Blend>("blend"),
+    RowFor<Adaptive>("adaptive"),
+    RowFor<Bayes>("bayes"),
+    RowFor<Availability>("availability"),
 };
+// clang-format on
 
-// The rows that have an enumerator.
-static_assert(kPolicies[static_cast<std::size_t>(Policy::kNone)].name == "none");
-static_assert(kPolicies[static_cast<std::size_t>(Policy::kTraded)].name == "traded");
-
-template <auto kMember>
-consteval auto Column() {
-  std::array<std::string_view, kPolicies.size()> column;
-  std::ranges::transform(kPolicies, column.begin(), kMember);
-  return column;
-}
-
-constexpr auto kNameColumn = Column<&PolicyRow::name>();
-constexpr auto kDocColumn = Column<&PolicyRow::doc>();
+static_assert(
+    std::ranges::equal(kPolicies, ChoiceNames<Policy>::kNames, {}, &PolicyRow::name),
+    "each policy has a line in scenario/sections/decision.h and a row here, in the same order");
 
 }  // namespace
 
@@ -56,11 +48,3 @@ std::optional<Policy> FindPolicy(std::string_view name) {
 }
 
 }  // namespace fogline::policies
-
-namespace fogline {
-
-constinit const std::span<const std::string_view> ChoiceNames<Policy>::kNames =
-    policies::kNameColumn;
-constinit const std::span<const std::string_view> ChoiceNames<Policy>::kDocs = policies::kDocColumn;
-
-}  // namespace fogline

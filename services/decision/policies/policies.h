@@ -12,8 +12,7 @@
 namespace fogline::policies {
 
 struct PolicyRow {
-  std::string_view name;  // in the scenario, lower_snake, unique
-  std::string_view doc;   // in one line
+  std::string_view name;  // in the scenario (scenario/sections/decision.h)
   bool selects_sensors;   // selects sensors in the fusion
   Rule rule;              // its decision in the arbitrator
   bool uses_threshold;    // the scenario's threshold changes what it decides
@@ -25,11 +24,10 @@ struct PolicyRow {
 
 /// The row of class P. The constants of P give the other columns.
 template <class P>
-constexpr PolicyRow RowFor(std::string_view name, std::string_view doc) {
+constexpr PolicyRow RowFor(std::string_view name) {
   constexpr bool kSelectsSensors =
       !std::is_same_v<decltype(&P::SelectSensors), decltype(&EngagementPolicy::SelectSensors)>;
   return {.name = name,
-          .doc = doc,
           .selects_sensors = kSelectsSensors,
           .rule = P::kRule,
           .uses_threshold = P::kUsesThreshold && P::kRule != Rule::kNever,

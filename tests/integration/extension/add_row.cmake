@@ -1,5 +1,5 @@
-# Copies a table. The copy has one more row at its end, taken from a README, and the #include for
-# that row.
+# Copies a list or table. The copy has one more row at its end, taken from a README, and the #include
+# for that row if it needs one.
 file(READ "${README}" readme)
 string(FIND "${readme}" "${ROW}" begin)
 if(begin EQUAL -1)
@@ -8,7 +8,6 @@ endif()
 string(SUBSTRING "${readme}" ${begin} -1 row)
 string(FIND "${row}" "\n" end)
 string(SUBSTRING "${row}" 0 ${end} row)
-string(REGEX REPLACE ",$" "" row "${row}")
 
 file(READ "${TABLE}" table)
 string(FIND "${table}" "${FIRST_LINE}" begin)
@@ -17,7 +16,12 @@ if(begin EQUAL -1)
 endif()
 string(SUBSTRING "${table}" 0 ${begin} before)
 string(SUBSTRING "${table}" ${begin} -1 after)
-string(FIND "${after}" "\n};\n" end)
+# The rows end at the first line that begins with "}".
+string(REGEX MATCH "\n *}" last_line "${after}")
+string(FIND "${after}" "${last_line}" end)
 string(SUBSTRING "${after}" 0 ${end} rows)
 string(SUBSTRING "${after}" ${end} -1 after)
-file(WRITE "${MADE}" "#include \"${HEADER}\"\n${before}${rows}\n    ${row},${after}")
+if(HEADER)
+  string(PREPEND before "#include \"${HEADER}\"\n")
+endif()
+file(WRITE "${MADE}" "${before}${rows}\n    ${row}${after}")

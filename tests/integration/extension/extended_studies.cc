@@ -1,5 +1,5 @@
-// A policy and a measure of conflict that are added to their tables take part in every study. One
-// row in the table is enough.
+// A policy and a measure of conflict that are added to their lists and tables take part in every
+// study. One line in the list of names and one row in the table are enough.
 #include <map>
 #include <sstream>
 #include <string>

@@ -20,8 +20,8 @@ std::unique_ptr<conflict::ConflictMeasure> Make(const conflict::ConflictParamete
   return std::make_unique<Measure>(parameters);
 }
 
-constexpr conflict::ConflictMeasureRow kRow = {
-    "relative", "missing share of the radar's range", "ours", "[0, 1]", "holds", Make<Relative>};
+constexpr conflict::ConflictMeasureRow kRow = {"relative", "ours", "[0, 1]", "holds",
+                                               Make<Relative>};
 
 std::string ReadFile(const std::string& path) {
   std::ifstream file(std::string(FOGLINE_SOURCE_DIR) + path);
@@ -39,10 +39,10 @@ TEST(ExampleMeasureTest, StandsInTheReadmeAsItIsBuiltHere) {
   const std::string readme = ReadFile("/services/decision/conflict/README.md");
   EXPECT_NE(readme.find(ReadFile("/tests/unit/decision/conflict/example_measure.h")),
             std::string::npos);
-  EXPECT_NE(
-      readme.find(
-          R"({"relative", "missing share of the radar's range", "ours", "[0, 1]", "holds", Make<Relative>})"),
-      std::string::npos);
+  EXPECT_NE(readme.find(R"({"relative", "missing share of the radar's range"})"),
+            std::string::npos);
+  EXPECT_NE(readme.find(R"({"relative", "ours", "[0, 1]", "holds", Make<Relative>})"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fogline {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
 
 std::vector<std::string> Pointers(const FieldList& fields) {
   std::vector<std::string> pointers;
@@ -34,6 +39,22 @@ TEST(FieldViewTest, KnowsNameRangeMeaningAndSource) {
   EXPECT_EQ(spec.min, 0.001);
   EXPECT_EQ(spec.max, 1);
   EXPECT_EQ(spec.unit, "s");
+}
+
+TEST(FieldViewTest, HasForEachChoiceANameOfItsOwnAndAMeaning) {
+  Scenario scenario;
+  int choices = 0;
+  for (const Field& field : AllFields(scenario)) {
+    const auto* choice = field.As<ChoiceField>();
+    if (choice == nullptr) continue;
+    ++choices;
+    const std::set<std::string_view> names(choice->names.begin(), choice->names.end());
+    EXPECT_EQ(names.size(), choice->names.size()) << field.pointer;
+    ASSERT_EQ(choice->docs.size(), choice->names.size()) << field.pointer;
+    EXPECT_THAT(choice->names, Each(Not(IsEmpty()))) << field.pointer;
+    EXPECT_THAT(choice->docs, Each(Not(IsEmpty()))) << field.pointer;
+  }
+  EXPECT_GE(choices, 20);
 }
 
 TEST(FieldViewTest, RefersToTheValuesOfTheScenario) {
