@@ -11,6 +11,26 @@ function(fogline_add_library name)
   endforeach()
   add_library(fogline_${name} STATIC ${sources})
   target_include_directories(fogline_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  set_property(GLOBAL APPEND PROPERTY FOGLINE_LIBRARIES fogline_${name})
+endfunction()
+
+# fogline_write_links(FILE): writes one line "LIBRARY FOLDER LINKED..." for each library of
+# fogline_add_library(): its name, its folder, and the libraries of Fogline that it links.
+function(fogline_write_links file)
+  get_property(libraries GLOBAL PROPERTY FOGLINE_LIBRARIES)
+  set(lines)
+  foreach(library IN LISTS libraries)
+    get_target_property(folder ${library} SOURCE_DIR)
+    file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${folder}")
+    get_target_property(own ${library} LINK_LIBRARIES)
+    get_target_property(passed_on ${library} INTERFACE_LINK_LIBRARIES)
+    # Generator expressions around a name, such as $<LINK_ONLY:...>, do not matter.
+    string(REGEX MATCHALL "fogline_[a-z0-9_]+" linked "${own};${passed_on}")
+    list(REMOVE_DUPLICATES linked)
+    list(JOIN linked " " linked)
+    string(APPEND lines "${library} ${folder} ${linked}\n")
+  endforeach()
+  file(WRITE "${file}" "${lines}")
 endfunction()
 
 # fogline_add_role(NAME): builds *.cc of this folder as the library fogline_NAME, a role's algorithm, and

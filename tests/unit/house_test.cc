@@ -12,6 +12,7 @@
 #include <optional>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
@@ -31,8 +33,8 @@ struct Room {
   std::string_view why;     // why it stands behind those before it
 };
 
-/// A file may include files of its own room and of rooms before it. NAME_main.cc is a program, so
-/// it may include all.
+/// A file may include files of its own room and of rooms before it, and a library may link
+/// libraries of rooms before it. NAME_main.cc is a program, so it may include all.
 constexpr std::array kRooms = std::to_array<Room>({
     {"common", "", "knows nothing of Fogline"},
     {"common/process", "", "this process: its console, what it waits for, what it takes"},
@@ -172,6 +174,68 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
               ElementsAre("services/acc/acc.h includes services/new/new.h"));
   EXPECT_THAT(ForbiddenIncludes("services/graph.h", "#include \"scenario/sections/s.h\"\n"),
               IsEmpty());
+}
+
+/// The place of a library in the order: that of the first room in its folder. A library whose
+/// folder has no room stands behind all.
+std::size_t PlaceOf(const std::string& folder) {
+  const auto room = std::ranges::find_if(kRooms, [&folder](const Room& candidate) {
+    return candidate.folder == folder || candidate.folder.starts_with(folder + "/");
+  });
+  return static_cast<std::size_t>(room - kRooms.begin());
+}
+
+/// The libraries that each library links, and the places of all.
+struct Links {
+  std::map<std::string, std::vector<std::string>> linked;
+  std::map<std::string, std::size_t> places{{"fogline_lcmtypes", PlaceOf("fogline")}};
+};
+
+/// @param lines "LIBRARY FOLDER LINKED..." (cmake/fogline.cmake)
+Links ReadLinks(const std::string& lines) {
+  Links links;
+  std::istringstream in(lines);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string library, folder;
+    words >> library >> folder;
+    links.places[library] = PlaceOf(folder);
+    links.linked[library].assign(std::istream_iterator<std::string>(words), {});
+  }
+  return links;
+}
+
+/// "LIBRARY links LIBRARY" for each link that the order of the rooms forbids. Links that all lead
+/// to earlier places make no circle.
+std::vector<std::string> ForbiddenLinks(const Links& links) {
+  std::vector<std::string> forbidden;
+  for (const auto& [library, all_linked] : links.linked) {
+    for (const std::string& linked : all_linked) {
+      const auto place = links.places.find(linked);
+      if (place != links.places.end() && place->second < links.places.at(library)) continue;
+      forbidden.push_back(library + " links " + linked);
+    }
+  }
+  return forbidden;
+}
+
+TEST(HouseTest, LibrariesLinkOnlyWhatStandsBeforeThem) {
+  const Links links = ReadLinks(Read(std::filesystem::path(FOGLINE_BINARY_DIR) / "links.txt"));
+  EXPECT_GE(links.linked.size(), 30U);
+  EXPECT_THAT(links.linked.at("fogline_runtime"),
+              UnorderedElementsAre("fogline_common", "fogline_lcmtypes", "fogline_scenario"));
+  EXPECT_THAT(ForbiddenLinks(links), IsEmpty());
+}
+
+TEST(HouseTest, FindsALinkThatRunsBack) {
+  const std::string scenario = "fogline_common common \nfogline_scenario scenario fogline_common";
+  const std::string policies =
+      "\nfogline_policies services/decision/policies fogline_lcmtypes fogline_scenario\n";
+  EXPECT_THAT(ForbiddenLinks(ReadLinks(scenario + policies)), IsEmpty());
+  EXPECT_THAT(ForbiddenLinks(ReadLinks(scenario + " fogline_policies" + policies)),
+              ElementsAre("fogline_scenario links fogline_policies"));
+  EXPECT_THAT(ForbiddenLinks(ReadLinks("fogline_common common fogline_attic\n")),
+              ElementsAre("fogline_common links fogline_attic"));
 }
 
 TEST(HouseTest, NoFolderHasMoreThan20Files) {
