@@ -11,9 +11,7 @@ install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
 
-# fogline_scenario needs the policies, the conflict measures and their dependencies, because a
-# scenario names policies and measures.
-foreach(part IN ITEMS common lcmtypes scenario runtime policies conflict driver_models minimal_risk)
+foreach(part IN ITEMS common lcmtypes scenario runtime)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
   install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib)
 endforeach()

@@ -8,7 +8,10 @@
 #include <deque>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "services/log/run_log.h"
 #include "services/runtime/transport/bus.h"
@@ -18,6 +21,7 @@
 namespace fogline::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 // Messages between processes of one machine take far less, even when every processor is busy.
@@ -49,10 +53,24 @@ class Elsewhere {
 
   /// Builds my_driver.cc with CMake and find_package(fogline). @return the program's path
   std::string MyDriver() const {
-    Must({"cmake", "-S", folder_.File("driver"), "-B", folder_.File("driver/build"), "-G", "Ninja",
-          "-DCMAKE_PREFIX_PATH=" + folder_.File("fogline")});
+    ConfigureMyDriver();
     Must({"cmake", "--build", folder_.File("driver/build")});
     return folder_.File("driver/build/my_driver");
+  }
+
+  /// The static libraries that the build of my_driver.cc names in a command.
+  std::set<std::string> LibrariesOfMyDriver() const {
+    ConfigureMyDriver();
+    const Outcome commands =
+        RunCommand({"ninja", "-C", folder_.File("driver/build"), "-t", "commands", "my_driver"});
+    EXPECT_EQ(commands.code, 0) << commands.err;
+    static const std::regex archive("[^ /]+\\.a\\b");
+    std::set<std::string> libraries;
+    for (std::sregex_iterator at(commands.out.begin(), commands.out.end(), archive), end; at != end;
+         ++at) {
+      libraries.insert(at->str());
+    }
+    return libraries;
   }
 
   /// Makes C++ message types in which lidar_t has one field more than ours. @return their folder
@@ -75,6 +93,11 @@ class Elsewhere {
   std::string File(const std::string& name) const { return folder_.File(name); }
 
  private:
+  void ConfigureMyDriver() const {
+    Must({"cmake", "-S", folder_.File("driver"), "-B", folder_.File("driver/build"), "-G", "Ninja",
+          "-DCMAKE_PREFIX_PATH=" + folder_.File("fogline")});
+  }
+
   static void Must(const std::vector<std::string>& command) {
     const Outcome outcome = RunCommand(command);
     EXPECT_EQ(outcome.code, 0) << testing::PrintToString(command) << "\n"
@@ -191,6 +214,13 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
     ASSERT_EQ(command.acceleration_mps2, 0.125 * gap_error_m - 0.5 * closing_speed_mps);
   }
   EXPECT_EQ(reader.run().steps, 500);
+}
+
+// The message types are headers alone.
+TEST(SwapTest, ARoleFromElsewhereLinksOnlyTheRuntimeAndWhatTheRuntimeUses) {
+  const Elsewhere elsewhere;
+  EXPECT_THAT(elsewhere.LibrariesOfMyDriver(),
+              ElementsAre("libfogline_common.a", "libfogline_runtime.a", "libfogline_scenario.a"));
 }
 
 TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
