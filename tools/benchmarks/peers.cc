@@ -1,5 +1,5 @@
 // Runs in one process, compared with programs that others would use: a GNU Octave script of the
-// paper, and SUMO with three cars. tests/peers makes both peers.
+// paper, and SUMO with three cars. tests/campaign/peers makes both peers.
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -46,7 +46,7 @@ double OctaveRunsPerSecond(int runs) {
   const std::filesystem::path scenario = ScratchFolder() / "paper.json";
   std::ofstream(scenario) << PrintScenario(LoadScenario("scenario/paper.json"));
   const ProgramResult result =
-      RunProgram({"octave-cli", "--norc", "tests/peers/paper.m", scenario, std::to_string(runs)});
+      RunProgram({"octave-cli", "--norc", "tests/campaign/peers/paper.m", scenario, std::to_string(runs)});
   const auto json = nlohmann::json::parse(result.out);
   return json["runs"].get<double>() / json["wall_s"].get<double>();
 }
@@ -55,7 +55,7 @@ double OctaveRunsPerSecond(int runs) {
 double SumoSeconds(int steps) {
   const std::filesystem::path folder = ScratchFolder() / "sumo";
   if (!std::filesystem::exists(folder)) {
-    RunProgram({"tests/peers/three_cars_in_sumo", folder});
+    RunProgram({"tests/campaign/peers/three_cars_in_sumo", folder});
   }
   return RunProgram({"sumo", "--configuration-file", folder / "three_cars.sumocfg", "--end",
                      std::to_string(steps / 10)})

@@ -1,0 +1,20 @@
+// The whole run on a bad network.
+#include <gtest/gtest.h>
+
+#include "tests/integration/network/bad_network.h"
+
+namespace fogline::test {
+namespace {
+
+constexpr int kWholeRun = 500;
+
+TEST_F(BadNetworkTest, LossDuplicatesOvertakingAndDelayChangeNoResult) {
+  ExpectLossDuplicatesOvertakingAndDelayChangeNoResult(kWholeRun);
+}
+
+TEST_F(BadNetworkTest, DamagedMessagesChangeNoResultOfASignedRun) {
+  ExpectDamagedMessagesChangeNoResultOfASignedRun(kWholeRun);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,213 @@
+// The page of studies in a real browser: it has every study, draws its figures, and does what the
+// reader asks.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/campaign/browser/browser.h"
+#include "tools/report/study_page.h"
+#include "tools/study/study.h"
+
+namespace fogline {
+namespace {
+
+using nlohmann::json;
+using ::testing::Each;
+using ::testing::Ge;
+using ::testing::SizeIs;
+
+/// All studies over a few seeds, as `fogline study all` makes them; made once.
+const std::vector<report::StudySection>& Sections() {
+  static const std::vector<report::StudySection> kSections = [] {
+    std::vector<report::StudySection> sections;
+    for (const study::Study& study : study::Studies()) {
+      study::StudyResult result =
+          study.run({.scenarios = std::string(FOGLINE_SOURCE_DIR) + "/scenario",
+                     .seeds = {1, 8},
+                     .jobs = 2,
+                     .progress = {}});
+      report::StudySection& section = sections.emplace_back(std::move(result.section));
+      section.name = study.name;
+      section.title = study.title;
+      section.question = study.question;
+    }
+    return sections;
+  }();
+  return kSections;
+}
+
+std::size_t CountFigures() {
+  std::size_t count = 0;
+  for (const report::StudySection& section : Sections()) count += section.figures.size();
+  return count;
+}
+
+class StudyInBrowserTest : public BrowserTest {
+ protected:
+  json Show(ViewSize window, std::string_view script, Scheme scheme = Scheme::kLight) {
+    return BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), window, script,
+                             scheme);
+  }
+};
+
+TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
+  const json found = Show(kDesktop, R"(
+    found.sections = [...document.querySelectorAll("main > section")].map(({id}) => id);
+    found.links = [...document.querySelectorAll("nav a")].map((a) => a.getAttribute("href"));
+    found.findings = [...document.querySelectorAll(".finding")].map((e) => e.children.length);
+    found.drawn = canvases().map(isDrawn);
+    found.titles = [...document.querySelectorAll("figure h3")].map((e) => e.textContent);
+    found.values = charts.map(({chart}) => chart.data.slice(1).flat().filter(Number.isFinite).length);
+    found.rows = [...document.querySelectorAll("table")].map((e) => e.tBodies[0].rows.length);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["loaded"], 0);
+  std::vector<std::string> names;
+  std::vector<std::string> links;
+  for (const study::Study& study : study::Studies()) {
+    names.emplace_back(study.name);
+    links.push_back('#' + names.back());
+  }
+  EXPECT_EQ(found["sections"], json(names));
+  EXPECT_EQ(found["links"], json(links));
+  EXPECT_THAT(found["findings"], Each(Ge(1)));
+  EXPECT_THAT(found["drawn"], SizeIs(CountFigures()));
+  EXPECT_THAT(found["drawn"], Each(true));
+  EXPECT_THAT(found["titles"], Each(::testing::Ne("")));
+  EXPECT_THAT(found["values"], SizeIs(CountFigures()));
+  EXPECT_THAT(found["values"], Each(Ge(2))) << "a figure without points";
+  EXPECT_THAT(found["rows"], Each(Ge(1)));
+}
+
+TEST_F(StudyInBrowserTest, HidesASeriesAndShowsItAgain) {
+  const json found = Show(kDesktop, R"(
+    const figure = document.querySelector("#policy-si");
+    const image = () => figure.querySelector("canvas").toDataURL();
+    const button = figure.querySelector(".legend button");
+    const images = [image()];
+    found.pressed = [button.getAttribute("aria-pressed")];
+    for (let i = 0; i < 2; ++i) {
+      button.click();
+      await settled();
+      images.push(image());
+      found.pressed.push(button.getAttribute("aria-pressed"));
+    }
+    found.changed = images[0] !== images[1];
+    found.restored = images[0] === images[2];)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["pressed"], json::parse(R"(["true", "false", "true"])"));
+  EXPECT_EQ(found["changed"], true) << "nothing was drawn of the series";
+  EXPECT_EQ(found["restored"], true);
+}
+
+TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
+  const json found = Show(kDesktop, R"(
+    const index = figures.findIndex(({id}) => id === "transfer-jerk");
+    const {chart} = charts[index];
+    mouse("mousemove", chart.over, 100, chart.valToPos(0, "x"));
+    await settled();
+    const legend = document.querySelector("#transfer-jerk .legend");
+    found.at = legend.querySelector(".at").textContent;
+    found.values = [...legend.querySelectorAll(".value")].map((e) => e.textContent);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["at"], "step");
+  EXPECT_THAT(found["values"], SizeIs(2));
+  EXPECT_THAT(found["values"], Each(::testing::Ne("")));
+}
+
+TEST_F(StudyInBrowserTest, CutsNoNameOfARowOff) {
+  // If a text is cut off at the canvas, it has ink in the outermost pixels.
+  constexpr std::string_view kInk = R"(
+    const hasInk = (canvas, x, y, width, height) =>
+        canvas.getContext("2d").getImageData(x, y, width, height).data.some((v) => v > 0);
+    const places = figures.map(({id}) => document.querySelector(`#${id} canvas`));
+    found.ink = places.map((c) => hasInk(c, 0, 0, 1, c.height) || hasInk(c, c.width - 1, 0, 1, c.height) ||
+                                  hasInk(c, 0, c.height - 1, c.width, 1));
+    found.names = figures.map(({categories}) => categories.length);)";
+  for (const ViewSize size : {kDesktop, kPhone}) {
+    const json found = Show(size, kInk);
+    EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+    EXPECT_THAT(found["ink"], Each(false)) << size.width;
+    EXPECT_THAT(found["names"].get<std::vector<int>>(), ::testing::Contains(16));
+  }
+}
+
+TEST_F(StudyInBrowserTest, HasAFewNamesInALegendAndTheOthersBehindOneMore) {
+  const json found = Show(kDesktop, R"(
+    const seen = ({id}) => [...document.querySelectorAll(`#${id} .legend button`)]
+        .filter((button) => button.checkVisibility()).length;
+    found.seen = figures.map(seen);
+    found.series = figures.map(({series}) => series.length);
+    const more = document.querySelector("#conflict-delay-bias details");
+    more.open = true;
+    found.open = seen(figures[0]);
+    const colours = figures[0].series.map((_, i) => i).filter((i) => figures[0].atFirst[i])
+        .map((i) => strokeOf(figures[0], i));
+    found.colours = [colours.length, new Set(colours).size];)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["seen"], Each(::testing::AllOf(Ge(1), ::testing::Le(8))));
+  EXPECT_GT(found["series"][0], 20);
+  EXPECT_EQ(found["open"], found["series"][0]);
+  EXPECT_EQ(found["colours"][0], found["colours"][1]) << "what is shown at first differs in colour";
+}
+
+TEST_F(StudyInBrowserTest, LetsNoGreatValueFlattenTheOthers) {
+  const json found = Show(kDesktop, R"(
+    // Of the shown points, the share that lies in the first tenth of the axis.
+    const flat = (name) => {
+      const {chart} = charts[figures.findIndex(({id}) => id === name)];
+      const {min, max} = chart.scales.y;
+      const places = chart.data.slice(1).flat().filter(Number.isFinite);
+      return places.filter((place) => place < min + 0.1 * (max - min)).length / places.length;
+    };
+    found.flat = ["followers-ttc", "followers-string-ttc-traded", "driver-ttc-visibility"].map(flat);
+    const drac = figures.findIndex(({id}) => id === "vehicle-drac");
+    found.most = charts[drac].chart.scales.y.max;
+    found.beyond = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most).length;
+    found.note = document.querySelector("#vehicle-drac .axis").textContent;
+    const spy = [];
+    const fillText = CanvasRenderingContext2D.prototype.fillText;
+    CanvasRenderingContext2D.prototype.fillText = function (text, ...more) {
+      spy.push(text);
+      return fillText.call(this, text, ...more);
+    };
+    charts[drac].chart.redraw();
+    await settled();
+    found.marked = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most)
+        .every((y) => spy.includes(numberText(y)));)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_THAT(found["flat"], Each(::testing::Le(0.5))) << found;
+  EXPECT_LT(found["most"], 14);
+  EXPECT_GE(found["beyond"], 1) << "a truck that brakes hard collides";
+  EXPECT_EQ(found["marked"], true);
+  EXPECT_EQ(found["note"], "follower's largest DRAC (m/s2) (▸ beyond 12.68)");
+}
+
+TEST_F(StudyInBrowserTest, FitsAPhoneWithEveryTableOpen) {
+  const json found = Show(kPhone, R"(
+    document.querySelectorAll("details").forEach((element) => { element.open = true; });
+    await settled();
+    found.width = document.documentElement.scrollWidth;
+    found.charts = charts.map(({chart}) => chart.width);
+    found.drawn = canvases().map(isDrawn);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_LE(found["width"], kPhone.width);
+  EXPECT_THAT(found["charts"], Each(::testing::Le(kPhone.width)));
+  EXPECT_THAT(found["drawn"], Each(true));
+}
+
+TEST_F(StudyInBrowserTest, IsDarkWhereTheReaderLikesItDark) {
+  constexpr std::string_view kColours = R"(
+    found.page = getComputedStyle(document.body).backgroundColor;
+    found.series = charts[0].chart.series[1].stroke();)";
+  const json light = Show(kDesktop, kColours, Scheme::kLight);
+  const json dark = Show(kDesktop, kColours, Scheme::kDark);
+  EXPECT_THAT(dark["problems"], SizeIs(0)) << dark;
+  EXPECT_NE(light["page"], dark["page"]);
+  EXPECT_NE(light["series"], dark["series"]);
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,66 @@
+// Runs whose roles are killed or stopped, and that end as if nothing had happened.
+#pragma once
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+#include "tests/integration/faults/watched_run.h"
+
+namespace fogline::test {
+
+inline std::vector<std::string> AllRoles() {
+  std::vector<std::string> names;
+  for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+  return names;
+}
+
+/// Stops these roles of a run. They are killed, started again, and named in the result.
+inline void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) {
+  WatchedRun watched({"--stall-timeout", "2"});
+  watched.WaitForStep(100);
+  for (const std::string& role : roles) watched.Signal(role, SIGSTOP);
+  const auto result = watched.ExpectSameResult();
+  ASSERT_EQ(result["restarts"].size(), roles.size());
+  for (const std::string& role : roles) {
+    EXPECT_EQ(WatchedRun::RestartsOf(result, role), 1) << role;
+  }
+  EXPECT_THAT(result["restarts"][0]["last"].get<std::string>(),
+              testing::MatchesRegex("was silent for 1\\.[0-9] s and was killed at step [0-9]+"));
+}
+
+/// Kills so many processes at random steps, at most ten in each run.
+inline void ExpectKillsAtRandomStepsChangeNoResult(int wanted) {
+  constexpr int kKillsPerRun = 10;
+  std::mt19937 random(2024);
+  const std::vector<std::string> roles = AllRoles();
+  for (int done = 0; done < wanted;) {
+    const int kills = std::min(kKillsPerRun, wanted - done);
+    std::vector<int> steps(static_cast<std::size_t>(kills));
+    for (int& step : steps) step = std::uniform_int_distribution(1, kSteps - 2)(random);
+    std::ranges::sort(steps);
+    WatchedRun watched;
+    for (const int step : steps) {
+      watched.WaitForStep(step);
+      watched.Signal(roles[std::uniform_int_distribution<std::size_t>(0, roles.size() - 1)(random)],
+                     SIGKILL);
+    }
+    const auto result = watched.ExpectSameResult();
+    int restarts = 0;
+    for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
+    // A role that is killed at the very end may not be needed again.
+    const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
+    EXPECT_GE(restarts, needed) << watched.run().Err();
+    EXPECT_LE(restarts, kills);
+    done += kills;
+  }
+}
+
+}  // namespace fogline::test

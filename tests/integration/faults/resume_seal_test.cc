@@ -1,0 +1,124 @@
+// `fogline run --resume` of a log that has the whole run: what it verifies, and what it seals.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "services/log/event_log.h"
+#include "services/runtime/wire/wire.h"
+#include "tests/integration/faults/resume_fixture.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kSteps = kResumeSteps;
+
+class ResumeOfCompleteLogTest : public ResumeTest {
+ protected:
+  /// Copies whole.lcm without its seal, like the log of a runner that died after the last step.
+  void LeaveUnsealed() const {
+    Copy(File("whole.lcm"), log_,
+         [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
+           return event.channel != "FOGLINE_SEAL";
+         });
+  }
+  /// The same with a RADAR of step 100 that its role did not compute.
+  void LeaveForgedAndUnsealed() const {
+    Copy(File("whole.lcm"), log_,
+         [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+           const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
+           if (step == 100 && event.channel == "RADAR") data[runtime::kHeaderEnd + 7] ^= 1;
+           return event.channel != "FOGLINE_SEAL";
+         });
+  }
+  /// What `fogline digest` says of the log.
+  nlohmann::json Digest(const Words& more = {}) const {
+    const Outcome outcome = RunCommand(Words{Program("fogline"), "digest", "--json", log_} + more);
+    const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
+    EXPECT_TRUE(json.is_array() && json.size() == 1) << outcome.out << outcome.err;
+    return json.is_array() && !json.empty() ? json[0] : nlohmann::json::object();
+  }
+};
+
+TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
+  Undisturbed();
+  std::filesystem::copy(File("whole.lcm"), log_);
+  const auto whole = Undisturbed();
+  const Outcome outcome = Resume();
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, log_ + ": the run is complete\n");
+  const auto result = ExpectSameEnd(whole);
+  EXPECT_EQ(result["resumed_steps"], kSteps);
+  EXPECT_EQ(result["transport"], nullptr);
+  EXPECT_EQ(result["log"], log_);
+  EXPECT_EQ(ExpectSameEnd(whole, {"--verify"})["verified"]["roles"].size(), 8U);
+}
+
+TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
+  Undisturbed();
+  // GIVEN a log that was changed before the steps that every role publishes again
+  const auto resume = [&](std::int64_t steps, const Words& more) {
+    Copy(File("whole.lcm"), log_,
+         [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+           const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
+           if (step == 100 && event.channel == "DRIVER_COMMAND") data[runtime::kHeaderEnd + 7] ^= 1;
+           return step < steps && event.channel != "FOGLINE_SEAL";
+         });
+    return Resume(more);
+  };
+  const auto expect_found = [](const Outcome& outcome) {
+    EXPECT_THAT(outcome.err, HasSubstr("error: step 100: DRIVER_COMMAND of driver: "));
+    EXPECT_EQ(outcome.code, 1);
+  };
+  expect_found(resume(250, {"--transport", "memq"}));
+  EXPECT_EQ(resume(250, {"--transport", "memq", "--no-verify"}).code, 0);
+  expect_found(resume(kSteps, {}));
+  EXPECT_EQ(resume(kSteps, {"--no-verify"}).code, 0);
+}
+
+TEST_F(ResumeOfCompleteLogTest, VerifiesAndSealsTheLogOfARunnerThatDiedBeforeItSealed) {
+  const auto whole = Undisturbed();
+  LeaveUnsealed();
+  EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), 8U);
+  EXPECT_EQ(Digest()["seal"], "holds");
+  // AND the seal states which builds computed the roles, so that they can be verified again
+  const auto again = ExpectSameEnd(whole, {"--verify"})["verified"];
+  EXPECT_EQ(again["roles"].size(), 8U) << again;
+  EXPECT_TRUE(again["left_out"].empty()) << again;
+}
+
+TEST_F(ResumeOfCompleteLogTest, SealsNothingThatItHasNotVerified) {
+  Undisturbed();
+  const std::string key = File("key");
+  ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
+  for (const Words& more : {Words{}, Words{"--key", key}}) {
+    for (const bool forged : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "key: " << !more.empty() << ", forged: " << forged);
+      forged ? LeaveForgedAndUnsealed() : LeaveUnsealed();
+      const std::string before = Content(log_);
+      const Outcome outcome = Resume(Words{"--no-verify"} + more);
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_TRUE(Content(log_) == before) << "the file is left as it is";
+      EXPECT_NE(Digest()["seal"], "holds");
+    }
+  }
+}
+
+TEST_F(ResumeOfCompleteLogTest, SealsNoLogThatDiffersFromWhatTheRolesCompute) {
+  Undisturbed();
+  LeaveForgedAndUnsealed();
+  const std::string before = Content(log_);
+  const Outcome outcome = Resume();
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("error: step 100: RADAR of radar: "));
+  EXPECT_TRUE(Content(log_) == before) << "the file is left as it is";
+}
+
+}  // namespace
+}  // namespace fogline::test

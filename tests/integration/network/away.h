@@ -1,0 +1,91 @@
+// Processes of a run that are away for longer than any of them waits for another by default.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/lockstep/runner_watch.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+
+inline constexpr const char* kAwayUrl = "udpm://239.255.76.67:7700?ttl=1";
+// Longer than a role waits for its runner.
+inline constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
+
+/// A run with its driver on another machine.
+struct RunOnTwoMachines {
+  const Lab& lab;
+  const Background& run;
+  const Background& driver;
+};
+
+/// What is away meanwhile, and how the run is told of it.
+struct Absence {
+  std::string name;
+  std::vector<std::string> options;
+  std::function<void(const RunOnTwoMachines&)> begin;
+  std::function<void(const RunOnTwoMachines&)> end;
+};
+inline void PrintTo(const Absence& absence, std::ostream* out) { *out << absence.name; }
+
+/// Processes that are stopped.
+inline Absence Stopped(std::string name, std::vector<std::string> options,
+                       std::vector<pid_t> (*processes)(const RunOnTwoMachines&)) {
+  const auto signal = [processes](int number) {
+    return [processes, number](const RunOnTwoMachines& run) {
+      for (const pid_t pid : processes(run)) kill(pid, number);
+    };
+  };
+  return {.name = std::move(name),
+          .options = std::move(options),
+          .begin = signal(SIGSTOP),
+          .end = signal(SIGCONT)};
+}
+
+class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence> {
+ protected:
+  /// Plays a run with this absence in the middle. Its result must be that of an undisturbed run.
+  void ExpectAbsenceCostsNoRun(const Absence& absence) {
+    const Lab lab(2);
+    Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));
+    // Five seconds, of which the first are over when something goes away.
+    const ScratchFolder folder;
+    const std::string log = folder.File("run.lcm");
+    std::vector<std::string> command{Program("fogline"),
+                                     "run",
+                                     "scenario/paper.json",
+                                     "--json",
+                                     "--external",
+                                     "driver",
+                                     "--lcm-url",
+                                     kAwayUrl,
+                                     "--pace",
+                                     "10",
+                                     "--log",
+                                     log};
+    command.insert(command.end(), absence.options.begin(), absence.options.end());
+    Background run(lab[0].On(command));
+    ASSERT_TRUE(run.WaitForErr("waiting for the driver")) << run.Err();
+    ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
+    const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
+    absence.begin(both);
+    std::this_thread::sleep_for(kAway);  // longer than a role waits: what is tested
+    absence.end(both);
+    const auto result = ResultOf(run);
+    EXPECT_EQ(result["digest"], Undisturbed());
+    EXPECT_EQ(result["steps"], 500);
+    EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
+    EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+  }
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,25 @@
+// All processes of a run are away for longer than any of them waits for another by default: stopped
+// by Ctrl-Z, or frozen with their container.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/integration/network/away.h"
+#include "tests/support/children.h"
+
+namespace fogline::test {
+namespace {
+
+const Absence kEverything = Stopped("everything", {}, [](const RunOnTwoMachines& run) {
+  std::vector<pid_t> all = ChildrenOf(run.run.pid());
+  all.insert(all.end(), {run.run.pid(), run.driver.pid()});
+  return all;
+});
+
+TEST_P(AwayTest, CostsNoRunThatWaitsForLonger) { ExpectAbsenceCostsNoRun(GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(Some, AwayTest, testing::Values(kEverything),
+                         [](const auto& absence) { return absence.param.name; });
+
+}  // namespace
+}  // namespace fogline::test

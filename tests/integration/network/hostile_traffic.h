@@ -1,0 +1,91 @@
+// A run under datagrams that are none of its messages.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+
+// Simulated time of the scenario, seconds.
+inline constexpr double kScenarioS = 50;
+
+/// How much hostile traffic a run has, and for how long.
+struct Hostility {
+  double seconds;       // that the run takes
+  double rate_hz;       // datagrams per second
+  double least_sent;    // of them
+  int least_of_a_kind;  // that are sent, and refused
+  bool alone = false;   // on the machine, so that times can be judged
+};
+
+class HostileTrafficTest : public NetworkTest {
+ protected:
+  struct Ended {
+    nlohmann::json result;  // of the run
+    nlohmann::json sent;    // the hostile program's counts of sent datagrams
+  };
+
+  /// A run whose machine has a network full of hostile traffic from before the start. The run must
+  /// succeed.
+  /// @param more arguments of the hostile program
+  Ended RunUnder(std::vector<std::string> more, const Hostility& hostility) {
+    const Machine machine("target");
+    machine.RouteMulticastToItself();
+    more.insert(more.begin(), {Program("hostile_traffic"), "--port", "7700", "--rate",
+                               std::to_string(hostility.rate_hz), "--seconds", "600"});
+    Background hostile(machine.On(more));
+    Background run(machine.On(Run({"--lcm-url", "udpm://239.255.76.67:7700?ttl=0", "--pace",
+                                   std::to_string(kScenarioS / hostility.seconds)})));
+    EXPECT_EQ(run.Wait(std::chrono::seconds(200)), 0) << run.Err();
+    hostile.Signal(SIGTERM);
+    EXPECT_EQ(hostile.Wait(), 0) << hostile.Err();
+    return {ResultOf(run), nlohmann::json::parse(hostile.Out(), nullptr, false)};
+  }
+
+  /// Hostile traffic of all kinds.
+  void ExpectNoResultChangesAndEachKindIsRefused(const Hostility& hostility) {
+    const auto [result, sent] = RunUnder({}, hostility);
+    // GIVEN that hostile datagrams were sent
+    EXPECT_GT(sent["sent"], hostility.least_sent) << sent;
+    for (const char* kind :
+         {"noise", "noise_on_a_channel", "not_finite", "wrong_step", "foreign_run", "wrong_type",
+          "truncated", "oversized", "fragment", "request", "replayed"}) {
+      EXPECT_GT(sent.value(kind, 0), hostility.least_of_a_kind) << kind;
+    }
+    // THEN the result is that of the undisturbed run
+    EXPECT_EQ(result["digest"], Undisturbed());
+    // AND it took little longer than its pace asks
+    if (hostility.alone) {
+      EXPECT_LT(result["wall_s"], 2 * hostility.seconds);
+    }
+    // AND the run counts each kind of refused datagram
+    for (const char* kind : {"foreign", "malformed", "wrong_type", "not_finite", "out_of_window"}) {
+      EXPECT_GT(result["refused"][kind], hostility.least_of_a_kind) << result["refused"];
+    }
+    // AND it names some of the senders that claimed to be of other runs
+    EXPECT_FALSE(result["strangers"].empty());
+  }
+
+  /// Hostile traffic of one kind.
+  void ExpectFloodChangesNoResult(const std::string& kind, const Hostility& hostility) {
+    const auto [result, sent] = RunUnder({"--only", kind}, hostility);
+    EXPECT_GT(sent.value(kind, 0), hostility.least_sent) << sent;
+    EXPECT_EQ(result["digest"], Undisturbed());
+  }
+};
+
+/// Floods of the kinds that cost most: requests that must be answered, fragments that LCM's parser
+/// handles badly, and copies of genuine messages.
+class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
+inline const auto kFloods = testing::Values("request", "fragment", "replayed");
+inline std::string NameOfFlood(const testing::TestParamInfo<std::string>& kind) {
+  return kind.param;
+}
+
+}  // namespace fogline::test

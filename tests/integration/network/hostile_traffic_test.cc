@@ -1,0 +1,23 @@
+// A few seconds of hostile traffic, at a rate that a machine with other work to do withstands. At
+// least a visible number of datagrams is sent.
+#include <gtest/gtest.h>
+
+#include "tests/integration/network/hostile_traffic.h"
+
+namespace fogline::test {
+namespace {
+
+Hostility For(double seconds) {
+  return {.seconds = seconds, .rate_hz = 4'000, .least_sent = 1'000, .least_of_a_kind = 50};
+}
+
+TEST_F(HostileTrafficTest, ChangesNoResultAndIsRefusedByKind) {
+  ExpectNoResultChangesAndEachKindIsRefused(For(4));
+}
+
+TEST_P(FloodTest, ChangesNoResult) { ExpectFloodChangesNoResult(GetParam(), For(1.5)); }
+
+INSTANTIATE_TEST_SUITE_P(Of, FloodTest, kFloods, NameOfFlood);
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,104 @@
+// Real time on networks that lose one channel for good. The run names a role that does not hear it,
+// and starts the role again if the runner owns it. A run with a deaf role fails.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include "services/log/event_log.h"
+#include "tests/integration/realtime/not_whole.h"
+#include "tests/support/network_test.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+constexpr int kRate_hz = 20;
+
+class DeafRoleTest : public NetworkTest {
+ protected:
+  std::vector<std::string> RealtimeRun(int seconds, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--realtime",
+                                       "--set",
+                                       "/step_s=" + std::to_string(1.0 / kRate_hz),
+                                       "--set",
+                                       "/steps=" + std::to_string(seconds * kRate_hz),
+                                       "--lcm-url",
+                                       kUrl};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Run(arguments);
+  }
+  /// The newest step of a channel in the log of the last run.
+  std::int64_t NewestStepOf(std::string_view channel) {
+    std::int64_t newest = -1;
+    log::EventLogReader reader(Log());
+    while (const auto event = reader.Next()) {
+      if (event->channel == channel)
+        newest = std::max(newest, runtime::ReadInt64(event->data, runtime::kStepOffset));
+    }
+    return newest;
+  }
+};
+
+TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
+  const Machine machine("deaf");
+  machine.RouteMulticastToItself();
+  constexpr int kSeconds = 7;
+  Background run(machine.On(RealtimeRun(kSeconds, {})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN no role hears where the cars are
+  machine.LoseChannel("TRUTH");
+  ASSERT_TRUE(run.WaitForErr("radar (pid " + std::to_string(PidOf(run.Err(), "radar")) +
+                             ") has heard no TRUTH for "))
+      << run.Err();
+  machine.LoseNothing();
+  // THEN the run starts a role again that reads TRUTH, and the role computes to the end
+  EXPECT_EQ(run.Wait(), kFailed);
+  const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
+  ASSERT_TRUE(result.is_object()) << run.Err();
+  bool radar = false;
+  for (const auto& role : result["restarts"]) {
+    EXPECT_THAT(role["last"].get<std::string>(),
+                HasSubstr("s, which the world has published all the while, and was killed"));
+    radar = radar || role["role"] == "radar";
+    EXPECT_NE(role["role"], "fusion") << "no role published the input that it lacked";
+  }
+  EXPECT_TRUE(radar) << result["restarts"];
+  EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);
+  // AND the run fails: about two seconds are missing in the log for good
+  EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));
+}
+
+TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
+  const Machine machine("deaf");
+  machine.RouteMulticastToItself();
+  Background run(machine.On(RealtimeRun(4, {"--restarts", "0"})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  machine.LoseChannel("HOST_EGO");
+  EXPECT_EQ(run.Wait(), 3);
+  EXPECT_THAT(run.Err(), HasSubstr("warning: acc (pid "));
+  EXPECT_THAT(run.Err(), HasSubstr(" on deaf) is deaf: it has heard no HOST_EGO for "));
+  EXPECT_THAT(run.Err(),
+              HasSubstr(" is deaf at the end of the run: it has heard no HOST_EGO for "));
+}
+
+TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
+  const Lab lab(2);
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  // It is deaf after some 3 s and hears again; on a busy machine both may take a second more.
+  constexpr int kSeconds = 8;
+  Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  lab[1].LoseChannel("TRUTH");
+  EXPECT_TRUE(run.WaitForErr("warning: driver (pid " + std::to_string(driver.pid()) +
+                             " on lab2) is deaf: it has heard no TRUTH for "));
+  lab[1].LoseNothing();
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), kSeconds * kRate_hz - 5);
+}
+
+}  // namespace
+}  // namespace fogline::test

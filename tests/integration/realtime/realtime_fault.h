@@ -1,0 +1,184 @@
+// Runs in real time: a role is killed or stopped while the automation drives. What the cars do is
+// judged from the log.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+#include "tests/integration/realtime/realtime_log.h"
+#include "tests/integration/realtime/realtime_run.h"
+
+namespace fogline::test {
+
+inline constexpr double kPeriodS = kStepS / kSpeed;
+// From a role's last message until a reader calls it lost. kInForce: from then until the fallback
+// acts.
+inline constexpr std::int64_t kDetection = 3;  // periods
+inline constexpr std::int64_t kInForce = 1;
+// A role hears the runner's news within 100 ms: 5 periods.
+inline constexpr std::int64_t kNews = 5;
+// The length of a manoeuvre from 20 m/s, steps.
+inline constexpr int kManoeuvre = 230;
+
+/// Which role fails, how (by a signal), and in which scenario.
+struct Fault {
+  std::string scenario;
+  std::string role;
+  int signal;
+};
+
+inline void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << fault.role << " in " << fault.scenario;
+}
+
+inline std::string NameOfFault(const testing::TestParamInfo<Fault>& info) {
+  return info.param.scenario + "_" + info.param.role +
+         (info.param.signal == SIGKILL ? "_killed" : "_stopped");
+}
+
+/// The channel on which a role falls silent.
+inline std::string ChannelOfRole(const std::string& role) {
+  std::string name;
+  for (const ChannelInfo& channel : kChannels) {
+    if (NameOf(channel.from) == role && channel.pace == Pace::kStep) name = channel.name;
+  }
+  return name;
+}
+
+/// The step of a fault, and the settings of its run.
+struct FaultPlan {
+  int fault_step = 60;  // the automation drives, and nothing else happens
+  int steps = 140;
+  double speed = kSpeed;
+  std::vector<std::string> settings;
+};
+
+inline FaultPlan PlanOf(const Fault& fault) {
+  FaultPlan plan;
+  if (fault.role == "arbitrator" || fault.role == "follower") {
+    plan.steps = plan.fault_step + kManoeuvre;
+  } else if (fault.role == "driver") {
+    // The human is needed some 20 steps after the fault: 13 steps into the fog of the paper, 120
+    // into the dense one. A stopped process is missing for 50 steps.
+    const bool dense = fault.scenario == "dense_fog";
+    plan.fault_step = dense ? 100 : 60;
+    plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
+    plan.steps = plan.fault_step + 40 + kManoeuvre;
+  } else if (fault.role == "recorder") {
+    // A second passes until the recorder's silence counts as a hang. At this speed it has no more
+    // periods than the other roles keep their messages for the recorder.
+    plan.speed = 2;
+  }
+  return plan;
+}
+
+// The vehicle stops by itself. The next arbitrator lets it finish the stop.
+inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
+  EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
+            log.truth.at(lost).host_acceleration_mps2);
+  ExpectStandstillWithinLimits(log, lost, Host);
+  const auto of_next = log.command.upper_bound(lost + kNews);
+  EXPECT_NE(of_next, log.command.end()) << "no arbitrator came back";
+  ExpectMode(
+      log, lost + kNews, log.last(),
+      [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
+}
+
+// The host goes on as it did; the following car stops.
+inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  ExpectFollowerObeys(log, 1, lost);
+  EXPECT_LT(Follower(log.truth.at(lost + 1 + kInForce)).acceleration_mps2,
+            Follower(log.truth.at(lost)).acceleration_mps2);
+  ExpectStandstillWithinLimits(log, lost, Follower);
+}
+
+// The automation drives alone until the human is needed and does not answer.
+inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
+                               std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  const std::int64_t trusted = silence.back + kRecoverSteps - 1;
+  ExpectMode(
+      log, lost + kInForce, trusted, [](std::int8_t mode) { return mode != arbitration_t::HUMAN; },
+      "only the automation can drive");
+  const auto wanted =
+      std::find_if(log.command.lower_bound(lost + kInForce), log.command.end(),
+                   [](const auto& at) { return at.second.doc >= at.second.threshold; });
+  const bool in_vain = wanted != log.command.end() && wanted->first < trusted;
+  if (fault.signal == SIGSTOP) {
+    ASSERT_TRUE(in_vain) << "he was not wanted in his absence";
+  }
+  if (!in_vain) return;
+  ExpectMode(
+      log, wanted->first, log.last(),
+      [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; },
+      "the human was wanted in vain");
+  ExpectStandstillWithinLimits(log, wanted->first, Host);
+}
+
+// The human drives until the automation has been back for some steps.
+inline void JudgeWithoutAutomation(const Log& log, const Log::Silence& silence, std::int64_t lost) {
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  ASSERT_TRUE(log.command.contains(lost + kInForce));
+  ExpectMode(
+      log, lost + kInForce, silence.back + kRecoverSteps - 1,
+      [](std::int8_t mode) { return mode == arbitration_t::HUMAN; }, "the automation is lost");
+  EXPECT_EQ(log.command.rbegin()->second.mode, arbitration_t::AUTOMATION) << "never again";
+}
+
+inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_step) {
+  ExpectNoCollision(log);
+  EXPECT_EQ(log.truth.size(), static_cast<std::size_t>(log.last() + 1)) << "steps are left out";
+  ASSERT_EQ(log.command.at(fault_step - 1).mode, arbitration_t::AUTOMATION);
+  const std::string channel = ChannelOfRole(fault.role);
+  if (fault.role == "recorder") return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  const auto loss = log.FirstLossOf(channel, fault_step);
+  if (!loss) {
+    // A killed role may be back before another role misses it.
+    ASSERT_EQ(fault.signal, SIGKILL) << "no role missed it";
+    EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "no role missed it";
+    ExpectFollowerObeys(log, 1, log.last());
+    return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  }
+  const Log::Silence silence = log.SilenceAt(channel, loss->step);
+  EXPECT_LE(loss->step - silence.before, kDetection);
+  EXPECT_EQ(loss->culprit_channel, channel) << loss->reporter;
+  if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
+  if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
+  if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
+  // Time stands still without the world. Nothing else changes.
+  if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
+  JudgeWithoutAutomation(log, silence, loss->step);
+}
+
+inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
+  const FaultPlan plan = PlanOf(fault);
+  RealtimeRun run("scenario/" + fault.scenario + ".json", plan.steps, plan.speed, plan.settings);
+  run.WaitForStep(plan.fault_step);
+  const std::int64_t step = run.Signal(fault.role, fault.signal);
+  if (fault.role == "world") {
+    // Steps cannot tell how long the world was silent. This process may hear of it one period
+    // later.
+    const auto missed = run.WaitForTheWorldToBeMissed();
+    EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";
+    if (missed) {
+      EXPECT_LE(std::chrono::duration<double>(*missed).count(), (kDetection + 1) * kPeriodS);
+    }
+  }
+  const auto result = run.Finish();
+  SCOPED_TRACE(result["realtime"].dump());
+  JudgeFault(Log(run.log()), fault, step);
+}
+
+class FaultInRealtimeTest : public testing::TestWithParam<Fault> {};
+
+}  // namespace fogline::test

@@ -1,0 +1,109 @@
+// Runs in real time: undisturbed, with a driver who is late, and with some of the faults of the
+// campaign.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/integration/realtime/realtime_fault.h"
+#include "tests/integration/realtime/realtime_log.h"
+#include "tests/integration/realtime/realtime_run.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+TEST(RealtimeTest, RefusesASpeedThatIsNoneOrThatNothingKeeps) {
+  const auto refused = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {Program("fogline"), "run", "scenario/paper.json"});
+    const Outcome run = RunCommand(more);
+    EXPECT_EQ(run.code, 2);
+    return run.err;
+  };
+  EXPECT_THAT(refused({"--speed", "5"}), testing::HasSubstr("--speed requires --realtime"));
+  EXPECT_THAT(refused({"--realtime", "--speed", "nan"}),
+              testing::HasSubstr("Value nan not in range"));
+  EXPECT_THAT(refused({"--realtime", "--transport", "memq"}),
+              testing::HasSubstr("error: --realtime: "));
+}
+
+TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
+  const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
+                                       "--set", "/steps=60", "--transport", "direct"});
+  std::int64_t misses = 0;
+  // If the machine stands still for half a period, it disturbs a run, and that run proves nothing.
+  // This does not happen in every run. A period of 50 ms outlasts most such moments.
+  constexpr int kTries = 5;
+  constexpr double kSlowly = 2;
+  for (int i = 0; i < kTries; ++i) {
+    RealtimeRun run("scenario/paper.json", 60, kSlowly);
+    const auto result = run.Finish();
+    const auto& realtime = result["realtime"];
+    EXPECT_EQ(realtime["missed_messages"], 0) << realtime.dump(2);
+    EXPECT_EQ(realtime["ticks"], 60);
+    EXPECT_GT(realtime["latency_p50_us"], 0);
+    misses = realtime["deadline_misses"];
+    if (misses > 0) continue;
+    EXPECT_EQ(result["digest"], nlohmann::json::parse(lockstep.out)["digest"]);
+    return;
+  }
+  FAIL() << "no run of " << kTries << " was undisturbed: in the last one " << misses
+         << " steps had to do without an input";
+}
+
+// A column of ACCs and people follows the driver. None of them may miss a step.
+TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
+  constexpr int kSteps = 140;
+  constexpr int kColumn = 5;
+  // Times are compared to the step here, so a period is longer than a moment in which a busy
+  // machine stands still.
+  RealtimeRun run(
+      "scenario/dense_fog.json", kSteps, kSpeed / 2,
+      {"/fog/start_s=1", "/fog/duration_s=4", "/arbitrator/take_over/mode=requested",
+       "/arbitrator/take_over/time/mean_s=10.55", "/arbitrator/take_over/time/std_s=0.01",
+       "/followers/count=5", "/followers/driver=drawn", "/followers/style=drawn"});
+  const auto result = run.Finish();
+  EXPECT_EQ(result["steps"], kSteps);
+  EXPECT_EQ(result["realtime"]["missed_messages"], 0) << result["realtime"].dump(2);
+
+  const Outcome events = RunCommand({Program("fogline"), "events", run.log(), "--json"});
+  ASSERT_EQ(events.code, 0) << events.err;
+  const auto requests = nlohmann::json::parse(events.out).at(0)["requests"];
+  ASSERT_EQ(requests.size(), 1U) << events.out;
+  const auto after_s = [&](const char* what) {
+    return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
+  };
+  // A decision is a step late if its inputs are.
+  EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
+  EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
+  EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);
+  EXPECT_EQ(after_s("transferred_s"), after_s("acknowledged_s"));
+  EXPECT_GE(after_s("effective_s"), after_s("transferred_s"));
+  EXPECT_LE(after_s("effective_s"), after_s("transferred_s") + 2 * kStepS);
+
+  const Log log(run.log());
+  ExpectNoCollision(log);
+  ExpectCommandsAreCarriedOut(log, 1, log.last());
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    ASSERT_TRUE(log.follower.contains(step)) << step;
+    EXPECT_EQ(log.follower.at(step).num_followers, kColumn) << step;
+    EXPECT_EQ(log.truth.at(step).num_followers, kColumn) << step;
+  }
+}
+
+TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) { ExpectFaultLeavesNoCarUndecided(GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(Some, FaultInRealtimeTest,
+                         testing::Values(Fault{"paper", "fusion", SIGSTOP},
+                                         Fault{"paper", "arbitrator", SIGSTOP},
+                                         Fault{"dense_fog", "world", SIGKILL}),
+                         NameOfFault);
+
+}  // namespace
+}  // namespace fogline::test

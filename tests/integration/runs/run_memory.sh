@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# run_memory.sh FOGLINE TRANSPORT: the peak memory of no process of a run grows by more than a tenth
+# from a run of 5,000 steps to one of 50,000.
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+fogline=$1
+transport=$2
+# tools/test removes what killed tests have left in this folder.
+scratch="$(dirname "$fogline")/../Testing/tmp"
+mkdir -p "$scratch"
+folder=$(mktemp -d "$scratch/memory-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+
+# Prints the peak resident memory in KiB of the runner or of the largest of its roles.
+peak() {
+  /usr/bin/time --format=%M --output="$folder/peak" "$fogline" run scenario/paper.json --quiet \
+    --transport "$transport" --set "/steps=$1" --log "$folder/$1.lcm" >&2
+  rm "$folder/$1.lcm"
+  cat "$folder/peak"
+}
+few=$(peak 5000)
+many=$(peak 50000)
+echo "peak memory over $transport: 5000 steps $few KiB, 50000 steps $many KiB"
+[ "$few" -gt 0 ] && [ $((10 * many)) -le $((11 * few)) ]

@@ -1,0 +1,196 @@
+// The README and the pages in docs/ say what the code says, and what their commands print.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "services/runtime/transport/bus.h"
+#include "tests/support/command.h"
+#include "tests/support/pages.h"
+
+namespace fogline::test {
+namespace {
+
+std::string ReadSource(const std::string& file) { return Content(SourceDirectory() / file); }
+
+/// A clone for the commands of a page: it has its own scenarios and build folder, but the programs
+/// and tests of this build. Git knows all files that are there at the beginning.
+class Clone {
+ public:
+  Clone() {
+    for (const char* part : {".gitignore", "scenario", "docs"}) {
+      std::filesystem::copy(SourceDirectory() / part, folder_.path() / part,
+                            std::filesystem::copy_options::recursive);
+    }
+    std::filesystem::create_directory_symlink(SourceDirectory() / "tests",
+                                              folder_.path() / "tests");
+    const std::filesystem::path build = folder_.path() / "build";
+    std::filesystem::create_directory(build);
+    for (const auto& entry : std::filesystem::directory_iterator(FOGLINE_BINARY_DIR)) {
+      std::filesystem::create_symlink(entry.path(), build / entry.path().filename());
+    }
+    Must("git init -q && git add -A");
+  }
+
+  /// Executes a script in the clone. make fails, and the home folder is empty at first.
+  Outcome Run(const std::string& script) const {
+    std::vector<std::string> command = WithoutMake(home_);
+    command.insert(command.end(), {"bash", "-c",
+                                   "set -e; cd " + folder_.path().string() +
+                                       "; export HOME=" + home_.path().string() + " PATH=" +
+                                       ProgramDirectory().string() + ":$PATH LCM_DEFAULT_URL='" +
+                                       runtime::FreshMulticastUrl() + "'\n" + script});
+    return RunCommand(command, std::chrono::seconds(250));
+  }
+
+  /// Executes a command that must succeed. @return what it prints
+  std::string Must(const std::string& command) const {
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.code, 0) << command << "\n" << outcome.out << outcome.err;
+    return outcome.out;
+  }
+
+  /// The files that are new and that git does not ignore.
+  std::string NewFiles() const { return Must("git ls-files --others --exclude-standard"); }
+
+ private:
+  ScratchFolder folder_;
+  ScratchFolder home_;
+};
+
+/// The line that ScriptOf() prints before the commands of a block.
+std::string Mark(std::size_t block) { return "@@ block " + std::to_string(block) + " @@\n"; }
+
+/// The commands of all blocks as one script.
+std::string ScriptOf(const std::vector<Block>& blocks) {
+  std::string script;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i].commands) script += "printf '" + Mark(i) + "'\n" + blocks[i].text;
+  }
+  return script;
+}
+
+/// Expects that each block "text" shows lines of what the commands above it print, in their order.
+/// A line "..." stands for other lines. What follows a time, such as " in 0.62 s", may differ.
+/// @return the number of lines that were compared
+int ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
+  static const std::regex kTime(" in [0-9.]+ s.*");
+  int compared = 0;
+  std::string printed;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i].commands) {
+      const std::size_t begin = out.find(Mark(i));
+      const std::size_t after = begin == std::string::npos ? out.size() : begin + Mark(i).size();
+      printed = out.substr(after, out.find("@@ block ", after) - after);
+      continue;
+    }
+    std::istringstream lines(blocks[i].text);
+    std::size_t at = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty() || line == "...") continue;
+      const std::string expected = std::regex_replace(line, kTime, " in ");
+      const std::size_t place = printed.find(expected, at);
+      EXPECT_NE(place, std::string::npos) << "\"" << expected << "\" is not in\n" << printed;
+      if (place != std::string::npos) at = place + expected.size();
+      ++compared;
+    }
+  }
+  return compared;
+}
+
+TEST(ReadmeTest, HasTheRolesOfTheGraphAndTheArchitectureBothTables) {
+  const Outcome graph = RunCommand({Program("fogline"), "graph"});
+  ASSERT_EQ(graph.code, 0);
+  EXPECT_NE(ReadSource("docs/architecture.md").find(graph.out), std::string::npos)
+      << "put this into docs/architecture.md:\n"
+      << graph.out;
+  const std::string roles = graph.out.substr(0, graph.out.find("\n\n") + 1);
+  EXPECT_NE(ReadSource("README.md").find(roles), std::string::npos) << "put this into README.md:\n"
+                                                                    << roles;
+}
+
+TEST(DocsTest, ShowThePartThatTheSwapTestBuilds) {
+  std::string source = ReadSource("tests/integration/external_driver/my_driver.cc");
+  source.erase(0, source.find("#include"));  // drops the comment at the top
+  EXPECT_NE(ReadSource("docs/extending.md").find(source), std::string::npos) << source;
+}
+
+TEST(DocsTest, ThePartOfExtendingIsBuiltAndDrivesTheCarByTheCommandsThere) {
+  const Clone clone;
+  const std::vector<Block> blocks = BlocksOf(ReadSource("docs/extending.md"));
+  // WHEN a shell executes the commands of the page
+  const Outcome outcome = clone.Run(ScriptOf(blocks));
+  // THEN the part that they build drives the car
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("verified: world radar lidar"), std::string::npos) << outcome.out;
+  EXPECT_EQ(clone.NewFiles(), "");
+}
+
+TEST(DocsTest, TheCommandsOfGettingStartedPrintWhatThePageShows) {
+  const Clone clone;
+  std::string page = ReadSource("docs/getting-started.md");
+  // GIVEN a port that no other test has
+  const std::string port = "udpm://239.255.76.67:7700?ttl=0";
+  const std::string own = runtime::FreshMulticastUrl();
+  ASSERT_NE(page.find(port), std::string::npos);
+  for (std::size_t at = page.find(port); at != std::string::npos; at = page.find(port, at)) {
+    page.replace(at, port.size(), own);
+    at += own.size();
+  }
+  const std::vector<Block> blocks = BlocksOf(page);
+  const Outcome outcome = clone.Run(ScriptOf(blocks));
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_GE(ExpectShows(blocks, outcome.out), 50);
+  EXPECT_EQ(clone.NewFiles(), "");
+}
+
+TEST(DocsTest, NameOnlyFilesThatAreThere) {
+  const std::vector<std::filesystem::path> pages = Pages();
+  EXPECT_GE(pages.size(), 10U);
+  for (const std::filesystem::path& page : pages) {
+    const std::string text = Content(page);
+    std::size_t links = 0;
+    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+      std::string link = text.substr(at + 2, text.find(')', at) - at - 2);
+      if (link.starts_with("https://")) continue;
+      link = link.substr(0, link.find('#'));
+      EXPECT_TRUE(std::filesystem::exists(page.parent_path() / link)) << page << ": " << link;
+      ++links;
+    }
+    EXPECT_GE(links, 1U) << page;
+  }
+}
+
+TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
+  const Clone clone;
+  clone.Must("fogline table scenario/paper.json --logs logs/demo");  // as tools/demo does
+  // WHEN a shell executes the README's commands
+  const std::string readme = ReadSource("README.md");
+  static const std::regex kCommand(
+      "`(fogline (run|table|sweep|calibrate|study|report|replay|export) "
+      "[^`]*(scenario/|--out |logs/)[^`]*)`");
+  std::size_t commands = 0;
+  for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
+    // These two take long with many seeds. Few seeds give the same files.
+    const bool takes_long = (*at)[2] == "study" || (*at)[2] == "calibrate";
+    clone.Must((*at)[1].str() + (takes_long ? " --seeds 1:2" : ""));
+    ++commands;
+  }
+  EXPECT_GE(commands, 8U);
+  // AND the log that the commands for lcm-logger write
+  const std::string network = ReadSource("docs/network.md");
+  std::smatch words;
+  ASSERT_TRUE(std::regex_search(network, words, std::regex("\n    lcm-logger ([^ ]*) &")));
+  clone.Must("cp logs/paper-1.lcm " + words[1].str());
+  // THEN git finds no new files
+  EXPECT_EQ(clone.NewFiles(), "");
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,394 @@
+// Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it, and
+// lcm-spy shows it.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "services/driver/driver.h"
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/process/step_node.h"
+#include "services/runtime/transport/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+// A Java virtual machine starts, and a window opens, within this time even on a busy machine.
+constexpr seconds kPatience(60);
+
+using Payload = std::vector<std::uint8_t>;
+
+/// The payloads of a log or a network by channel, in order of arrival.
+using Traffic = std::map<std::string, std::vector<Payload>, std::less<>>;
+
+Traffic ReadTraffic(const std::string& log) {
+  Traffic traffic;
+  log::EventLogReader reader(log);
+  while (const auto event = reader.Next()) {
+    traffic[std::string(event->channel)].emplace_back(event->data.begin(), event->data.end());
+  }
+  EXPECT_EQ(reader.torn(), "");
+  return traffic;
+}
+
+/// Payloads by step. A step may come again (a repair) if all its bytes are the same.
+std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
+  std::map<std::int64_t, Payload> steps;
+  for (const Payload& payload : payloads) {
+    const auto [at, is_new] =
+        steps.emplace(runtime::ReadInt64(payload, runtime::kStepOffset), payload);
+    EXPECT_TRUE(is_new || at->second == payload) << "two messages of step " << at->first;
+  }
+  return steps;
+}
+
+/// The parts of the scenario that RUN messages carry.
+std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& payloads) {
+  std::map<std::int64_t, std::string> parts;
+  for (const Payload& payload : payloads) {
+    run_t run{};
+    EXPECT_TRUE(runtime::Decode(payload, run));
+    parts[run.header.step] = run.text;
+  }
+  return parts;
+}
+
+/// Publishes on a channel of no role until `seen` is true. The program that has seen the mark
+/// listens and has got everything that was sent before it. @return false after kPatience
+bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
+  const auto end = Clock::now() + kPatience;
+  while (!seen()) {
+    if (Clock::now() > end) return false;
+    bus.Publish(channel, Payload(runtime::kHeaderEnd));
+    bus.Wait(milliseconds(10));
+  }
+  return true;
+}
+
+/// The command, with real-time priority if that is permitted. lcm-logger queues 30 messages and
+/// loses the ones beyond that: on a busy machine, those of a few milliseconds.
+std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
+  const std::vector<std::string> first{"chrt", "--rr", "1"};
+  std::vector<std::string> probe = first;
+  probe.emplace_back("true");
+  if (RunCommand(probe).code == 0) command.insert(command.begin(), first.begin(), first.end());
+  return command;
+}
+
+/// Debian's lcm-logger.
+class Logger {
+ public:
+  Logger(runtime::Bus& bus, std::string file)
+      : bus_(bus),
+        file_(std::move(file)),
+        process_(BeforeOtherWork(
+            {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), file_})) {}
+
+  /// Waits until lcm-logger has logged everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    return Mark(bus_, mark, [&] { return Content().find(mark) != std::string::npos; });
+  }
+  /// Ends lcm-logger with Ctrl-C, as a person does. @return its exit code
+  int End() {
+    process_.Signal(SIGINT);
+    return process_.Wait();
+  }
+
+ private:
+  std::string Content() const {
+    std::ifstream in(file_, std::ios::binary);
+    std::ostringstream content;
+    content << in.rdbuf();
+    return content.str();
+  }
+
+  runtime::Bus& bus_;
+  const std::string file_;
+  Background process_;
+};
+
+/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads its window.
+class Spy {
+ public:
+  explicit Spy(runtime::Bus& bus)
+      : bus_(bus),
+        screen_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
+    EXPECT_TRUE(screen_.WaitForOut("\n", kPatience)) << "no X server: " << screen_.Err();
+    const std::string display = screen_.Out().substr(0, screen_.Out().find('\n'));
+    process_.emplace(std::vector<std::string>{"env", "DISPLAY=:" + display,
+                                              "JAVA_TOOL_OPTIONS=-javaagent:" + BuildProbe(),
+                                              Program("fogline"), "spy", "--lcm-url", bus.url()});
+  }
+
+  /// Waits until lcm-spy shows everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    return Mark(bus_, mark, [&] {
+      const std::string out = process_->Out();
+      const std::size_t row = out.find("row\t" + mark + "\t");
+      return row != std::string::npos && out.find("end of table", row) != std::string::npos;
+    });
+  }
+
+  struct Row {
+    std::string type;
+    std::int64_t messages = 0;
+    std::int64_t undecodable = 0;
+  };
+  /// The table in lcm-spy's window, by channel.
+  std::map<std::string, Row> Rows() const {
+    std::map<std::string, Row> rows;
+    std::istringstream lines(process_->Out());
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("row\t")) continue;
+      std::vector<std::string> cells;
+      std::istringstream words(line);
+      for (std::string cell; std::getline(words, cell, '\t');) cells.push_back(cell);
+      // "row", Channel, Type, Num Msgs, Hz, 1/Hz, Jitter, Bandwidth, Undecodable
+      if (cells.size() != 9) continue;
+      rows[cells[1]] = {cells[2], std::stoll(cells[3]), std::stoll(cells[8])};
+    }
+    return rows;
+  }
+  std::string Err() const { return process_->Err(); }
+
+ private:
+  /// Compiles SpyProbe. @return the path of its jar
+  std::string BuildProbe() const {
+    const std::string source =
+        (SourceDirectory() / "tests/integration/verbs/SpyProbe.java").string();
+    const std::string classes = folder_.File("classes");
+    const std::string jar = folder_.File("probe.jar");
+    std::ofstream(folder_.File("manifest")) << "Premain-Class: SpyProbe\n";
+    Outcome step = RunCommand({"javac", "-d", classes, source});
+    EXPECT_EQ(step.code, 0) << "is a JDK there? " << step.err;
+    step = RunCommand({"jar", "cfm", jar, folder_.File("manifest"), "-C", classes, "."});
+    EXPECT_EQ(step.code, 0) << step.err;
+    return jar;
+  }
+
+  runtime::Bus& bus_;
+  ScratchFolder folder_;
+  Background screen_;
+  std::optional<Background> process_;
+};
+
+/// Names of the message types, in the order of kChannels.
+std::vector<std::string> TypeNames() {
+  return std::apply(
+      [](const auto&... channel) {
+        return std::vector<std::string>{std::decay_t<decltype(channel)>::Message::getTypeName()...};
+      },
+      kGraph);
+}
+
+/// Removes the signatures from all messages of a run. Each message must have one.
+void RemoveSignatures(Traffic& traffic) {
+  for (const ChannelInfo& channel : kChannels) {
+    const auto found = traffic.find(channel.name);
+    if (found == traffic.end()) continue;
+    for (Payload& payload : found->second) {
+      ASSERT_TRUE(runtime::LooksSigned(payload)) << channel.name;
+      payload.resize(payload.size() - runtime::kSignatureBytes);
+    }
+  }
+}
+
+/// Plays a log of signed traffic to a receiver that has the key. @return how many TRUTH messages
+/// the receiver accepts
+std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  bus.Secure(runtime::MessageSigner(runtime::SigningKey::Load(key), Role::kFusion));
+  std::size_t truths = 0;
+  bus.Subscribe("TRUTH", [&truths](runtime::Arrival& arrival) {
+    truths += arrival.As<truth_t>() != nullptr ? 1 : 0;
+  });
+  Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
+  EXPECT_EQ(player.Wait(), 0) << player.Err();
+  while (bus.Wait(milliseconds(200))) {
+  }
+  EXPECT_EQ(bus.unverified().badly_signed, 0);
+  return truths;
+}
+
+// After this many steps the driver waits for lcm-spy, so lcm-spy is ready for the next messages. It
+// may lose later messages of this interval if it gets no processor time.
+constexpr std::int64_t kStepsOfSpy = 10;
+
+/// The driver of a run. It answers for a step only after lcm-logger has written everything that was
+/// sent before. lcm-logger queues 30 messages, and lcm-spy as many as its socket holds. Neither can
+/// promise more on a busy machine. A run that waits for its driver sends fewer messages at a time.
+class DriverThatWaits {
+ public:
+  DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
+      : bus_(url), logger_(logger), spy_(spy) {
+    if (!key.empty())
+      bus_.Secure(runtime::MessageSigner(runtime::SigningKey::Load(key), Role::kDriver));
+    bus_.Subscribe("TRUTH", [this](runtime::Bytes truth) {
+      begun_ = runtime::ReadInt64(truth, runtime::kStepOffset) + 1;
+    });
+    node_.emplace(bus_, std::nullopt);
+  }
+
+  /// Takes part in one run of `steps` steps. @return false if it takes too long
+  [[nodiscard]] bool TakePart(std::int64_t steps) {
+    std::int64_t waited = 0;
+    auto end = Clock::now() + kPatience;  // the time limit of the next step
+    while (!node_->left() && Clock::now() < end) {
+      const TimePoint now = Clock::now();
+      bus_.Wait(std::min(node_->Poll(now) - now, Duration(milliseconds(100))));
+      if (begun_ <= waited || begun_ == steps) continue;
+      waited = begun_;
+      const std::string step = std::to_string(waited);
+      if (!logger_.CatchUp("LOGGED_" + step)) return false;
+      if (waited % kStepsOfSpy == 0 && !spy_.CatchUp("SHOWN_" + step)) return false;
+      end = Clock::now() + kPatience;
+    }
+    return node_->left() && node_->error().empty();
+  }
+
+ private:
+  runtime::Bus bus_;
+  std::int64_t begun_ = 0;  // the number of steps that have begun
+  std::optional<runtime::StepNode<driver::Driver>> node_;
+  Logger& logger_;
+  Spy& spy_;
+};
+
+enum class Signing { kNone, kKey };
+class LoggerAndSpyTest : public testing::TestWithParam<Signing> {};
+
+TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
+  // GIVEN lcm-logger and lcm-spy, both listening
+  const ScratchFolder folder;
+  const std::string key = GetParam() == Signing::kKey ? folder.File("key") : "";
+  constexpr int kSteps = 40;
+  const std::string own = folder.File("own.lcm");
+  const std::string debian = folder.File("debian.lcm");
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  Logger logger(bus, debian);
+  Spy spy(bus);
+  ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
+  ASSERT_TRUE(spy.CatchUp("BEFORE")) << spy.Err();
+  // WHEN a run takes place and its driver waits for both
+  std::vector<std::string> command{Program("fogline"),
+                                   "run",
+                                   "scenario/paper.json",
+                                   "--set",
+                                   "/steps=" + std::to_string(kSteps),
+                                   "--json",
+                                   "--external",
+                                   "driver",
+                                   "--stall-timeout",
+                                   "60",
+                                   "--lcm-url",
+                                   bus.url(),
+                                   "--log",
+                                   own};
+  if (!key.empty()) {
+    runtime::SigningKey::Create(key);
+    command.insert(command.end(), {"--key", key});
+  }
+  Background run(command);
+  ASSERT_TRUE(DriverThatWaits(bus.url(), key, logger, spy).TakePart(kSteps)) << run.Err();
+  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  ASSERT_TRUE(logger.CatchUp("AFTER_LOG"));
+  ASSERT_TRUE(spy.CatchUp("AFTER")) << spy.Err();
+  ASSERT_EQ(logger.End(), 0);
+  // THEN lcm-logger has every message that our recorder has
+  const Traffic recorded = ReadTraffic(own);
+  Traffic logged = ReadTraffic(debian);
+  if (!key.empty()) RemoveSignatures(logged);
+  for (const ChannelInfo& channel : kChannels) {
+    SCOPED_TRACE(channel.name);
+    const auto expected = recorded.find(channel.name);
+    ASSERT_EQ(expected != recorded.end(), channel.Logged());
+    if (!channel.Logged()) continue;
+    std::vector<Payload>& got = logged[std::string(channel.name)];
+    if (channel.pace == Pace::kStep) {
+      EXPECT_EQ(std::ssize(expected->second), kSteps);
+      EXPECT_TRUE(BySteps(got) == BySteps(expected->second));
+    } else {
+      EXPECT_EQ(ScenarioTexts(got), ScenarioTexts(expected->second));
+    }
+  }
+  // AND its log gives the same results as ours
+  const Outcome metrics = RunCommand({Program("fogline"), "metrics", "--json", own, debian});
+  ASSERT_EQ(metrics.code, 0) << metrics.err;
+  const auto logs = nlohmann::json::parse(metrics.out);
+  EXPECT_EQ(logs[1]["complete"], true);
+  EXPECT_EQ(logs[1]["digest"], logs[0]["digest"]);
+  EXPECT_EQ(logs[1]["metrics"], logs[0]["metrics"]);
+  EXPECT_EQ(logs[0]["digest"], nlohmann::json::parse(run.Out())["digest"]);
+  // AND lcm-spy shows every channel with its type. RESEND may be missing, if no message came on it.
+  const auto rows = spy.Rows();
+  const std::vector<std::string> types = TypeNames();
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    SCOPED_TRACE(kChannels[i].name);
+    const std::string channel(kChannels[i].name);
+    if (i == IndexOf<resend_t>() && !logged.contains(channel)) continue;
+    const auto row = rows.find(channel);
+    ASSERT_NE(row, rows.end());
+    EXPECT_EQ(row->second.type, types[i]);
+    EXPECT_EQ(row->second.undecodable, 0);
+    EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? kSteps / kStepsOfSpy : 1);
+  }
+  // AND the signatures in lcm-logger's log still hold when lcm-logplayer plays it
+  if (!key.empty()) {
+    EXPECT_EQ(PlayedAndVerified(debian, key), logged["TRUTH"].size());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(LcmToolsTest, LoggerAndSpyTest,
+                         testing::Values(Signing::kNone, Signing::kKey), [](const auto& signing) {
+                           return signing.param == Signing::kKey ? "Signed" : "Unsigned";
+                         });
+
+TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
+  // GIVEN a log, and a subscriber to every channel in it
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                  "memq", "--quiet", "--log", log});
+  ASSERT_EQ(run.code, 0) << run.err;
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  Traffic received;
+  std::map<std::string, int> undecodable;
+  const auto listen = [&]<class M>() {
+    const std::string channel(ChannelOf<M>().name);
+    bus.Subscribe(channel, [&received, &undecodable, channel](runtime::Bytes bytes) {
+      received[channel].emplace_back(bytes.begin(), bytes.end());
+      M message{};
+      if (!runtime::Decode(bytes, message)) ++undecodable[channel];
+    });
+  };
+  listen.operator()<run_t>();
+  ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
+  bool ended = false;
+  bus.Subscribe("END", [&ended](runtime::Bytes) { ended = true; });
+  // WHEN lcm-logplayer plays it, 25 times as fast as the 50 s that its event times span
+  Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
+  ASSERT_EQ(player.Wait(), 0) << player.Err();
+  ASSERT_TRUE(Mark(bus, "END", [&] {
+    bus.Drain();
+    return ended;
+  }));
+  // THEN every message has arrived, in order, and decodes
+  Traffic logged = ReadTraffic(log);
+  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);  // no process sends it
+  EXPECT_TRUE(received == logged);
+  EXPECT_EQ(received["TRUTH"].size(), 500U);
+  EXPECT_TRUE(undecodable.empty());
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: the peak memory of a sweep of RUNS runs
+# is at most a fifth above that of 1,000 runs.
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+fogline=$1
+runs=$2
+shift 2
+# tools/test removes what killed tests have left in this folder.
+scratch="$(dirname "$fogline")/../Testing/tmp"
+mkdir -p "$scratch"
+folder=$(mktemp -d "$scratch/memory-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+
+# Prints the peak resident memory in KiB. The policy lets only the automation drive, so each row is
+# one run.
+peak() {
+  /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
+    --set /arbitrator/policy=none --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2
+  [ "$(wc -l <"$folder/$1.csv")" -eq $(($1 + 1)) ]
+  cat "$folder/peak"
+}
+few=$(peak 1000 "$@")
+many=$(peak "$runs" "$@")
+echo "peak memory: 1000 runs $few KiB, $runs runs $many KiB"
+[ "$few" -gt 0 ] && [ $((5 * many)) -le $((6 * few)) ]
