@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/campaign/browser/browser.h"
-#include "tests/unit/report/example_curves.h"
-#include "tests/unit/report/example_runs.h"
+#include "tests/unit/tools/report/example_curves.h"
+#include "tests/unit/tools/report/example_runs.h"
 #include "tools/report/report.h"
 
 namespace fogline {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/campaign/browser/browser.h"
-#include "tests/unit/report/example_runs.h"
+#include "tests/unit/tools/report/example_runs.h"
 #include "tools/report/figures.h"
 #include "tools/report/report.h"
 

@@ -1,7 +1,7 @@
 // Prints the digest of every shipped scenario with every fog model: "paper none 63a1...".
 #include <cstdio>
 
-#include "tests/property/metrics/closed_loop/shipped.h"
+#include "tests/property/services/metrics/closed_loop/shipped.h"
 
 int main() {
   using namespace fogline;

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "services/acc/acc_controller.h"
+#include "tests/property/services/acc/draw.h"
+#include "tests/property/services/acc/random_problems.h"
+#include "tests/unit/services/acc/two_cars.h"
+
+namespace fogline {
+namespace {
+
+using Solver = acc::AccController::Solver;
+
+constexpr double kTolerance = 1e-9;
+
+// From calm to hopeless situations. The speed is logarithmic, so slow cars are as frequent as fast
+// ones.
+acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
+  const double scale = draw.LogUniform(0.01, 1);
+  const double speed = draw.LogUniform(0.5, 55);
+  return {.distance_m =
+              std::max(0.0, acc::SafeDistance(section, speed) + scale * draw.Uniform(-60, 60)),
+          .relative_speed_mps = scale * draw.Uniform(-20, 20),
+          .speed_mps = speed,
+          .acceleration_mps2 = scale * draw.Uniform(-9, 6),
+          .has_target = true};
+}
+
+// The control from which a new controller counts its first change.
+double PreviousControl(const AccSection& section, double acceleration_mps2) {
+  return std::clamp(-acceleration_mps2 / section.engine_gain,
+                    -section.max_acceleration_mps2 / section.engine_gain,
+                    -section.min_acceleration_mps2 / section.engine_gain);
+}
+
+// Calls `check` with a section, a step, an input, the controller, and its first answer to the
+// input.
+template <class Check>
+void ForRandomSituations(std::int64_t seed, Check&& check) {
+  Draw draw(seed);
+  for (int i = 0; i < 400; ++i) {
+    const AccSection section = RandomSection(draw);
+    const double step_s = RandomStep(draw);
+    for (int k = 0; k < 5; ++k) {
+      SCOPED_TRACE(testing::Message() << "section " << i << " situation " << k);
+      acc::AccController acc(section, step_s);
+      const acc::AccController::Input input = RandomInput(draw, section);
+      const acc::AccController::Output output = acc.Step(input);
+      check(section, step_s, input, acc, output);
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
+  int on_limits = 0;
+  ForRandomSituations(1, [&](const auto&, double, const auto&, const auto&, const auto& output) {
+    ASSERT_NE(output.solver, Solver::kFallback);
+    if (output.solver == Solver::kActiveSet) ++on_limits;
+  });
+  EXPECT_GT(on_limits, 500);
+  EXPECT_LT(on_limits, 1900);
+}
+
+TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
+  ForRandomSituations(2, [](const AccSection& section, double step_s, const auto& input,
+                            const acc::AccController& acc, const auto& output) {
+    const double change = section.max_jerk_mps3 * step_s / section.engine_gain;
+    double previous = PreviousControl(section, input.acceleration_mps2);
+    for (const double u : acc.plan()) {
+      EXPECT_GE(-section.engine_gain * u, section.min_acceleration_mps2 - kTolerance);
+      EXPECT_LE(-section.engine_gain * u, section.max_acceleration_mps2 + kTolerance);
+      EXPECT_LE(std::abs(u - previous), change + kTolerance);
+      previous = u;
+    }
+    EXPECT_EQ(output.control, acc.plan().front());
+  });
+}
+
+// The highest speed that the car reaches or would settle at during the fall-back plan.
+double HighestInFallback(const AccSection& section, double step_s,
+                         const acc::AccController::Input& input) {
+  const acc::AccProgram program(section, step_s);
+  double settled = input.speed_mps + section.engine_time_constant_s * input.acceleration_mps2;
+  double highest = std::max(input.speed_mps, settled);
+  double control = PreviousControl(section, input.acceleration_mps2);
+  for (std::int64_t j = 0; j < section.horizon_steps; ++j) {
+    control = program.FallbackControl(control);
+    settled -= section.engine_gain * control * step_s;
+    highest = std::max(highest, settled);
+  }
+  return highest;
+}
+
+// The test computes speeds by the written-out integrals of the model, also in the middle of each
+// step.
+TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
+  int close = 0;
+  ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,
+                             const acc::AccController& acc, const auto&) {
+    if (HighestInFallback(section, step_s, input) > section.max_speed_mps) return;
+    const double tau = section.engine_time_constant_s;
+    double speed = input.speed_mps;
+    double acceleration = input.acceleration_mps2;
+    for (const double u : acc.plan()) {
+      for (int half = 0; half < 2; ++half) {
+        const double share = -std::expm1(-step_s / 2 / tau);
+        const double steady = -section.engine_gain * u;
+        speed += steady * step_s / 2 + (acceleration - steady) * tau * share;
+        acceleration += (steady - acceleration) * share;
+        EXPECT_LE(speed, section.max_speed_mps + kTolerance);
+        if (speed > section.max_speed_mps - 0.1) ++close;
+      }
+    }
+  });
+  EXPECT_GT(close, 100) << "the limit must matter";
+}
+
+TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
+  int faster = 0;
+  ForRandomSituations(4, [&](const AccSection& section, double step_s, const auto& input,
+                             const acc::AccController& acc, const auto&) {
+    const acc::AccProgram program(section, step_s);
+    double settled = input.speed_mps + section.engine_time_constant_s * input.acceleration_mps2;
+    if (settled <= section.max_speed_mps) return;
+    ++faster;
+    double fallback = settled;
+    double control = PreviousControl(section, input.acceleration_mps2);
+    for (const double u : acc.plan()) {
+      control = program.FallbackControl(control);
+      fallback -= section.engine_gain * control * step_s;
+      settled -= section.engine_gain * u * step_s;
+      EXPECT_LE(settled, std::max(section.max_speed_mps, fallback) + kTolerance);
+    }
+  });
+  EXPECT_GT(faster, 100);
+}
+
+// The controller takes the precomputed gain only if the plan also keeps the soft limits.
+TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
+  int close = 0;
+  ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
+                             const acc::AccController& acc, const auto& output) {
+    if (output.solver != Solver::kUnconstrained) return;
+    const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), step_s);
+    const double preceding = input.speed_mps + input.relative_speed_mps;
+    Eigen::Vector3d x(input.distance_m - acc::SafeDistance(section, input.speed_mps),
+                      input.relative_speed_mps, input.acceleration_mps2);
+    for (const double u : acc.plan()) {
+      x = model.phi * x + model.gamma * u;
+      const double speed = preceding - x(acc::kDeltaV);
+      const double gap = x(acc::kDeltaD) + acc::SafeDistance(section, speed);
+      EXPECT_GE(gap, section.min_gap_m - kTolerance);
+      EXPECT_GE(speed + section.engine_time_constant_s * x(acc::kOwnAcceleration), -kTolerance);
+      if (gap < section.min_gap_m + 1) ++close;
+    }
+  });
+  EXPECT_GT(close, 10) << "the limit must matter";
+}
+
+TEST(AccControllerPropertyTest, TheCommandGoesOnFromTheRealAcceleration) {
+  ForRandomSituations(6, [](const AccSection& section, double step_s, const auto& input,
+                            const auto&, const auto& output) {
+    const double a = input.acceleration_mps2;
+    const double outside =
+        std::abs(a - std::clamp(a, section.min_acceleration_mps2, section.max_acceleration_mps2));
+    const double share = -std::expm1(-step_s / section.engine_time_constant_s);
+    EXPECT_LE(std::abs(output.acceleration_mps2 - a),
+              share * (section.max_jerk_mps3 * step_s + outside) + kTolerance);
+  });
+}
+
+// The leader drives at any time as the automation itself may drive.
+TEST(AccControllerPropertyTest, NeverHitsALeaderThatBrakesNoHarderThanItself) {
+  Draw draw(7);
+  const AccSection section;
+  for (int i = 0; i < 50; ++i) {
+    const double speed = draw.Uniform(5, 35);
+    TwoCars cars{.gap_m = acc::SafeDistance(section, speed),
+                 .preceding_speed_mps = speed,
+                 .speed_mps = speed};
+    acc::AccController acc(section, cars.step_s);
+    double acceleration = 0;
+    for (int k = 0; k < 600; ++k) {
+      if (draw.Chance(0.03)) acceleration = draw.Uniform(section.min_acceleration_mps2, 2);
+      if (cars.preceding_speed_mps > 38) acceleration = std::min(acceleration, 0.0);
+      const acc::AccController::Output output = acc.Step(cars.Sense());
+      ASSERT_NE(output.solver, Solver::kFallback) << i << " " << k;
+      cars.Advance(output.acceleration_mps2, acceleration);
+      ASSERT_GT(cars.gap_m, 0) << "run " << i << " step " << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,61 @@
+// Checks that no conflict measure allocates memory in a step, with any rule for missing values. It
+// is a separate program because it replaces operator new. It prints the measures that allocate, and
+// exits with 1 if there are any.
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "services/decision/conflict/conflict_measures.h"
+#include "tests/unit/services/decision/conflict/evidence.h"
+
+namespace {
+long allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* block = std::malloc(size)) return block;
+  throw std::bad_alloc();
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+
+namespace fogline {
+namespace {
+
+constexpr int kSteps = 1000;
+
+// Whether any measure of these rows allocates in a step; prints those that do.
+template <class Row>
+bool Allocates(std::span<const Row> rows, const conflict::ConflictParameters& parameters) {
+  const Random random(1, Stream::kRadar);
+  bool any = false;
+  for (const Row& row : rows) {
+    const auto measure = row.make(parameters);
+    const long before = allocations;
+    for (int step = 0; step < kSteps; ++step) measure->Step(Anything(random, step));
+    measure->Reset();
+    const long made = allocations - before;
+    if (made > 0) std::printf("%s: %ld allocations\n", row.name.data(), made);
+    any = any || made > 0;
+  }
+  return any;
+}
+
+bool Check() {
+  bool any = false;
+  for (const auto rule : {MissingLidar::kHold, MissingLidar::kSkip, MissingLidar::kConflict}) {
+    conflict::ConflictParameters parameters;
+    parameters.missing = rule;
+    any = Allocates(conflict::ConflictMeasures(), parameters) || any;
+    any = Allocates(conflict::BlameMeasures(), parameters) || any;
+  }
+  // Measures are made on the heap, so without any allocation the counter itself would be broken.
+  return !any && allocations > 0;
+}
+
+}  // namespace
+}  // namespace fogline
+
+int main() { return fogline::Check() ? 0 : 1; }

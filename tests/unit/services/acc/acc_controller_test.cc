@@ -1,0 +1,286 @@
+#include "services/acc/acc_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include "common/errors.h"
+#include "tests/unit/services/acc/two_cars.h"
+
+namespace fogline {
+namespace {
+
+using Solver = acc::AccController::Solver;
+
+constexpr double kStep = 0.1;
+// A car at 20 m/s has a safe distance of 33 m with the default section.
+constexpr double kSpeed = 20;
+constexpr double kSafe = 33;
+
+// Extremes and the end of a run of the closed loop.
+struct Trip {
+  TwoCars cars;
+  double smallest_gap_m = 1e9;
+  double smallest_delta_d_m = 1e9;
+  double largest_delta_d_m = -1e9;
+  double fastest_mps = 0;
+  int fallbacks = 0;
+  double largest_control_change = 0;
+};
+
+Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_mps2 = 0) {
+  acc::AccController acc(section, kStep);
+  Trip trip{.cars = cars};
+  double previous = std::nan("");
+  for (int k = 0; k < steps; ++k) {
+    const acc::AccController::Output output = acc.Step(trip.cars.Sense());
+    if (output.solver == Solver::kFallback) ++trip.fallbacks;
+    if (k > 0) {
+      const double change = std::abs(output.control - previous);
+      trip.largest_control_change = std::max(trip.largest_control_change, change);
+    }
+    previous = output.control;
+    trip.cars.Advance(output.acceleration_mps2, preceding_mps2);
+    const double delta_d = trip.cars.gap_m - acc::SafeDistance(section, trip.cars.speed_mps);
+    trip.smallest_gap_m = std::min(trip.smallest_gap_m, trip.cars.gap_m);
+    trip.smallest_delta_d_m = std::min(trip.smallest_delta_d_m, delta_d);
+    trip.largest_delta_d_m = std::max(trip.largest_delta_d_m, delta_d);
+    trip.fastest_mps = std::max(trip.fastest_mps, trip.cars.speed_mps);
+  }
+  return trip;
+}
+
+TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
+  acc::AccController acc(AccSection{}, kStep);
+  TwoCars cars{.gap_m = kSafe + 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+  const acc::AccController::Output output = acc.Step(cars.Sense());
+  EXPECT_GT(output.acceleration_mps2, 0);
+  EXPECT_LT(output.control, 0);  // a positive u decelerates
+  const Trip trip = Drive(AccSection{}, cars, 50);
+  EXPECT_GT(trip.fastest_mps, kSpeed);
+  EXPECT_LT(trip.cars.gap_m, cars.gap_m);
+}
+
+TEST(AccControllerTest, DeceleratesWhenTheGapIsTooSmall) {
+  acc::AccController acc(AccSection{}, kStep);
+  const TwoCars cars{.gap_m = kSafe - 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+  const acc::AccController::Output output = acc.Step(cars.Sense());
+  EXPECT_LT(output.acceleration_mps2, 0);
+  EXPECT_GT(output.control, 0);
+  EXPECT_GT(Drive(AccSection{}, cars, 50).cars.gap_m, cars.gap_m);
+}
+
+TEST(AccControllerTest, DoesNothingAtTheSafeDistance) {
+  acc::AccController acc(AccSection{}, kStep);
+  const TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+  const acc::AccController::Output output = acc.Step(cars.Sense());
+  EXPECT_EQ(output.acceleration_mps2, 0);
+  EXPECT_EQ(output.safe_distance_m, kSafe);
+  EXPECT_EQ(output.solver, Solver::kUnconstrained);
+}
+
+TEST(AccControllerTest, ConvergesToTheSafeDistance) {
+  for (const double gap_m : {10.0, 25.0, 40.0, 80.0}) {
+    for (const double speed_mps : {14.0, 20.0, 26.0}) {
+      const TwoCars cars{.gap_m = gap_m, .preceding_speed_mps = kSpeed, .speed_mps = speed_mps};
+      const Trip trip = Drive(AccSection{}, cars, 600);
+      EXPECT_NEAR(trip.cars.gap_m, kSafe, 0.01) << gap_m << " m, " << speed_mps << " m/s";
+      EXPECT_NEAR(trip.cars.speed_mps, kSpeed, 0.01) << gap_m << " m, " << speed_mps << " m/s";
+      EXPECT_EQ(trip.fallbacks, 0);
+    }
+  }
+}
+
+// The gap returns to the safe distance and overshoots by at most this much.
+TEST(AccControllerTest, HardlyOvershootsTheSafeDistance) {
+  constexpr double kOvershoot = 0.05;  // m
+  for (const double error_m : {-18.0, -5.0, -0.5}) {
+    const Trip trip = Drive(AccSection{}, {kSafe + error_m, kSpeed, kSpeed}, 600);
+    EXPECT_LE(trip.largest_delta_d_m, kOvershoot) << error_m;
+  }
+  for (const double error_m : {0.5, 5.0, 27.0}) {
+    const Trip trip = Drive(AccSection{}, {kSafe + error_m, kSpeed, kSpeed}, 600);
+    EXPECT_GE(trip.smallest_delta_d_m, -kOvershoot) << error_m;
+  }
+}
+
+TEST(AccControllerTest, NeverChangesItsControlFasterThanAllowed) {
+  const AccSection section;
+  const double largest = section.max_jerk_mps3 * kStep / section.engine_gain;
+  for (const double gap_m : {5.0, 15.0, 100.0}) {
+    const Trip trip = Drive(section, {gap_m, kSpeed, kSpeed}, 300);
+    EXPECT_LE(trip.largest_control_change, largest + 1e-9) << gap_m;
+    EXPECT_GT(trip.largest_control_change, 0.5 * largest) << gap_m << ": this one asks for little";
+  }
+}
+
+TEST(AccControllerTest, StopsBehindACarThatBrakesToAStandstill) {
+  const AccSection section;
+  const Trip trip = Drive(section, {kSafe, kSpeed, kSpeed}, 600, -3);
+  EXPECT_GE(trip.smallest_gap_m, section.min_gap_m);
+  EXPECT_NEAR(trip.cars.speed_mps, 0, 0.01);
+  EXPECT_NEAR(trip.cars.gap_m, section.standstill_m, 0.01);
+  EXPECT_EQ(trip.fallbacks, 0);
+}
+
+TEST(AccControllerTest, TheMinimumGapOverrulesTheSafeDistance) {
+  // GIVEN a safe distance of 8 m at 12 m/s, but a minimum gap of 10 m
+  AccSection section;
+  section.headway_s = 0.5;
+  section.standstill_m = 2;
+  section.min_gap_m = 10;
+  for (const double gap_m : {6.0, 8.0, 15.0}) {
+    const Trip trip = Drive(section, {gap_m, 12, 12}, 300);
+    // THEN the minimum gap holds in the end, up to some centimetres because its limit is soft
+    EXPECT_NEAR(trip.cars.gap_m, section.min_gap_m, 0.05) << gap_m;
+    EXPECT_NEAR(trip.cars.speed_mps, 12, 1e-3) << gap_m;
+    EXPECT_GE(trip.smallest_gap_m, std::min(gap_m, section.min_gap_m) - 0.05) << gap_m;
+  }
+}
+
+TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
+  const AccSection section;
+  acc::AccController acc(section, kStep);
+  const TwoCars cars{.gap_m = 1, .preceding_speed_mps = 0, .speed_mps = 0};
+  for (int k = 0; k < 20; ++k) EXPECT_LE(acc.Step(cars.Sense()).acceleration_mps2, 0);
+}
+
+TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
+  const AccSection section;
+  const Trip trip = Drive(section, {200, 45, 30}, 600);
+  // The plan keeps the limit exactly. But the car holds a command for a whole step, which the
+  // engine of the model reaches only gradually.
+  EXPECT_LE(trip.fastest_mps, section.max_speed_mps + 1e-3);
+  EXPECT_NEAR(trip.cars.speed_mps, section.max_speed_mps, 1e-3);
+  EXPECT_EQ(trip.fallbacks, 0);
+}
+
+TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
+  const AccSection section;
+  // GIVEN a car that its driver has made 4 m/s too fast, and that still accelerates
+  const Trip trip = Drive(section, {200, 45, 44, 1.0}, 100);
+  // THEN it brakes back to the limit as in a fallback, but without one
+  EXPECT_LE(trip.cars.speed_mps, section.max_speed_mps + 1e-3);
+  EXPECT_EQ(trip.fallbacks, 0);
+}
+
+TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
+  const AccSection section;
+  acc::AccController acc(section, kStep);
+  TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+  for (int k = 0; k < 40; ++k) {
+    acc::AccController::Input input = cars.Sense();
+    input.has_target = false;
+    const acc::AccController::Output output = acc.Step(input);
+    EXPECT_EQ(output.solver, Solver::kFallback);
+    EXPECT_EQ(output.safe_distance_m, acc::SafeDistance(section, cars.speed_mps));
+    EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep);
+    cars.Advance(output.acceleration_mps2);
+  }
+  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 remains
+}
+
+TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
+  acc::AccController one(AccSection{}, kStep);
+  acc::AccController other(AccSection{}, kStep);
+  const acc::AccController::Input input{.distance_m = 0,
+                                        .relative_speed_mps = 0,
+                                        .speed_mps = kSpeed,
+                                        .acceleration_mps2 = 0,
+                                        .has_target = false};
+  acc::AccController::Input far = input;
+  far.distance_m = 100;
+  far.relative_speed_mps = 5;
+  EXPECT_EQ(one.Step(input).acceleration_mps2, other.Step(far).acceleration_mps2);
+}
+
+TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
+  AccSection section;
+  section.max_iterations = 1;
+  acc::AccController acc(section, kStep);
+  // GIVEN a situation in which the hardest braking has many active limits
+  const acc::AccController::Output output = acc.Step({.distance_m = 10,
+                                                      .relative_speed_mps = -10,
+                                                      .speed_mps = kSpeed,
+                                                      .acceleration_mps2 = 0,
+                                                      .has_target = true});
+  // THEN the command is the first step of the fall-back plan
+  EXPECT_EQ(output.solver, Solver::kFallback);
+  EXPECT_EQ(output.iterations, 1);
+  EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep / section.engine_gain);
+}
+
+// The car may have any acceleration a when the automation takes over from a driver. Within the step
+// the engine goes (1 - e^(-h/T_e)) of its way towards -K_e u. And -K_e u differs from a by one
+// change of u, and by the part of a that is outside of the automation's limits.
+TEST(AccControllerTest, TakesOverWithoutABump) {
+  const AccSection section;
+  const double share = -std::expm1(-kStep / section.engine_time_constant_s);
+  for (double a = -8; a <= 5; a += 0.25) {
+    for (const double gap_m : {10.0, 33.0, 90.0}) {
+      // GIVEN an ACC that had no effect on the car for a while
+      acc::AccController acc(section, kStep);
+      TwoCars cars{.gap_m = gap_m, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+      for (int k = 0; k < 10; ++k) acc.Step(cars.Sense());
+      // WHEN the driver accelerates or brakes
+      cars.acceleration_mps2 = a;
+      const double offered = acc.Step(cars.Sense()).acceleration_mps2;
+      // THEN the automation continues from this acceleration
+      const double outside =
+          std::abs(a - std::clamp(a, section.min_acceleration_mps2, section.max_acceleration_mps2));
+      EXPECT_LE(std::abs(offered - a), share * (section.max_jerk_mps3 * kStep + outside) + 1e-9)
+          << "a " << a << " gap " << gap_m;
+    }
+  }
+}
+
+TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLeftBehind) {
+  AccSection section;
+  section.engine_gain = 0.732;
+  acc::AccController acc(section, kStep);
+  TwoCars cars{.gap_m = 100, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
+  // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
+  for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
+  cars.acceleration_mps2 = -1;
+  // THEN the control begins at the value that would hold this acceleration, and changes at its
+  // fastest rate
+  const double change = section.max_jerk_mps3 * kStep / section.engine_gain;
+  EXPECT_NEAR(acc.Step(cars.Sense()).control, 1 / section.engine_gain - change, 1e-9);
+}
+
+TEST(AccControllerTest, EqualInputsGiveEqualBits) {
+  acc::AccController one(AccSection{}, kStep);
+  acc::AccController other(AccSection{}, kStep);
+  TwoCars cars{.gap_m = 15, .preceding_speed_mps = 12, .speed_mps = kSpeed};
+  for (int k = 0; k < 300; ++k) {
+    const acc::AccController::Output a = one.Step(cars.Sense());
+    const acc::AccController::Output b = other.Step(cars.Sense());
+    ASSERT_EQ(a.acceleration_mps2, b.acceleration_mps2) << k;
+    ASSERT_EQ(a.control, b.control) << k;
+    ASSERT_EQ(a.iterations, b.iterations) << k;
+    cars.Advance(a.acceleration_mps2, std::sin(0.1 * k));
+  }
+}
+
+TEST(AccControllerTest, RefusesWeightsThatMakeAnIllConditionedProblem) {
+  AccSection section;
+  section.horizon_steps = 60;
+  section.headway_s = 0;
+  section.engine_gain = 10;
+  section.weight_distance = 1e6;
+  section.weight_speed = 0;
+  section.weight_acceleration = 0;
+  section.weight_control = 1e-6;
+  section.weight_control_change = 0;
+  try {
+    acc::AccController acc(section, 1.0);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("raise weight_control"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,214 @@
+// Which processes take part in a run.
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "services/runtime/coordination/run_coordinator.h"
+#include "tests/unit/services/runtime/coordination/coordinator_fixture.h"
+
+namespace fogline {
+namespace {
+
+using test::RunCoordinatorTest;
+using test::Script;
+using testing::HasSubstr;
+
+TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
+  coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
+  // The next process of the role may have the same process id. Its STATUS counts.
+  coordinator_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  SayStatus(Role::kFusion);
+  EXPECT_TRUE(coordinator_.member(Role::kFusion).status);
+}
+
+TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
+  using testing::ElementsAre;
+  using testing::IsEmpty;
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .stall_limit = milliseconds(60'000),
+                                                      .external = {Role::kDriver, Role::kAcc}});
+  const TimePoint now = Clock::now();
+  EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kAcc, Role::kDriver));
+  SayStatus(Role::kAcc);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
+  BeAtStep(-1);
+  EXPECT_THAT(coordinator.Awaited(now), IsEmpty());
+  // WHEN none of them is heard for more than a second of the run
+  const TimePoint later = Clock::now() + milliseconds(1200);
+  PollUntil(coordinator, later);
+  EXPECT_THAT(coordinator.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
+}
+
+TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
+  BeAtStep(-1);
+  const status_t first = role(Role::kAcc);
+  Replace(Role::kAcc);
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
+      << "the first may be dead";
+  // WHEN the first speaks long after the second has come
+  const TimePoint end = Clock::now() + milliseconds(120);
+  while (Clock::now() < end) Poll(Clock::now());
+  role(Role::kAcc) = first;
+  SayStatus(Role::kAcc);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
+  EXPECT_THAT(coordinator_.error(), HasSubstr("two processes are the acc: pid 104 on "));
+  EXPECT_THAT(coordinator_.error(), HasSubstr(" and pid 1104 on "));
+}
+
+/// A run whose driver is started elsewhere.
+class ExternalDriverTest : public RunCoordinatorTest {
+ protected:
+  /// The instance that the run names as its driver.
+  std::int64_t Holder() {
+    PassTime(milliseconds(300));  // it repeats itself in less
+    script_.bus().Drain();
+    EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
+    return said_.back().holder.at(0);
+  }
+  /// Lets time pass for the runner.
+  void PassTime(milliseconds time) {
+    PollUntil(external_, Clock::now() + later_ + time);
+    later_ += time;
+  }
+  status_t OtherDriver() {
+    status_t other = role(Role::kDriver);
+    other.instance += 1000;
+    other.pid += 1000;
+    other.state = status_t::READY;
+    return other;
+  }
+
+  runtime::RunCoordinator external_{script_.bus(),
+                                    {.run_id = Script::kRunId,
+                                     .scenario_text = script_.text(),
+                                     .stall_limit = milliseconds(60'000),
+                                     .external = {Role::kDriver},
+                                     .restarts = 10}};
+  Duration later_{};
+};
+
+TEST_F(ExternalDriverTest, HasItsPlaceFromItsFirstWordUntilItIsSilent) {
+  EXPECT_EQ(Holder(), 0);
+  role(Role::kDriver).state = status_t::WAITING;
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  PassTime(milliseconds(1100));
+  EXPECT_EQ(Holder(), 0);
+  EXPECT_EQ(said_.back().stall_ms, 60'000);
+}
+
+TEST_F(ExternalDriverTest, IsOneWhenTheOtherLeavesThatHearsSo) {
+  BeAtStep(-1);
+  status_t other = OtherDriver();
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE) << "two of them: the run does not begin";
+  other.state = status_t::LEFT;
+  ++other.sequence;
+  script_.Say(other);
+  EXPECT_EQ(Holder(), role(Role::kDriver).instance);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  EXPECT_EQ(external_.member(Role::kDriver).replaced, 0);
+}
+
+TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
+  BeAtStep(-1);
+  role(Role::kDriver).state = status_t::LEFT;
+  role(Role::kDriver).error = "went to run 8";
+  SayStatus(Role::kDriver);
+  EXPECT_EQ(Holder(), 0);
+  script_.Say(OtherDriver());
+  EXPECT_EQ(Holder(), OtherDriver().instance);
+}
+
+/// The same with real time, because the coordinator takes the time of each message from the clock.
+class StrayWordTest : public ExternalDriverTest {
+ protected:
+  /// Publishes a STATUS of this process every 100 ms. It is the driver, or a process that has the
+  /// driver's place.
+  void SpeakFor(milliseconds time, status_t& who) {
+    for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
+      Say(who);
+      for (const TimePoint next = Clock::now() + milliseconds(100); Clock::now() < next;) {
+        external_.Poll(Clock::now());
+        script_.bus().Wait(milliseconds(10));
+      }
+    }
+  }
+  void Say(status_t& who) {
+    ++who.sequence;
+    script_.Say(who);
+  }
+};
+
+TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
+  BeAtStep(-1);
+  status_t& driver = role(Role::kDriver);
+  status_t other = OtherDriver();
+  Say(other);
+  SpeakFor(milliseconds(1300), driver);
+  Say(other);
+  EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
+  // The run fails if the rival goes on.
+  for (int i = 0; i < 12; ++i) {
+    Say(other);
+    SpeakFor(milliseconds(100), driver);
+  }
+  EXPECT_THAT(external_.error(), HasSubstr("two processes are the driver: "));
+}
+
+TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
+  BeAtStep(-1);
+  status_t& dead = role(Role::kDriver);
+  status_t other = OtherDriver();
+  // GIVEN a driver that is replaced when it was silent for a second
+  while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
+  SpeakFor(milliseconds(200), other);
+  Say(dead);
+  SpeakFor(milliseconds(1300), other);
+  Say(dead);
+  EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
+}
+
+TEST_F(RunCoordinatorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
+  runtime::RoleBuilds builds;
+  builds.fill(4711);
+  for (const bool wanted : {false, true}) {
+    runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                        .scenario_text = script_.text(),
+                                                        .builds = builds,
+                                                        .same_build = wanted});
+    role(Role::kAcc).build_id = 4711;
+    SayStatus(Role::kAcc);
+    EXPECT_EQ(coordinator.phase(), runtime::RunCoordinator::Phase::kJoining) << coordinator.error();
+    role(Role::kDriver).build_id = 17;
+    SayStatus(Role::kDriver);
+    EXPECT_EQ(coordinator.phase() == runtime::RunCoordinator::Phase::kFailed, wanted)
+        << coordinator.error();
+    if (!wanted) continue;
+    EXPECT_THAT(coordinator.error(), HasSubstr("driver (pid "));
+    EXPECT_THAT(coordinator.error(),
+                HasSubstr(" is of build 0000000000000011, that of the runner is "
+                          "0000000000001267 (--same-build)"));
+  }
+}
+
+TEST_F(RunCoordinatorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) {
+  runtime::RoleBuilds builds;
+  builds.fill(4711);
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .builds = builds,
+                                                      .same_build = true});
+  SayStatus(Role::kDriver);
+  EXPECT_THAT(coordinator.error(), HasSubstr("does not say of which build it is (--same-build)"));
+}
+
+}  // namespace
+}  // namespace fogline

@@ -1,0 +1,258 @@
+#include "services/runtime/coordination/run_coordinator.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/unit/services/runtime/coordination/coordinator_fixture.h"
+
+namespace fogline {
+namespace {
+
+using test::RunCoordinatorTest;
+using test::Script;
+using testing::HasSubstr;
+
+TEST_F(RunCoordinatorTest, SaysPrepareUntilEveryRoleIsReadyAndThenGo) {
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE);
+  EXPECT_EQ(said_.back().progress, -1);
+  BeAtStep(-1);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+}
+
+TEST_F(RunCoordinatorTest, TellsARoleThatJoinsHowFarTheRunIs) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  role(Role::kRecorder).header.step = 48;
+  SayStatus(Role::kRecorder);
+  Poll(Clock::now() + milliseconds(300));
+  EXPECT_EQ(said_.back().progress, 48);
+  EXPECT_EQ(coordinator_.step(), 48);
+}
+
+TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  // WHEN the fusion has died
+  coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::PREPARE);
+  EXPECT_EQ(said_.back().progress, 40);
+  // AND its last STATUS comes late, THEN this STATUS does not count
+  SayStatus(Role::kFusion);
+  Poll(Clock::now());
+  EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
+  // WHEN the next process is there
+  Replace(Role::kFusion);
+  SayStatus(Role::kFusion);
+  Poll(Clock::now());
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
+}
+
+TEST_F(RunCoordinatorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
+  role(Role::kFusion).repairs_asked = 3;
+  BeAtStep(-1);
+  coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  role(Role::kFusion).repairs_asked = 4;
+  SayStatus(Role::kFusion);
+  EXPECT_EQ(coordinator_.Total(&status_t::repairs_asked), 7);
+}
+
+TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  PollUntil(coordinator_, Clock::now() + milliseconds(3900));
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
+  coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  for (const std::int64_t step : {-1, 10, 20}) {
+    role(Role::kFusion).header.step = step;
+    SayStatus(Role::kFusion);
+  }
+  PollUntil(coordinator_, Clock::now() + milliseconds(3900));
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.step(), 40) << "the step of the run, not of the role that catches up";
+  PollUntil(coordinator_, Clock::now() + milliseconds(4100));
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
+}
+
+TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  const TimePoint again = Clock::now() + milliseconds(5000);
+  Poll(again);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
+  EXPECT_GE(coordinator_.TakeLongestPause(), milliseconds(4900));
+  EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
+  // The silence after the pause counts.
+  for (TimePoint now = again; now < again + milliseconds(3990); now += milliseconds(20)) {
+    coordinator_.Poll(now);
+  }
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
+  coordinator_.Poll(again + milliseconds(4010));
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
+}
+
+TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  // GIVEN a runner that looks for a second, and is held up for 0.6 s, again and again
+  const TimePoint began = Clock::now();
+  TimePoint now = began;
+  Duration looked{};
+  while (coordinator_.phase() == runtime::RunCoordinator::Phase::kRunning &&
+         now < began + milliseconds(20'000)) {
+    const Duration away =
+        looked % milliseconds(1000) == Duration::zero() ? milliseconds(600) : milliseconds(20);
+    now += away;
+    looked += milliseconds(20);
+    coordinator_.Poll(now);
+  }
+  // THEN the four seconds in which it looked count
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
+  EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
+}
+
+TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
+  runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
+                                                .scenario_text = script_.text(),
+                                                .stall_limit = milliseconds(100)});
+  BeAtStep(-1);
+  hasty.Poll(Clock::now());
+  // GIVEN that every role waits for another one
+  const auto wait = [this](Role who, std::int64_t next, const char* channel, std::int64_t heard) {
+    role(who).header.step = next - 1;
+    role(who).waiting_for = channel;
+    role(who).last_heard_step = heard;
+    SayStatus(who);
+  };
+  wait(Role::kWorld, 8, "HOST_COMMAND", 6);
+  wait(Role::kArbitrator, 7, "DRIVER_COMMAND", 6);
+  // WHEN the driver lacks a message that the arbitrator has sent before
+  wait(Role::kDriver, 7, "HOST_COMMAND", 5);
+  hasty.Poll(Clock::now() + milliseconds(150));
+  EXPECT_THAT(
+      hasty.error(),
+      HasSubstr("step 7: driver waits for HOST_COMMAND from arbitrator (last heard: step 5"));
+}
+
+TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .steps = 500,
+                                                      .pace = 1,
+                                                      .realtime = true,
+                                                      .period = std::chrono::hours(1)});
+  const auto say = [&](std::int64_t step) {
+    role(Role::kRadar).header.step = step;
+    SayStatus(Role::kRadar);
+    coordinator.Poll(Clock::now());
+  };
+  BeAtStep(-1);
+  say(400);
+  EXPECT_EQ(coordinator.step(), -1);
+  say(std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(coordinator.step(), -1);
+  say(1);
+  EXPECT_EQ(coordinator.step(), 1);
+}
+
+TEST_F(RunCoordinatorTest, SaysWithTheCulpritWhyItCannotBeStartedAgain) {
+  runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
+                                                .scenario_text = script_.text(),
+                                                .stall_limit = milliseconds(100)});
+  BeAtStep(-1);
+  hasty.Poll(Clock::now());
+  hasty.MarkDead(Role::kWorld, role(Role::kWorld).pid, Clock::now());
+  hasty.Hinder(Role::kWorld, "cannot start fogline-world: Resource temporarily unavailable");
+  hasty.Poll(Clock::now() + milliseconds(150));
+  EXPECT_THAT(hasty.error(), HasSubstr("world is silent"));
+  EXPECT_THAT(hasty.error(),
+              HasSubstr("; cannot start fogline-world: Resource temporarily unavailable"));
+}
+
+TEST_F(RunCoordinatorTest, TellsWhatRolesCouldNotSendTheDeadIncluded) {
+  role(Role::kFusion).sends_failed = 3;
+  role(Role::kFusion).send_error = "Operation not permitted";
+  BeAtStep(-1);
+  coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
+  Replace(Role::kFusion);
+  role(Role::kFusion).sends_failed = 4;
+  role(Role::kFusion).send_error = "Network is unreachable";
+  SayStatus(Role::kFusion);
+  const std::vector<runtime::SendTrouble> troubles = coordinator_.SendTroubles();
+  ASSERT_EQ(troubles.size(), 1U);
+  EXPECT_EQ(troubles[0].role, "fusion");
+  EXPECT_EQ(troubles[0].count, 7);
+  EXPECT_EQ(troubles[0].error, "Network is unreachable");
+  coordinator_.Fail("the error");
+  EXPECT_EQ(coordinator_.error(),
+            "the error\n  messages that could not be sent: fusion 7 (Network is unreachable)");
+}
+
+TEST_F(RunCoordinatorTest, CountsWhatItRefusesItself) {
+  auto foreign = role(Role::kRadar);
+  foreign.header.run_id = Script::kRunId + 1;
+  script_.Say(foreign);
+  auto unknown_role = role(Role::kRadar);
+  unknown_role.role = "pilot";
+  script_.Say(unknown_role);
+  script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
+  script_.bus().Publish("RESEND", std::vector<std::uint8_t>(100));
+  script_.bus().Publish("RESEND", std::vector<std::uint8_t>(3));
+  auto resend = Script::Of<resend_t>(0);
+  resend.header.run_id = Script::kRunId + 1;
+  script_.Say(resend);
+  const auto count = [refused = coordinator_.Refused()](std::int64_t status_t::*counter) {
+    const auto* kind =
+        std::ranges::find(runtime::kRefusals, counter, &runtime::RefusalKind::counter);
+    return refused[static_cast<std::size_t>(kind - runtime::kRefusals.begin())];
+  };
+  EXPECT_EQ(count(&status_t::foreign), 2);
+  EXPECT_EQ(count(&status_t::malformed), 2);
+  EXPECT_EQ(count(&status_t::wrong_type), 2);
+}
+
+TEST_F(RunCoordinatorTest, SaysWithItsErrorWhatIsWrongWithTheKeys) {
+  BeAtStep(-1);
+  EXPECT_EQ(coordinator_.KeyTrouble(), "");
+  role(Role::kFusion).badly_signed = 4211;
+  SayStatus(Role::kFusion);
+  coordinator_.Fail("the error");
+  EXPECT_EQ(coordinator_.error(),
+            "the error\n  4211 messages with a wrong signature were refused: do all processes have "
+            "the same key?");
+}
+
+TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLastStep) {
+  std::vector<resend_t>& requests = script_.Listen<resend_t>();
+  BeAtStep(-1);
+  BeAtStep(40);
+  role(Role::kWorld).header.step = 48;
+  role(Role::kWorld).state = status_t::DONE;
+  SayStatus(Role::kWorld);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
+  // WHEN the report of the recorder was lost, THEN the runner asks for it
+  PollUntil(coordinator_, Clock::now() + milliseconds(40));
+  script_.bus().Drain();
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.front().channel, "STATUS");
+  EXPECT_EQ(requests.front().header.step, 48);
+  role(Role::kRecorder).header.step = 48;
+  role(Role::kRecorder).log_bytes = 4711;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kDone);
+  // AND the report that it sends when it leaves counts
+  role(Role::kRecorder).log_bytes = 4712;
+  SayStatus(Role::kRecorder);
+  EXPECT_EQ(coordinator_.member(Role::kRecorder).status->log_bytes, 4712);
+}
+
+}  // namespace
+}  // namespace fogline

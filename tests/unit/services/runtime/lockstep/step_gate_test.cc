@@ -1,0 +1,98 @@
+#include "services/runtime/lockstep/step_gate.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/runtime/script.h"
+
+namespace fogline {
+namespace {
+
+using test::Script;
+
+class StepGateTest : public testing::Test {
+ protected:
+  StepGateTest() { gate_.Configure(Scenario{}, Script::kRunId); }
+
+  void Go(double pace, std::int64_t progress) {
+    run_t run{};
+    run.pace = pace;
+    run.progress = progress;
+    gate_.OnGo(run, now_);
+  }
+  void Recorded(std::int64_t step, std::int8_t state = status_t::RUNNING) {
+    auto status = Script::Of<status_t>(step);
+    status.role = "recorder";
+    status.state = state;
+    script_.Say(status);
+  }
+
+  const TimePoint now_ = Clock::now();
+  Script script_;
+  status_t own_{};
+  runtime::StepGate gate_{script_.bus(), own_};
+};
+
+TEST_F(StepGateTest, IsClosedUntilTheRunnerSaysGo) {
+  EXPECT_FALSE(gate_.Open(0, now_));
+  Go(0, -1);
+  EXPECT_TRUE(gate_.Open(0, now_));
+}
+
+TEST_F(StepGateTest, LetsTheWorldRunOnlySoFarAheadOfWhatIsOnDisk) {
+  Go(0, -1);
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead - 1, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
+  own_.header.step = runtime::kMaxAhead - 1;
+  Recorded(10);
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 10, now_));
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead + 11, now_));
+}
+
+TEST_F(StepGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
+  Go(0, -1);
+  own_.header.step = 5;
+  Recorded(6);
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
+  EXPECT_EQ(own_.out_of_window, 1);
+  // It believes so if an earlier world has begun the step.
+  Go(0, 6);
+  Recorded(6);
+  EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 6, now_));
+}
+
+TEST_F(StepGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {
+  Go(0, -1);
+  Recorded(10, status_t::FAILED);
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
+}
+
+TEST_F(StepGateTest, CountsWhatIsNoStatusOfItsRun) {
+  auto status = Script::Of<status_t>(1000);
+  status.role = "recorder";
+  status.header.run_id = Script::kRunId + 1;
+  script_.Say(status);
+  script_.bus().Publish("STATUS", std::vector<std::uint8_t>(100));
+  script_.bus().Drain();
+  EXPECT_EQ(own_.foreign, 1);
+  EXPECT_EQ(own_.wrong_type, 1);
+  Go(0, -1);
+  EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
+}
+
+TEST_F(StepGateTest, HoldsTheWorldToThePace) {
+  Go(1, -1);
+  EXPECT_TRUE(gate_.Open(0, now_));
+  EXPECT_FALSE(gate_.Open(10, now_));
+  EXPECT_TRUE(gate_.Open(10, now_ + milliseconds(1000)));
+}
+
+TEST_F(StepGateTest, LetsAWorldThatJoinsLateCatchUpAtOnceAndHoldsItToThePaceFromThere) {
+  Go(1, 100);
+  Recorded(100);
+  EXPECT_TRUE(gate_.Open(100, now_));
+  EXPECT_FALSE(gate_.Open(110, now_));
+  EXPECT_TRUE(gate_.Open(110, now_ + milliseconds(1000)));
+}
+
+}  // namespace
+}  // namespace fogline
