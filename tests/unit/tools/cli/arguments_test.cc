@@ -1,0 +1,297 @@
+#include "tools/cli/arguments.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/errors.h"
+#include "tests/unit/tools/short_run.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// The error text of a call; "" if it has none.
+std::string ErrorOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Printed {
+  std::string out;
+  std::string err;
+};
+Printed WhatIsPrinted(const std::function<void()>& call) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  call();
+  std::fflush(stdout);
+  return {.out = testing::internal::GetCapturedStdout(),
+          .err = testing::internal::GetCapturedStderr()};
+}
+
+// ---- SCENARIO, --set, --seed
+
+class ScenarioArgumentsTest : public testing::Test {
+ protected:
+  void Read(std::vector<std::string> words) {
+    words.insert(words.begin(), (SourceDirectory() / "scenario/paper.json").string());
+    app_.parse({words.rbegin(), words.rend()});
+  }
+  CLI::App app_;
+  const cli::ScenarioArguments arguments_{app_};
+};
+
+TEST_F(ScenarioArgumentsTest, AreTheFileWithItsOverridesAndItsSeed) {
+  Read({"--set", "/arbitrator/threshold=0.8", "--set", "/steps=30", "--seed", "7"});
+  const Scenario scenario = arguments_.Load();
+  EXPECT_EQ(scenario.arbitrator.threshold, 0.8);
+  EXPECT_EQ(scenario.steps, 30);
+  EXPECT_EQ(scenario.seed, 7);
+  EXPECT_EQ(arguments_.file().filename(), "paper.json");
+}
+
+TEST_F(ScenarioArgumentsTest, RefuseAScenarioThatNoRunCanHave) {
+  Read({"--set", R"(/road/grade=[{"position_m":50,"grade":0},{"position_m":20,"grade":0.05}])"});
+  EXPECT_THAT(ErrorOf([&] { arguments_.Load(); }), HasSubstr("/road/grade/1/position_m: "));
+}
+
+TEST_F(ScenarioArgumentsTest, RefuseAnOverrideOfAFieldThatTheVerbSets) {
+  Read({"--set", "/arbitrator/threshold=0.8"});
+  EXPECT_EQ(ErrorOf([&] { arguments_.RefuseOverrideOf("/arbitrator/threshold", "see there"); }),
+            "error: --set /arbitrator/threshold: see there");
+  EXPECT_EQ(ErrorOf([&] { arguments_.RefuseOverrideOf("/arbitrator", "see there"); }), "");
+}
+
+// ---- logs
+
+class LogArgumentsTest : public testing::Test {
+ protected:
+  std::string Refusal(const std::string& file, bool force) const {
+    return ErrorOf([&] { cli::PrepareLog(file, force); });
+  }
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+};
+
+TEST_F(LogArgumentsTest, ReplaceALogOnlyByForce) {
+  runner::RunExperiment(Paper(10), Direct(log_));
+  const std::string before = Content(log_);
+  EXPECT_EQ(Refusal(log_, false), log_ + ": error: --log: the file exists; --force replaces it");
+  {
+    const log::LogOfRun log = cli::PrepareLog(log_, true);
+    EXPECT_EQ(log.path(), log_);
+    EXPECT_EQ(Content(log_), "");
+    EXPECT_THAT(Refusal(log_, true), HasSubstr("is being written by another run"));
+  }
+  EXPECT_EQ(Content(log_), before) << "a run that never began gives the older log back";
+}
+
+TEST_F(LogArgumentsTest, MakeANewLogAndRemoveItIfItStaysEmpty) {
+  {
+    const log::LogOfRun log = cli::PrepareLog(log_, false);
+    EXPECT_TRUE(std::filesystem::exists(log_));
+  }
+  EXPECT_FALSE(std::filesystem::exists(log_));
+}
+
+TEST_F(LogArgumentsTest, ReplaceNothingElse) {
+  std::ofstream(log_) << "precious";
+  EXPECT_EQ(Refusal(log_, true),
+            log_ + ": error: --log: the file is no event log and stays as it is, --force or not");
+  EXPECT_EQ(Content(log_), "precious");
+  EXPECT_EQ(Refusal(folder_.path().string(), true),
+            folder_.path().string() + ": error: --log: not a file");
+  EXPECT_THAT(Refusal(folder_.File("none/run.lcm"), false), HasSubstr("--log"));
+}
+
+TEST_F(LogArgumentsTest, CountTheLogsOfAScenario) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  {
+    const log::LogOfRun first = cli::FreshLog("scenario/paper.json");
+    const log::LogOfRun second = cli::FreshLog("scenario/paper.json");
+    EXPECT_EQ(first.path(), "logs/paper-1.lcm");
+    EXPECT_EQ(second.path(), "logs/paper-2.lcm");
+    EXPECT_TRUE(std::filesystem::exists(second.path()));
+  }
+  std::filesystem::current_path(here);
+}
+
+TEST_F(LogArgumentsTest, LeaveOutALogThatCannotBeRead) {
+  std::vector<std::string> used;
+  bool readable = true;
+  const Printed printed = WhatIsPrinted([&] {
+    readable = cli::ForEachReadable({"a.lcm", "b.lcm", "c.lcm"}, [&](const auto& log) {
+      if (log == "b.lcm") throw InputError("b.lcm: error: torn");
+      used.push_back(log);
+    });
+  });
+  EXPECT_FALSE(readable);
+  EXPECT_THAT(used, ElementsAre("a.lcm", "c.lcm"));
+  EXPECT_EQ(printed.err, "b.lcm: error: torn\n");
+  EXPECT_TRUE(cli::ForEachReadable({"a.lcm"}, [](const auto&) {}));
+}
+
+// ---- seeds, JSON, builds
+
+TEST(SeedArgumentsTest, ExplainASingleNumberThatMayBeMeantAsACount) {
+  sweep::SeedRange seeds;
+  const auto read = [&](const char* text) {
+    return WhatIsPrinted([&] { seeds = cli::ReadSeeds(text); }).err;
+  };
+  EXPECT_EQ(read("100"), "--seeds 100 is the one seed 100; seeds 1 to 100 are --seeds 1:100\n");
+  EXPECT_EQ(seeds.first, 100);
+  EXPECT_EQ(seeds.last, 100);
+  EXPECT_EQ(read("3:5"), "");
+  EXPECT_EQ(seeds.count(), 3);
+  EXPECT_EQ(read("1"), "");
+  EXPECT_EQ(read("7:7"), "");
+  EXPECT_NE(ErrorOf([] { cli::ReadSeeds("many"); }), "");
+}
+
+TEST(JsonArgumentsTest, PrintWhatJsonAndATerminalCanCarry) {
+  const nlohmann::ordered_json json{{"file", "a\xff"}, {"text", "b\x7f"}};
+  EXPECT_EQ(WhatIsPrinted([&] { cli::PrintJson(json, -1); }).out,
+            "{\"file\":\"a\xef\xbf\xbd\",\"text\":\"b\\u007f\"}\n");
+  EXPECT_EQ(WhatIsPrinted([&] {
+              cli::PrintJson(nlohmann::ordered_json{{"a", 1}});
+            }).out,
+            "{\n  \"a\": 1\n}\n");
+}
+
+TEST(JsonArgumentsTest, RefuseTwoDocumentsOnStdout) {
+  EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("/dev/stdout", "--out", true); }),
+            "error: --json: stdout is taken by --out /dev/stdout; give --out a file");
+  EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("/dev/stdout", "--out", false); }), "");
+  EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("out.csv", "--out", true); }), "");
+}
+
+TEST(JsonArgumentsTest, PrintRemarksWhereTheDocumentDoesNotGo) {
+  const Printed beside_file = WhatIsPrinted([] { cli::PrintBeside("out.csv", "made\n"); });
+  EXPECT_EQ(beside_file.out, "made\n");
+  EXPECT_EQ(beside_file.err, "");
+  const Printed beside_stdout = WhatIsPrinted([] { cli::PrintBeside("/dev/stdout", "made\n"); });
+  EXPECT_EQ(beside_stdout.out, "");
+  EXPECT_EQ(beside_stdout.err, "made\n");
+}
+
+TEST(JsonArgumentsTest, HaveABuildInHexadecimalDigits) {
+  EXPECT_EQ(cli::BuildJson(0x2e), "000000000000002e");
+  EXPECT_TRUE(cli::BuildJson(runtime::kUnknownBuild).is_null());
+}
+
+// ---- --lcm-url
+
+class NetworkArgumentsTest : public testing::Test {
+ protected:
+  std::string Url(const std::vector<std::string>& words) {
+    app_.parse({words.rbegin(), words.rend()});
+    return arguments_.Url();
+  }
+  CLI::App app_;
+  const cli::NetworkArguments arguments_{app_, "to observe"};
+};
+
+TEST_F(NetworkArgumentsTest, AreTheNetworkOfTheCommandLineOrTheEnvironmentOrLcm) {
+  EXPECT_EQ(Url({}), "udpm://239.255.76.67:7667?ttl=0");
+  EXPECT_TRUE(arguments_.Follows());
+  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7700", 1);
+  EXPECT_EQ(Url({}), "udpm://239.255.76.67:7700");
+  EXPECT_EQ(Url({"--lcm-url", "tcpq://lab1"}), "tcpq://lab1");
+  EXPECT_FALSE(arguments_.Follows());
+  unsetenv("LCM_DEFAULT_URL");
+}
+
+TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
+  EXPECT_THAT(ErrorOf([&] {
+                Url({"--lcm-url", "memq://"});
+              }),
+              StartsWith("error: --lcm-url memq://: the memory of one process, "));
+  EXPECT_THAT(ErrorOf([&] {
+                Url({"--lcm-url", "pigeon"});
+              }),
+              StartsWith("error: --lcm-url pigeon: not an LCM network such as "));
+  setenv("LCM_DEFAULT_URL", "memq://", 1);
+  CLI::App app;
+  const cli::NetworkArguments unsaid(app, "to observe");
+  EXPECT_THAT(ErrorOf([&] { unsaid.Url(); }), StartsWith("error: LCM_DEFAULT_URL memq://: "));
+  unsetenv("LCM_DEFAULT_URL");
+}
+
+// ---- measures
+
+runner::ExperimentResult Measured() {
+  runner::ExperimentResult result;
+  result.measures.steps = 500;
+  result.measures.min_host_gap_m = 12.34567;
+  result.followers.resize(1);
+  return result;
+}
+
+TEST(MeasuresTest, AreAllInTheJsonWithAllTheirDigits) {
+  const auto json = nlohmann::json::parse(cli::MeasuresJson(Measured()));
+  EXPECT_EQ(json["steps"], 500);
+  EXPECT_EQ(json["min_host_gap_m"], 12.34567);
+  EXPECT_TRUE(json["rhe_pct"].is_null());
+  std::size_t measures = 0;
+  metrics::VisitMeasures(metrics::RunMeasures(), [&](auto&&...) { ++measures; });
+  EXPECT_EQ(json.size(), measures) << "no list of one following car";
+}
+
+TEST(MeasuresTest, AreALineEachForAPerson) {
+  const std::string text = cli::MeasuresText(Measured());
+  EXPECT_THAT(text, HasSubstr("  min_host_gap_m                         12.35 m\n"));
+  EXPECT_THAT(text, HasSubstr("  rhe_pct                                    - %\n"));
+  EXPECT_EQ(text.find("follower  "), std::string::npos);
+}
+
+TEST(MeasuresTest, AreThoseOfEachCarOfAColumn) {
+  runner::ExperimentResult result = Measured();
+  result.followers.resize(2);
+  result.followers[1].min_gap_m = 3.25;
+  const auto json = nlohmann::json::parse(cli::MeasuresJson(result));
+  ASSERT_EQ(json["followers"].size(), 2U);
+  EXPECT_TRUE(json["followers"][0]["min_gap_m"].is_null());
+  EXPECT_EQ(json["followers"][1]["min_gap_m"], 3.25);
+  const std::string text = cli::MeasuresText(result);
+  EXPECT_THAT(text, HasSubstr("\n  follower    min_gap_m  min_ttc_s  "));
+  EXPECT_THAT(text, HasSubstr("\n  2               3.250          -  "));
+}
+
+TEST(MeasuresTest, OfARunInRealTimeAreItsFiguresAndFallbacks) {
+  log::RealtimeFigures figures;
+  figures.ticks_late = 4;
+  figures.fallbacks = {
+      {.step = 17, .role = "arbitrator", .what = "TRACK lost", .culprit = "fusion"},
+      {.step = 18, .role = "world", .what = "HOST_COMMAND lost"}};
+  figures.fallbacks_left_out = 3;
+  const auto json = cli::RealtimeJson(figures);
+  EXPECT_EQ(json["ticks_late"], 4);
+  EXPECT_EQ(json["fallbacks"][0].dump(),
+            R"({"step":17,"role":"arbitrator","what":"TRACK lost","culprit":"fusion"})");
+  EXPECT_TRUE(json["fallbacks"][1]["culprit"].is_null());
+  EXPECT_EQ(json["fallbacks_left_out"], 3);
+
+  const std::string text = cli::RealtimeText(figures);
+  EXPECT_THAT(text, HasSubstr("  ticks_late                                 4 \n"));
+  EXPECT_THAT(text, HasSubstr("  " + figures.fallbacks[0].Text() + "\n"));
+  EXPECT_THAT(text, testing::EndsWith("  ... and 3 more\n"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,105 @@
+#include "tools/cli/transport_arguments.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/errors.h"
+#include "services/runtime/wire/message_signer.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using runner::ExperimentOptions;
+
+/// The options of a run by its command line.
+ExperimentOptions Read(std::vector<std::string> words, const std::string& usual = "udpm") {
+  CLI::App app;
+  const cli::TransportArguments arguments(app, usual);
+  app.parse({words.rbegin(), words.rend()});
+  ExperimentOptions options;
+  arguments.Apply(options);
+  return options;
+}
+
+/// Why a command line is refused; "" if it is not.
+std::string Refusal(const std::vector<std::string>& words) {
+  try {
+    Read(words);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string kUrl = "udpm://239.255.76.67:7700?ttl=0";
+
+TEST(TransportArgumentsTest, TakeTheTransportOfTheVerbUnlessAnotherIsNamed) {
+  EXPECT_EQ(Read({}).transport, "udpm");
+  EXPECT_EQ(Read({}, "direct").transport, "direct");
+  EXPECT_EQ(Read({"--transport", "memq"}).transport, "memq");
+  EXPECT_EQ(Read({"--lcm-url", kUrl}).transport, kUrl);
+  EXPECT_THROW(Read({"--lcm-url", kUrl, "--transport", "memq"}), CLI::ParseError);
+}
+
+TEST(TransportArgumentsTest, TakeTheNetworkOfTheEnvironmentForARunOfProcesses) {
+  setenv("LCM_DEFAULT_URL", kUrl.c_str(), 1);
+  EXPECT_EQ(Read({}).transport, kUrl);
+  EXPECT_EQ(Read({}, "direct").transport, "direct");
+  EXPECT_EQ(Read({"--external", "driver"}, "direct").transport, kUrl);
+  EXPECT_EQ(Read({"--transport", "udpm"}).transport, "udpm");
+  setenv("LCM_DEFAULT_URL", "pigeon", 1);
+  EXPECT_EQ(Refusal({}),
+            "error: LCM_DEFAULT_URL is pigeon, which is no LCM URL such as "
+            "\"udpm://239.255.76.67:7667?ttl=0\"");
+  unsetenv("LCM_DEFAULT_URL");
+}
+
+TEST(TransportArgumentsTest, SetWhatTheRunDoes) {
+  const ExperimentOptions usual = Read({});
+  EXPECT_TRUE(usual.external.empty());
+  EXPECT_EQ(usual.wait, milliseconds(60'000));
+  EXPECT_FALSE(usual.same_build);
+  EXPECT_EQ(usual.verify, std::nullopt);
+  const ExperimentOptions options =
+      Read({"--external", "driver", "--external", "acc", "--wait", "1.5", "--same-build",
+            "--verify", "--faults", "loss=0.1"});
+  EXPECT_EQ(options.external, (std::vector{Role::kAcc, Role::kDriver})) << "in kRoles' order";
+  EXPECT_EQ(options.wait, milliseconds(1500));
+  EXPECT_TRUE(options.same_build);
+  EXPECT_EQ(options.verify, true);
+  EXPECT_EQ(options.traffic.faults, "loss=0.1");
+  EXPECT_EQ(Read({"--no-verify"}).verify, false);
+}
+
+TEST(TransportArgumentsTest, RefuseContradictions) {
+  EXPECT_EQ(Refusal({"--lcm-url", "pigeon"}),
+            "error: --lcm-url pigeon: not an LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\"");
+  EXPECT_EQ(Refusal({"--transport", "direct", "--faults", "loss=0.1"}),
+            "error: --faults: a run with --transport direct has no messages");
+  EXPECT_EQ(Refusal({"--transport", "direct", "--verify"}),
+            "error: --verify: a run with --transport direct is one process, in which no message "
+            "can be altered on its way");
+  EXPECT_EQ(Refusal({"--transport", "memq", "--external", "acc"}),
+            "error: --external acc: no process can join a run with --transport memq, which is one "
+            "process itself");
+  EXPECT_EQ(Refusal({"--external", "recorder"}),
+            "error: --external recorder: the run's result is read from its own log");
+  EXPECT_THROW(Read({"--external", "pilot"}), CLI::ParseError);
+  EXPECT_THROW(Read({"--wait", "-1"}), CLI::ParseError);
+}
+
+TEST(TransportArgumentsTest, RefuseAKeyThatIsNoneEvenWithoutMessages) {
+  const ScratchFolder folder;
+  const std::string key = folder.File("key");
+  EXPECT_NE(Refusal({"--transport", "direct", "--key", key}), "");
+  runtime::SigningKey::Create(key);
+  EXPECT_EQ(Refusal({"--transport", "direct", "--key", key}), "");
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,154 @@
+#include "tools/processes/child.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+/// All that comes out of a pipe until its other end is closed.
+std::string ReadAll(int file) {
+  std::string text;
+  std::array<char, 256> buffer{};
+  while (true) {
+    const ssize_t size = read(file, buffer.data(), buffer.size());
+    if (size <= 0) return text;
+    text.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+}
+
+struct Ended {
+  std::string out;
+  std::string how;
+};
+
+/// Runs lines of sh as a child to their end. @param arguments are $1, $2 ... in the script
+Ended RunScript(const std::string& script, const std::vector<std::string>& arguments = {}) {
+  std::vector<std::string> words{"-c", script, "sh"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  processes::Pipe pipe;
+  const pid_t pid = processes::StartChild("/bin/sh", words, pipe.write);
+  close(std::exchange(pipe.write, -1));
+  Ended ended{.out = ReadAll(pipe.read), .how = ""};
+  int status = 0;
+  EXPECT_EQ(waitpid(pid, &status, 0), pid);
+  ended.how = processes::HowItEnded(status);
+  return ended;
+}
+
+TEST(ChildTest, GetsItsArgumentsAsTheyAre) {
+  EXPECT_EQ(RunScript(R"(printf '<%s>' "$@")", {"two words", "", "it's"}).out,
+            "<two words><><it's>");
+}
+
+TEST(ChildTest, EndsWithACodeOrASignal) {
+  EXPECT_EQ(RunScript("exit 3").how, "exited with code 3");
+  EXPECT_EQ(RunScript("kill -TERM $$").how, "was killed by signal 15 (Terminated)");
+}
+
+TEST(ChildTest, ReportsItsEndAlsoToAParentThatIgnoredTheEndsOfChildren) {
+  std::signal(SIGCHLD, SIG_IGN);
+  EXPECT_EQ(RunScript("exit 4").how, "exited with code 4");
+}
+
+TEST(ChildTest, HasAnEmptyInputAndNoFileOfItsParent) {
+  const int file = open("/dev/zero", O_RDONLY);  // without close-on-exec, as LCM's sockets
+  ASSERT_GE(file, 3);
+  const Ended ended =
+      RunScript("readlink /proc/$$/fd/0; [ -e /proc/$$/fd/$1 ] && echo open || echo closed",
+                {std::to_string(file)});
+  close(file);
+  EXPECT_EQ(ended.out, "/dev/null\nclosed\n");
+}
+
+TEST(ChildTest, WritesItsErrorsWhereItIsTold) {
+  processes::Pipe out;
+  processes::Pipe err;
+  const pid_t pid =
+      processes::StartChild("/bin/sh", {"-c", "echo out; echo err >&2"}, out.write, err.write);
+  close(std::exchange(out.write, -1));
+  close(std::exchange(err.write, -1));
+  EXPECT_EQ(ReadAll(out.read), "out\n");
+  EXPECT_EQ(ReadAll(err.read), "err\n");
+  EXPECT_EQ(waitpid(pid, nullptr, 0), pid);
+}
+
+TEST(ChildTest, IsOutOfReachOfTheTerminalsSignals) {
+  const processes::Pipe pipe;
+  const pid_t pid = processes::StartChild("/bin/sleep", {"60"}, pipe.write);
+  EXPECT_EQ(getpgid(pid), pid) << "Ctrl-C reaches the whole group of a terminal";
+  kill(pid, SIGKILL);
+  EXPECT_EQ(waitpid(pid, nullptr, 0), pid);
+}
+
+TEST(ChildTest, DiesWithItsParent) {
+  // GIVEN a process that starts a child, says its process id, and ends
+  processes::Pipe pipe;
+  const pid_t parent = fork();
+  ASSERT_GE(parent, 0);
+  if (parent == 0) {
+    const pid_t child = processes::StartChild("/bin/sleep", {"60"}, STDERR_FILENO);
+    const ssize_t written = write(pipe.write, &child, sizeof(child));
+    _exit(written == sizeof(child) ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(parent, &status, 0), parent);
+  ASSERT_EQ(status, 0);
+  pid_t child = 0;
+  ASSERT_EQ(read(pipe.read, &child, sizeof(child)), static_cast<ssize_t>(sizeof(child)));
+  // THEN the child ends, too
+  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  while (IsAlive(child) && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
+  EXPECT_FALSE(IsAlive(child));
+  kill(child, SIGKILL);
+}
+
+TEST(ChildTest, ThatCannotBeStartedIsAnErrorWithItsReason) {
+  const processes::Pipe pipe;
+  const auto error = [&](const char* program) -> std::string {
+    try {
+      processes::StartChild(program, {}, pipe.write);
+    } catch (const std::runtime_error& failure) {
+      return failure.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(error("/no/such/program"), "cannot start /no/such/program: No such file or directory");
+  EXPECT_EQ(error("/dev/null"), "cannot start /dev/null: Permission denied");
+}
+
+TEST(PipeTest, ClosesItsEndsAndLeavesNoneToAChild) {
+  int read_end = -1;
+  int write_end = -1;
+  {
+    const processes::Pipe pipe;
+    read_end = pipe.read;
+    write_end = pipe.write;
+    for (const int end : {read_end, write_end}) EXPECT_EQ(fcntl(end, F_GETFD), FD_CLOEXEC);
+  }
+  for (const int end : {read_end, write_end}) EXPECT_EQ(fcntl(end, F_GETFD), -1);
+}
+
+TEST(ProgramBesideTest, IsInTheFolderOfThisProgram) {
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  EXPECT_EQ(processes::ProgramBeside("other"), folder / "other");
+  EXPECT_EQ(processes::ProgramOf(Role::kArbitrator), folder / "fogline-arbitrator");
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,102 @@
+#include "tools/processes/process_group.h"
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/clock.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using processes::ProcessGroup;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// The processes of a group that end, until there are so many.
+std::vector<ProcessGroup::Exit> CollectUntil(ProcessGroup& group, std::size_t count) {
+  std::vector<ProcessGroup::Exit> exits;
+  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  while (exits.size() < count && Clock::now() < end) {
+    for (ProcessGroup::Exit& exit : group.Collect()) exits.push_back(std::move(exit));
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return exits;
+}
+
+pid_t StartScript(ProcessGroup& group, Role role, const std::string& script) {
+  return group.Start(role, "/bin/sh", {"-c", script});
+}
+
+TEST(ProcessGroupTest, TellsHowAProcessEndedAndWhatItPrinted) {
+  ProcessGroup group;
+  const pid_t pid = StartScript(group, Role::kAcc, "echo one; echo two >&2; exit 3");
+  const auto exits = CollectUntil(group, 1);
+  ASSERT_EQ(exits.size(), 1U);
+  EXPECT_EQ(exits[0].role, Role::kAcc);
+  EXPECT_EQ(exits[0].pid, pid);
+  EXPECT_EQ(exits[0].how, "exited with code 3");
+  EXPECT_FALSE(exits[0].killed);
+  EXPECT_THAT(exits[0].lines, ElementsAre("one", "two"));
+  EXPECT_TRUE(group.empty());
+  EXPECT_THAT(group.Collect(), IsEmpty()) << "an end is told once";
+}
+
+TEST(ProcessGroupTest, NamesTheProcessesThatStillRun) {
+  ProcessGroup group;
+  EXPECT_EQ(group.Describe(), "");
+  const pid_t world = StartScript(group, Role::kWorld, "sleep 60");
+  StartScript(group, Role::kRadar, "exit 0");
+  const pid_t acc = StartScript(group, Role::kAcc, "sleep 60");
+  ASSERT_EQ(CollectUntil(group, 1).size(), 1U);
+  EXPECT_EQ(group.Describe(), "world " + std::to_string(world) + ", acc " + std::to_string(acc));
+}
+
+TEST(ProcessGroupTest, SendsASignalToAll) {
+  ProcessGroup group;
+  StartScript(group, Role::kWorld, "exec sleep 60");
+  StartScript(group, Role::kRadar, "exec sleep 60");
+  group.Signal(SIGTERM);
+  const auto exits = CollectUntil(group, 2);
+  ASSERT_EQ(exits.size(), 2U);
+  for (const ProcessGroup::Exit& exit : exits) {
+    EXPECT_TRUE(exit.killed);
+    EXPECT_EQ(exit.how, "was killed by signal 15 (Terminated)");
+  }
+}
+
+TEST(ProcessGroupTest, EndsWithItsProcesses) {
+  pid_t pid = 0;
+  {
+    ProcessGroup group;
+    pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; sleep 60");
+    ASSERT_TRUE(IsAlive(pid));
+  }
+  EXPECT_FALSE(IsAlive(pid));
+}
+
+TEST(ProcessGroupTest, ReadsOnWhileAProcessPrintsMoreThanAPipeHolds) {
+  ProcessGroup group;
+  StartScript(group, Role::kDriver,
+              "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i + 1)); done");
+  const auto exits = CollectUntil(group, 1);
+  ASSERT_EQ(exits.size(), 1U) << "the process waits for a reader";
+  ASSERT_EQ(exits[0].lines.size(), processes::LastLines::kKept);
+  EXPECT_EQ(exits[0].lines.back(), "line 19999");
+}
+
+TEST(ProcessGroupTest, HasNoProcessThatCannotBeStarted) {
+  ProcessGroup group;
+  EXPECT_THROW(group.Start(Role::kAcc, "/no/such/program", {}), std::runtime_error);
+  EXPECT_TRUE(group.empty());
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,83 @@
+#include "tools/runner/kept_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/unit/tools/short_run.h"
+
+namespace fogline::test {
+namespace {
+
+using runner::CommandToGoOn;
+using runner::ExperimentOptions;
+using runner::KeptLog;
+
+/// The options of a run whose only one is its log.
+ExperimentOptions OnlyLog() {
+  ExperimentOptions options;
+  options.log = "run.lcm";
+  return options;
+}
+
+TEST(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
+  EXPECT_EQ(CommandToGoOn(OnlyLog()), "fogline run --resume run.lcm");
+  ExperimentOptions options = OnlyLog();
+  options.transport = "memq";
+  options.external = {Role::kDriver, Role::kAcc};
+  options.pace = 0.5;
+  options.stall_limit = milliseconds(5500);
+  options.restarts = 0;
+  options.wait = Duration::zero();
+  options.same_build = true;
+  options.verify = false;
+  options.traffic = {.key_file = "key", .faults = "loss=0.1"};
+  EXPECT_EQ(CommandToGoOn(options),
+            "fogline run --resume run.lcm --transport memq --external driver --external acc "
+            "--pace 0.5 --stall-timeout 5.5 --restarts 0 --wait 0 --same-build --no-verify "
+            "--key key --faults loss=0.1");
+  options = OnlyLog();
+  options.verify = true;
+  EXPECT_EQ(CommandToGoOn(options), "fogline run --resume run.lcm --verify");
+}
+
+TEST(CommandToGoOnTest, QuotesWordsForAShell) {
+  ExperimentOptions options = OnlyLog();
+  options.log = "my run's log.lcm";
+  options.transport = "udpm://239.255.76.67:7700?ttl=0";
+  EXPECT_EQ(CommandToGoOn(options), R"(fogline run --resume 'my run'\''s log.lcm' --lcm-url )"
+                                    R"('udpm://239.255.76.67:7700?ttl=0')");
+}
+
+TEST(CommandToGoOnTest, NamesTheTransportIfTheEnvironmentNamesAnother) {
+  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7701?ttl=0", 1);
+  EXPECT_EQ(CommandToGoOn(OnlyLog()), "fogline run --resume run.lcm --transport udpm");
+  unsetenv("LCM_DEFAULT_URL");
+}
+
+TEST(CommandToGoOnTest, IsNoneWithoutALogOrInRealTime) {
+  EXPECT_EQ(CommandToGoOn({}), "");
+  ExperimentOptions options = OnlyLog();
+  options.realtime = true;
+  EXPECT_EQ(CommandToGoOn(options), "");
+}
+
+TEST(KeptLogTest, TellsWhatARunHasLeft) {
+  const ScratchFolder folder;
+  ExperimentOptions options = Direct(folder.File("run.lcm"));
+  EXPECT_EQ(KeptLog(1, options), "no log was written");
+  runner::RunExperiment(Paper(10), options);
+  const std::int64_t run_id = ReadToTheEnd(options.log).run_id;
+  const std::string log = "the log so far: " + options.log.string();
+  EXPECT_EQ(KeptLog(run_id, options), log);
+  options.command_to_go_on = "COMMAND";
+  EXPECT_EQ(KeptLog(run_id, options), log + "\n  to go on: COMMAND");
+  EXPECT_EQ(KeptLog(run_id + 1, options), "no log was written") << "an older log is another run's";
+  options.log.clear();
+  EXPECT_EQ(KeptLog(run_id, options), "");
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,144 @@
+#include "tools/runner/log_keeper.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+#include "tests/unit/tools/short_run.h"
+
+namespace fogline::test {
+namespace {
+
+using runner::LogKeeper;
+using testing::HasSubstr;
+
+constexpr std::int64_t kSteps = 20;
+
+/// A log of a run as its recorder leaves it, without a seal.
+class LogKeeperTest : public testing::Test {
+ protected:
+  LogKeeperTest() {
+    const std::string sealed = folder_.File("sealed.lcm");
+    runner::RunExperiment(Paper(kSteps), Direct(sealed));
+    log::EventLogReader reader(sealed);
+    log::EventLogWriter writer(log_);
+    while (const auto event = reader.Next()) {
+      if (log::IsLogSeal(*event)) continue;
+      writer.Write(event->channel, event->utime, event->data);
+    }
+    writer.Flush();
+    written_ = {writer.written()};
+    builds_.fill(4711);
+  }
+
+  void Append(const std::string& bytes) const {
+    std::ofstream(log_, std::ios::app | std::ios::binary) << bytes;
+  }
+  /// What Check() complains about; "" if it does not.
+  std::string Trouble(const LogKeeper& keeper) const {
+    try {
+      keeper.Check(written_);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  std::vector<log::WrittenLog> written_;
+  runtime::RoleBuilds builds_{};
+};
+
+TEST_F(LogKeeperTest, FindsTheBytesThatTheRecorderHasReported) {
+  const LogKeeper keeper(log_);
+  EXPECT_EQ(Trouble(keeper), "");
+  EXPECT_TRUE(keeper.HasAllTold(written_));
+  EXPECT_FALSE(keeper.HasAllTold({})) << "no recorder has reported anything";
+  Append("x");
+  EXPECT_FALSE(keeper.HasAllTold(written_));
+}
+
+TEST_F(LogKeeperTest, FindsAChangedByte) {
+  const LogKeeper keeper(log_);
+  std::fstream file(log_, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(log_)) - 1);
+  file.put('\x7f');
+  file.close();
+  EXPECT_THAT(Trouble(keeper), HasSubstr(log_ + ": "));
+}
+
+TEST_F(LogKeeperTest, FindsAnotherFileInThePlaceOfTheLog) {
+  const LogKeeper keeper(log_);
+  std::filesystem::copy_file(log_, folder_.File("copy"));
+  std::filesystem::rename(folder_.File("copy"), log_);
+  EXPECT_THAT(Trouble(keeper), HasSubstr("it was replaced meanwhile"));
+  std::filesystem::remove(log_);
+  EXPECT_THAT(Trouble(LogKeeper(log_)), HasSubstr("No such file or directory"));
+}
+
+TEST_F(LogKeeperTest, SealsAWholeRun) {
+  const LogKeeper keeper(log_);
+  const log::RunLog run = ReadToTheEnd(log_);
+  const runtime::SigningKey key({1, 2, 3});
+  keeper.Seal(run, written_, builds_, &key);
+  const log::RunLog sealed = ReadToTheEnd(log_);
+  ASSERT_TRUE(sealed.seal && sealed.seal->whole);
+  EXPECT_TRUE(sealed.complete);
+  EXPECT_FALSE(sealed.altered);
+  const log_seal_t& says = sealed.seal->says;
+  EXPECT_EQ(says.digest, run.digest);
+  EXPECT_EQ(says.steps, kSteps);
+  EXPECT_EQ(says.header.step, kSteps - 1);
+  EXPECT_TRUE(says.complete);
+  EXPECT_EQ(says.build_id, std::vector<std::int64_t>(kRoles.size(), 4711));
+  EXPECT_EQ(log::WhyNotSealedFile(*sealed.seal, log::EventLogReader(log_)), "");
+  EXPECT_EQ(log::VerifySeal(*sealed.seal, key), log::SealSignature::kHolds);
+  EXPECT_EQ(log::VerifySeal(*sealed.seal, runtime::SigningKey({4, 5})), log::SealSignature::kWrong);
+}
+
+TEST_F(LogKeeperTest, SealsNoLogThatWasChanged) {
+  const LogKeeper keeper(log_);
+  const log::RunLog run = ReadToTheEnd(log_);
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) - 1);
+  const std::string before = Content(log_);
+  EXPECT_THROW(keeper.Seal(run, written_, builds_, nullptr), std::runtime_error);
+  EXPECT_EQ(Content(log_), before);
+}
+
+TEST_F(LogKeeperTest, SealsARunThatEndedEarlyAsFarAsItGoes) {
+  // GIVEN a log without its last step
+  const std::string part = folder_.File("part.lcm");
+  log::EventLogReader reader(log_);
+  log::EventLogWriter writer(part);
+  while (const auto event = reader.Next()) {
+    if (runtime::ReadInt64(event->data, runtime::kStepOffset) == kSteps - 1) break;
+    writer.Write(event->channel, event->utime, event->data);
+  }
+  writer.Flush();
+  LogKeeper(part).SealCutOff({writer.written()}, builds_, nullptr);
+  const log::RunLog sealed = ReadToTheEnd(part);
+  ASSERT_TRUE(sealed.seal && sealed.seal->whole);
+  EXPECT_EQ(sealed.seal->says.steps, kSteps - 1);
+  EXPECT_FALSE(sealed.seal->says.complete);
+}
+
+TEST_F(LogKeeperTest, LeavesALogAsItIsIfItHasMoreThanWasReported) {
+  Append("half of an event");
+  const std::string before = Content(log_);
+  LogKeeper(log_).SealCutOff(written_, builds_, nullptr);
+  EXPECT_EQ(Content(log_), before) << "it is longer than the recorder has reported";
+  std::filesystem::remove(log_);
+  LogKeeper(log_).SealCutOff(written_, builds_, nullptr);
+  EXPECT_FALSE(std::filesystem::exists(log_));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,155 @@
+#include "tools/runner/supervisor.h"
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/tools/short_run.h"
+
+namespace fogline::test {
+namespace {
+
+using runner::Supervisor;
+using testing::ContainsRegex;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using Phase = runtime::RunCoordinator::Phase;
+
+constexpr std::int64_t kRunId = 4711;
+constexpr std::int64_t kManySteps = 100'000;
+
+/// The real programs of a run, a coordinator, and the supervisor between them.
+class SupervisorTest : public testing::Test {
+ protected:
+  void Begin(std::int64_t steps, Supervisor::Options options) {
+    coordinator_.emplace(
+        bus_, runtime::RunCoordinatorOptions{.run_id = kRunId,
+                                             .scenario_text = PrintScenario(Paper(steps)),
+                                             .steps = steps,
+                                             .stall_limit = std::chrono::seconds(20),
+                                             .external = options.external,
+                                             .restarts = options.restarts});
+    options.url = bus_.url();
+    options.run_id = kRunId;
+    options.log = log_;
+    if (options.silence == Duration::zero()) options.silence = std::chrono::seconds(20);
+    options.say = [this](const std::string& line) { said_.push_back(line); };
+    supervisor_.emplace(bus_, *coordinator_, std::move(options));
+  }
+  /// Does what a runner does until something is so.
+  template <class Condition>
+  bool PlayUntil(const Condition& condition) {
+    const TimePoint end = Clock::now() + std::chrono::seconds(40);
+    while (!condition() && Clock::now() < end) {
+      const TimePoint now = Clock::now();
+      const TimePoint next = std::min(coordinator_->Poll(now), now + milliseconds(20));
+      if (bus_.Wait(next - now)) bus_.Drain();
+      supervisor_->Look(Clock::now());
+    }
+    return condition();
+  }
+  bool PlayUntilStep(std::int64_t step) {
+    return PlayUntil([&] { return coordinator_->step() >= step; });
+  }
+  bool PlayUntilPhase(Phase phase) {
+    return PlayUntil([&] { return coordinator_->phase() == phase; });
+  }
+  pid_t PidOfRole(Role role) const {
+    const std::string group = supervisor_->group().Describe();
+    return PidOf("processes: " + group, std::string(NameOf(role)));
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  runtime::Bus bus_{runtime::FreshMulticastUrl()};
+  std::optional<runtime::RunCoordinator> coordinator_;
+  std::optional<Supervisor> supervisor_;
+  std::vector<std::string> said_;
+};
+
+TEST_F(SupervisorTest, StartsEveryRoleAndEndsThemAfterTheRun) {
+  Begin(40, {});
+  std::vector<pid_t> pids;
+  for (const RoleInfo& info : kRoles) pids.push_back(PidOfRole(info.role));
+  EXPECT_THAT(pids, testing::Not(testing::Contains(0)));
+  ASSERT_TRUE(PlayUntilPhase(Phase::kDone)) << coordinator_->error();
+  supervisor_->End();
+  EXPECT_TRUE(supervisor_->group().empty()) << supervisor_->group().Describe();
+  for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid));
+  EXPECT_THAT(supervisor_->restarts(), IsEmpty());
+  EXPECT_THAT(said_, IsEmpty());
+  EXPECT_EQ(ReadToTheEnd(log_).steps, 40);
+}
+
+TEST_F(SupervisorTest, StartsNoRoleThatIsStartedElsewhere) {
+  Begin(40, {.external = {Role::kDriver}});
+  EXPECT_EQ(PidOfRole(Role::kDriver), 0);
+  EXPECT_NE(PidOfRole(Role::kAcc), 0);
+}
+
+TEST_F(SupervisorTest, StartsAKilledRoleAgainAndSaysSo) {
+  Begin(kManySteps, {.restarts = 1});
+  ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
+  const pid_t first = PidOfRole(Role::kFusion);
+  kill(first, SIGKILL);
+  ASSERT_TRUE(PlayUntil([&] { return !said_.empty(); }));
+  EXPECT_THAT(said_.front(), testing::MatchesRegex(
+                                 "fusion \\(pid " + std::to_string(first) +
+                                 "\\) was killed by signal 9 \\(Killed\\) at step [0-9]+; started "
+                                 "again as pid [0-9]+ \\(1 of 1\\)"));
+  const std::int64_t then = coordinator_->step();
+  ASSERT_TRUE(PlayUntilStep(then + 100)) << "the run does not go on: " << coordinator_->error();
+  const auto restarts = supervisor_->restarts();
+  ASSERT_THAT(restarts, SizeIs(1));
+  EXPECT_EQ(restarts[0].role, "fusion");
+  EXPECT_EQ(restarts[0].count, 1);
+  EXPECT_THAT(restarts[0].last, HasSubstr("was killed by signal 9 (Killed) at step "));
+
+  // WHEN its restarts are used up, THEN the run ends
+  kill(PidOfRole(Role::kFusion), SIGKILL);
+  ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
+  EXPECT_THAT(coordinator_->error(), HasSubstr(", after 1 restarts (--restarts)"));
+}
+
+TEST_F(SupervisorTest, EndsTheRunAtAnyDeathIfNothingMayBeStartedAgain) {
+  Begin(kManySteps, {.restarts = 0});
+  ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
+  const pid_t pid = PidOfRole(Role::kAcc);
+  kill(pid, SIGKILL);
+  ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
+  EXPECT_THAT(coordinator_->error(),
+              ContainsRegex("^acc \\(pid " + std::to_string(pid) +
+                            "\\) was killed by signal 9 \\(Killed\\) at step [0-9]+$"));
+}
+
+TEST_F(SupervisorTest, StartsNoProcessAgainThatExitsByItself) {
+  Begin(kManySteps, {.arguments = {"--no-such-option"}, .restarts = 5});
+  ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
+  EXPECT_THAT(coordinator_->error(), HasSubstr(") exited with code 2 before step 0\n"));
+  EXPECT_THAT(coordinator_->error(), HasSubstr(": error: ")) << "what it has printed";
+  EXPECT_THAT(supervisor_->restarts(), IsEmpty());
+}
+
+TEST_F(SupervisorTest, KillsAProcessThatHangsAndStartsItAgain) {
+  Begin(kManySteps, {.restarts = 1, .silence = milliseconds(800)});
+  ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
+  kill(PidOfRole(Role::kLidar), SIGSTOP);
+  ASSERT_TRUE(PlayUntil([&] { return !said_.empty(); })) << coordinator_->error();
+  EXPECT_THAT(said_, ElementsAre(ContainsRegex(
+                         "^lidar \\(pid [0-9]+\\) was silent for [0-9.]+ s and was killed at step "
+                         "[0-9]+; started again as pid ")));
+  const std::int64_t then = coordinator_->step();
+  EXPECT_TRUE(PlayUntilStep(then + 100)) << coordinator_->error();
+}
+
+}  // namespace
+}  // namespace fogline::test

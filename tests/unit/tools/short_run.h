@@ -1,0 +1,37 @@
+// Short runs in the process of a test, and what their logs say.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenario/io/loader.h"
+#include "services/log/run_log.h"
+#include "tests/support/command.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline::test {
+
+/// The first steps of the paper's scenario.
+inline Scenario Paper(std::int64_t steps, std::vector<std::string> overrides = {}) {
+  overrides.push_back("/steps=" + std::to_string(steps));
+  return LoadScenario(SourceDirectory() / "scenario/paper.json", overrides);
+}
+
+inline runner::ExperimentOptions Direct(const std::filesystem::path& log) {
+  runner::ExperimentOptions options;
+  options.transport = "direct";
+  options.log = log;
+  return options;
+}
+
+/// Everything that a log says besides its steps.
+inline log::RunLog ReadToTheEnd(const std::filesystem::path& file) {
+  log::RunLogReader reader(file);
+  while (reader.Next() != nullptr) {
+  }
+  return reader.run();
+}
+
+}  // namespace fogline::test
