@@ -70,7 +70,6 @@ class AccProgram {
 
   double MinControl() const { return min_control_; }
   double MaxControl() const { return max_control_; }
-  double MaxControlChange() const { return max_control_change_; }
 
   /// u of the fall-back plan after a step with `previous_control`.
   double FallbackControl(double previous_control) const;

@@ -81,12 +81,6 @@ double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
 }
 
-double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
-                        double extinction_pm) {
-  return AttenuatedRange_m(std::sqrt(reflectivity / (pi * backscatter_pmsr * fog_strength_pm)),
-                           extinction_pm);
-}
-
 double Beta2And20(double u, double v) {
   return 1.0 - std::exp(std::log(u) / 21.0 + std::log(v) / 20.0);
 }

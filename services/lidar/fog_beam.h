@@ -47,12 +47,6 @@ FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 /// Lambert's W, R = W(alpha R_c) / alpha.
 double AttenuatedRange_m(double clear_range_m, double extinction_pm);
 
-/// Range beyond which the echo of the fog is stronger than that of the target. There the ratio
-///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
-/// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
-double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
-                        double extinction_pm);
-
 /// Beta(2, 20) distributed number from two uniform ones in (0, 1): the second smallest of 21
 /// uniform numbers. The smallest is 1 - u^(1/21). The next one divides the rest of the interval
 /// like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs no rejection.

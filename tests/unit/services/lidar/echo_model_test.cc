@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/models/driver/visibility.h"
+#include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
 namespace {
@@ -43,7 +44,7 @@ TEST(EchoModelTest, EchoesAreEquallyStrongAtTheCrossover) {
   const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
     const double extinction_pm = models::ExtinctionOf(visibility_m);
-    const double range_m = lidar::CrossoverRange_m(
+    const double range_m = test::CrossoverRange_m(
         lidar::FindFogPeak(lidar::OpticsOf(beam), extinction_pm).strength_pm,
         beam.target_reflectivity, beam.backscatter_factor / visibility_m, extinction_pm);
     const lidar::EchoPowers echoes = model.At(range_m, visibility_m);

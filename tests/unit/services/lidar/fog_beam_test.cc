@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "services/models/driver/visibility.h"
+#include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
 namespace {
@@ -31,8 +32,8 @@ const std::vector<double> kVisibilities_m{600, 300, 150, 100, 75, 50, 40, 30, 20
 
 double Crossover(const lidar::BeamOptics& optics, double reflectivity, double visibility_m) {
   const double extinction_pm = models::ExtinctionOf(visibility_m);
-  return lidar::CrossoverRange_m(lidar::FindFogPeak(optics, extinction_pm).strength_pm,
-                                 reflectivity, kBackscatterFactor / visibility_m, extinction_pm);
+  return test::CrossoverRange_m(lidar::FindFogPeak(optics, extinction_pm).strength_pm, reflectivity,
+                                kBackscatterFactor / visibility_m, extinction_pm);
 }
 
 // The reference gives whole metres: half a metre of rounding, and a little for its integration.
@@ -84,7 +85,7 @@ TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
     const double backscatter_pmsr = kBackscatterFactor / visibility_m;
     const double strength_pm = lidar::FindFogPeak(kPhysical, extinction_pm).strength_pm;
     const double range_m =
-        lidar::CrossoverRange_m(strength_pm, 0.5, backscatter_pmsr, extinction_pm);
+        test::CrossoverRange_m(strength_pm, 0.5, backscatter_pmsr, extinction_pm);
     const double ratio = std::numbers::pi * backscatter_pmsr / 0.5 * strength_pm * range_m *
                          range_m * std::exp(2.0 * extinction_pm * range_m);
     EXPECT_NEAR(ratio, 1.0, 1e-12);
