@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/exit_code.h"
 #include "tests/soak/faults.h"
 #include "tests/soak/soaked_run.h"
 
@@ -24,13 +25,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-enum ExitCode : int {
-  kAllEqual = 0,
-  kDifferent = 1,
-  kBadUsage = 2,
-  kNoMachines = 4,
-  kInterrupted = 130
-};
+// Exit code where machines cannot be made.
+constexpr int kNoMachines = 4;
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -121,7 +117,7 @@ class Soak {
     for (std::thread& job : jobs) job.join();
     PrintTallies();
     if (interrupted != 0) return kInterrupted;
-    return failed_ == 0 && Complains() == 0 ? kAllEqual : kDifferent;
+    return failed_ == 0 && Complains() == 0 ? kDone : kCheckFailed;
   }
 
  private:
@@ -259,11 +255,12 @@ int Main(int argc, char** argv) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "soak: error: {} (see soak --help)\n", error.what());
-    return kBadUsage;
+    return kBadInput;
   }
   if (const std::string why = WhyNoMachines(); !why.empty()) {
     fmt::print(stderr, "soak: error: cannot make machines: {}\n", why);
-    return std::getenv("FOGLINE_TEST_NO_SKIP") == nullptr ? kNoMachines : kDifferent;
+    if (std::getenv("FOGLINE_TEST_NO_SKIP") != nullptr) return kCheckFailed;
+    return kNoMachines;
   }
   struct sigaction action {};
   action.sa_handler = [](int) { interrupted = 1; };

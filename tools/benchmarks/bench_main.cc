@@ -10,14 +10,13 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include "common/exit_code.h"
 #include "common/process/console.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/present.h"
 
 namespace fogline::benchmarks {
 namespace {
-
-enum ExitCode : int { kAllMet = 0, kMissed = 1, kBadUsage = 2, kFailed = 3 };
 
 struct Arguments {
   bool quick = false;
@@ -71,7 +70,7 @@ int Run(const Arguments& arguments) {
   const Occasion occasion = ThisOccasion(rounds);
   const auto present = arguments.json ? ToJson : arguments.markdown ? ToMarkdown : ToText;
   fmt::print("{}", present(findings, occasion));
-  return std::ranges::all_of(findings, &Finding::met) ? kAllMet : kMissed;
+  return std::ranges::all_of(findings, &Finding::met) ? kDone : kCheckFailed;
 }
 
 int Main(int argc, char** argv) {
@@ -95,7 +94,7 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kAllMet : kBadUsage;
+    return app.exit(error) == 0 ? kDone : kBadInput;
   }
   return Run(arguments);
 }
@@ -108,6 +107,6 @@ int main(int argc, char** argv) {
     return fogline::benchmarks::Main(argc, argv);
   } catch (const std::exception& error) {
     fogline::Complain(fmt::format("fogline-bench: error: {}", error.what()));
-    return fogline::benchmarks::kFailed;
+    return fogline::kRunFailed;
   }
 }

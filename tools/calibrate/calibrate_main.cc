@@ -189,7 +189,7 @@ int RunCalibrate(const CalibrateArguments& arguments) {
     throw Interrupted(fmt::format("interrupted; these are the best values of {} evaluation{}",
                                   found.evaluations, found.evaluations == 1 ? "" : "s"));
   }
-  return cli::kDone;
+  return kDone;
 }
 
 void AddCalibrate(CLI::App& app, cli::Action& action) {

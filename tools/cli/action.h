@@ -4,19 +4,12 @@
 #include <functional>
 #include <stdexcept>
 
+#include "common/exit_code.h"
+
 namespace fogline::cli {
 
-/// Action of the chosen verb; returns the exit code.
+/// Action of the chosen verb; returns the exit code (common/exit_code.h).
 using Action = std::function<int()>;
-
-/// Exit codes of every verb.
-enum ExitCode : int {
-  kDone = 0,
-  kCheckFailed = 1,
-  kBadInput = 2,
-  kRunFailed = 3,
-  kInterrupted = 130
-};
 
 /// Ends a verb with kCheckFailed.
 class CheckFailed : public std::runtime_error {

@@ -34,7 +34,7 @@ nlohmann::ordered_json ToJson(const Diagnostic& diagnostic) {
 }
 
 int CheckFiles(const CheckOptions& options) {
-  int code = cli::kDone;
+  int code = kDone;
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     try {
@@ -46,7 +46,7 @@ int CheckFiles(const CheckOptions& options) {
         fmt::print("{}: ok\n", PathText(file));
       }
     } catch (const ScenarioError& error) {
-      code = cli::kBadInput;
+      code = kBadInput;
       for (const Diagnostic& diagnostic : error.diagnostics())
         diagnostics.push_back(ToJson(diagnostic));
       if (!options.json) Complain(error.what());
@@ -64,11 +64,11 @@ int Check(const CheckOptions& options) {
   }
   if (options.schema) {
     fmt::print("{}", ScenarioSchema());
-    return cli::kDone;
+    return kDone;
   }
   if (options.explain) {
     fmt::print("{}", ExplainField(*options.explain));
-    return cli::kDone;
+    return kDone;
   }
   if (options.files.empty()) throw InputError("error: FILE is missing");
   if (options.print && options.files.size() > 1) {

@@ -276,7 +276,7 @@ int RunCompare(const CompareArguments& arguments) {
   } else {
     cli::PrintBeside(arguments.out, ToText(arguments, comparison));
   }
-  return run.complete ? cli::kDone : cli::kCheckFailed;
+  return run.complete ? kDone : kCheckFailed;
 }
 
 }  // namespace

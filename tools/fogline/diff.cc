@@ -67,7 +67,7 @@ int RunDiff(const DiffArguments& arguments) {
     }
   }
   const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);
-  return difference || !complete ? cli::kCheckFailed : cli::kDone;
+  return difference || !complete ? kCheckFailed : kDone;
 }
 
 }  // namespace

@@ -107,8 +107,8 @@ int RunDigest(const DigestArguments& arguments) {
     if (!arguments.json) fmt::print("{}  {}\n", run.digest, PathText(log));
   });
   if (arguments.json) cli::PrintJson(rows);
-  if (!readable) return cli::kBadInput;
-  return sound ? cli::kDone : cli::kCheckFailed;
+  if (!readable) return kBadInput;
+  return sound ? kDone : kCheckFailed;
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ int Doctor(const DoctorArguments& arguments) {
   arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(
       findings, [](const doctor::Finding& finding) { return finding.level == Level::kProblem; });
-  return problem ? cli::kCheckFailed : cli::kDone;
+  return problem ? kCheckFailed : kDone;
 }
 
 }  // namespace

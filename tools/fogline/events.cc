@@ -125,8 +125,8 @@ int RunEventsVerb(const EventsArguments& arguments) {
         }
       });
   if (arguments.json) cli::PrintJson(rows);
-  if (!readable) return cli::kBadInput;
-  return complete ? cli::kDone : cli::kCheckFailed;
+  if (!readable) return kBadInput;
+  return complete ? kDone : kCheckFailed;
 }
 
 }  // namespace

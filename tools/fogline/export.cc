@@ -60,7 +60,7 @@ int RunExport(const ExportArguments& arguments) {
     for (const std::filesystem::path& file : files) fmt::print("{}\n", PathText(file));
   }
   if (!tables.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), tables.note));
-  return tables.complete ? cli::kDone : cli::kCheckFailed;
+  return tables.complete ? kDone : kCheckFailed;
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ void AddGraph(CLI::App& app, cli::Action& action) {
   verb->callback([&action, json] {
     action = [json] {
       *json ? PrintAsJson() : PrintMarkdown();
-      return cli::kDone;
+      return kDone;
     };
   });
 }

@@ -31,7 +31,7 @@ void AddHelp(CLI::App& app, cli::Action& action) {
   verb->callback([&app, &action, name] {
     action = [&app, name] {
       fmt::print("{}", cli::HelpText(app, name->empty() ? app : FindVerb(app, *name)));
-      return cli::kDone;
+      return kDone;
     };
   });
 }

@@ -20,7 +20,7 @@ struct KeygenArguments {
 int Keygen(const KeygenArguments& arguments) {
   runtime::SigningKey::Create(arguments.file);
   if (arguments.json) cli::PrintJson(nlohmann::ordered_json{{"file", arguments.file}});
-  return cli::kDone;
+  return kDone;
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ int RunMetrics(const MetricsArguments& arguments) {
     fmt::print("{}", cli::MeasuresText(run.result));
   }
   if (arguments.json) cli::PrintJson(rows);
-  if (!readable) return cli::kBadInput;
-  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? cli::kDone : cli::kCheckFailed;
+  if (!readable) return kBadInput;
+  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? kDone : kCheckFailed;
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ int RunReplay(const ReplayArguments& arguments) {
     for (const replay::RoleCheck& one : roles) PrintText(one, run.steps);
   }
   if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
-  return same && run.complete ? cli::kDone : cli::kCheckFailed;
+  return same && run.complete ? kDone : kCheckFailed;
 }
 
 }  // namespace

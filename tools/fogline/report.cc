@@ -264,7 +264,7 @@ int RunReport(const ReportArguments& arguments) {
   } else if (!IsStdout(arguments.output)) {
     fmt::print("{}\n", PathText(arguments.output));
   }
-  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? cli::kDone : cli::kCheckFailed;
+  return std::ranges::all_of(runs, &runner::LoggedRun::complete) ? kDone : kCheckFailed;
 }
 
 }  // namespace

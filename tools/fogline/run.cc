@@ -116,7 +116,7 @@ void ApplyRealtime(RunArguments& arguments) {
   options.pace = arguments.speed;
 }
 
-/// The exit code of an ended run. If it is not cli::kDone, the reason is printed on stderr.
+/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
 /// @throws std::runtime_error if the log of a run in real time lacks published messages
 int Ended(const runner::ExperimentResult& result) {
   if (result.realtime && result.realtime->unlogged_messages > 0) {
@@ -125,9 +125,9 @@ int Ended(const runner::ExperimentResult& result) {
         "recorder can have the last {} steps again, and did not hear for longer",
         result.realtime->unlogged_messages, runtime::kMaxAhead));
   }
-  if (!result.verification || result.verification->Holds()) return cli::kDone;
+  if (!result.verification || result.verification->Holds()) return kDone;
   Complain("fogline run: error: " + result.verification->Trouble());
-  return cli::kCheckFailed;
+  return kCheckFailed;
 }
 
 int Print(const RunArguments& arguments, const cli::RunOutcome& outcome) {

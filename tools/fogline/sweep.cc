@@ -113,7 +113,7 @@ int Merge(const SweepArguments& arguments) {
   } else {
     PrintSummary(arguments.out, fmt::format("{} rows", rows));
   }
-  return cli::kDone;
+  return kDone;
 }
 
 int RunSweepVerb(const SweepArguments& arguments) {
@@ -159,7 +159,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
     PrintSummary(out, fmt::format("{} rows in {:.2f} s, {:.0f} rows per second and core", rows,
                                   wall_s, rate));
   }
-  return cli::kDone;
+  return kDone;
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ int RunTable(const TableArguments& arguments) {
   } else {
     PrintText(scenario, seeds, rows);
   }
-  return cli::kDone;
+  return kDone;
 }
 
 }  // namespace

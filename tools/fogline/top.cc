@@ -100,14 +100,14 @@ class Top {
     if (terminal_) Show();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && terminal_) return cli::kDone;
+      if (!whole && terminal_) return kDone;
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
-      if (!whole) return cli::kInterrupted;
+      if (!whole) return kInterrupted;
       Show();
       if (terminal_ && terminal_->gone()) throw std::runtime_error("the terminal is gone");
-      if (arguments_.once) return cli::kDone;
+      if (arguments_.once) return kDone;
     }
-    return cli::kDone;
+    return kDone;
   }
 
  private:

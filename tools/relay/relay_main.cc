@@ -7,6 +7,7 @@
 #include <boost/asio/signal_set.hpp>
 
 #include "common/errors.h"
+#include "common/exit_code.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "services/runtime/transport/tcpq_url.h"
@@ -16,8 +17,6 @@ namespace fogline::relay {
 namespace {
 
 namespace asio = boost::asio;
-
-enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3 };
 
 constexpr const char* kFooter =
     R"(Prints its URL on stdout. Prints on stderr which clients it disconnects and why,
@@ -87,7 +86,7 @@ int RunRelay(const Arguments& arguments) {
   std::fflush(stdout);
   context.run();
   if (!arguments.quiet) Complain(fmt::format("fogline-relay: {}", relay->Summary()));
-  return kStopped;
+  return kDone;
 }
 
 int Main(int argc, char** argv) {
@@ -103,16 +102,16 @@ int Main(int argc, char** argv) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
     Complain(fmt::format("fogline-relay: error: {} (see fogline-relay --help)", error.what()));
-    return kBadUsage;
+    return kBadInput;
   }
   try {
     return RunRelay(arguments);
   } catch (const InputError& error) {
     Complain(fmt::format("fogline-relay: {}", error.what()));
-    return kBadUsage;
+    return kBadInput;
   } catch (const std::exception& error) {
     Complain(fmt::format("fogline-relay: error: {}", error.what()));
-    return kFailed;
+    return kRunFailed;
   }
 }
 

@@ -196,7 +196,7 @@ int RunStudy(const StudyArguments& arguments) {
   } else {
     fmt::print("{}\n{}\n", PathText(page), PathText(text));
   }
-  return cli::kDone;
+  return kDone;
 }
 
 void AddStudy(CLI::App& app, cli::Action& action) {

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/errors.h"
+#include "common/exit_code.h"
 #include "common/interrupt.h"
 #include "common/own_pauses.h"
 #include "common/process/console.h"
@@ -20,8 +21,6 @@
 
 namespace fogline::runtime {
 namespace {
-
-enum ExitCode : int { kStopped = 0, kBadUsage = 2, kFailed = 3, kInterrupted = 130 };
 
 // Priorities in real time: the world, which is the clock of the run, goes first, then the other
 // roles, then the rest of the machine.
@@ -85,9 +84,9 @@ class Service {
       }
       TakePart();
     }
-    if (node_->error().empty()) return kStopped;
+    if (node_->error().empty()) return kDone;
     Complain(fmt::format("{}: error: {}", arguments_.name, node_->error()));
-    return kFailed;
+    return kRunFailed;
   }
 
  private:
@@ -277,7 +276,7 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
     Complain(fmt::format("{0}: error: {1} (see {0} --help)", name, error.what()));
-    return kBadUsage;
+    return kBadInput;
   }
   WatchInterrupts();
   FailWritesBeyondTheSizeLimit();
@@ -285,10 +284,10 @@ int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
     return Service(arguments, make).Run();
   } catch (const InputError& error) {
     Complain(fmt::format("{}: {}", name, error.what()));
-    return kBadUsage;
+    return kBadInput;
   } catch (const std::exception& error) {
     Complain(fmt::format("{}: error: {}", name, error.what()));
-    return kFailed;
+    return kRunFailed;
   }
 }
 

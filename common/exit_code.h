@@ -1,0 +1,14 @@
+// How a program ends: one meaning of each exit code for all programs.
+#pragma once
+
+namespace fogline {
+
+enum ExitCode : int {
+  kDone = 0,
+  kCheckFailed = 1,   // what was to be checked is not so
+  kBadInput = 2,      // in the arguments or in a file (InputError)
+  kRunFailed = 3,     // a failure at run time
+  kInterrupted = 130  // by a signal that asks a process to end (Interrupted)
+};
+
+}  // namespace fogline
