@@ -110,11 +110,12 @@ std::string Read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The C++ files outside tests/, relative to the folder of the sources, in the order of their
+/// The C++ files of these folders, relative to the folder of the sources, in the order of their
 /// names.
-std::vector<std::filesystem::path> Sources() {
+std::vector<std::filesystem::path> Sources(const std::vector<std::string>& tops = {
+                                               "common", "scenario", "services", "tools"}) {
   std::vector<std::filesystem::path> sources;
-  for (const char* top : {"common", "scenario", "services", "tools"}) {
+  for (const std::string& top : tops) {
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(SourceDirectory() / top)) {
       const auto extension = entry.path().extension();
@@ -242,7 +243,23 @@ TEST(HouseTest, NoFolderHasMoreThan20Files) {
   constexpr int kMost = 20;
   std::map<std::filesystem::path, int> files;
   for (const auto& file : Sources()) ++files[file.parent_path()];
+  for (const auto& file : Sources({"tests"})) ++files[file.parent_path()];
   for (const auto& [folder, count] : files) EXPECT_LE(count, kMost) << folder;
+}
+
+TEST(HouseTest, TestsOfAFolderLieInTheSameFolderAgain) {
+  const std::filesystem::path tests = SourceDirectory() / "tests";
+  int folders = 0;
+  for (const char* kind : {"unit", "property"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(tests / kind)) {
+      if (!entry.is_directory()) continue;
+      const auto folder = std::filesystem::relative(entry.path(), tests / kind);
+      if (folder == "fallback") continue;  // what all roles of a run do without one of them
+      EXPECT_TRUE(std::filesystem::is_directory(SourceDirectory() / folder)) << entry.path();
+      ++folders;
+    }
+  }
+  EXPECT_GT(folders, 50);
 }
 
 /// "NAMESPACE::NAME" of each type that a header defines outside of other types.

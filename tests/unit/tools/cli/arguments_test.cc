@@ -50,7 +50,7 @@ class ScenarioArgumentsTest : public testing::Test {
  protected:
   void Read(std::vector<std::string> words) {
     words.insert(words.begin(), (SourceDirectory() / "scenario/paper.json").string());
-    app_.parse({words.rbegin(), words.rend()});
+    app_.parse(std::vector(words.rbegin(), words.rend()));
   }
   CLI::App app_;
   const cli::ScenarioArguments arguments_{app_};
@@ -200,7 +200,7 @@ TEST(JsonArgumentsTest, HaveABuildInHexadecimalDigits) {
 class NetworkArgumentsTest : public testing::Test {
  protected:
   std::string Url(const std::vector<std::string>& words) {
-    app_.parse({words.rbegin(), words.rend()});
+    app_.parse(std::vector(words.rbegin(), words.rend()));
     return arguments_.Url();
   }
   CLI::App app_;

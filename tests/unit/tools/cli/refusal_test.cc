@@ -24,7 +24,7 @@ class RefusalTest : public testing::Test {
   /// @param words in order; "" if they are no error
   std::string Of(const std::vector<std::string>& words) {
     try {
-      app_.parse({words.rbegin(), words.rend()});
+      app_.parse(std::vector(words.rbegin(), words.rend()));
     } catch (const CLI::Success&) {
       return UnknownVerb(app_);
     } catch (const CLI::ParseError& error) {

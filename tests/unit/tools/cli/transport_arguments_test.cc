@@ -20,7 +20,7 @@ using runner::ExperimentOptions;
 ExperimentOptions Read(std::vector<std::string> words, const std::string& usual = "udpm") {
   CLI::App app;
   const cli::TransportArguments arguments(app, usual);
-  app.parse({words.rbegin(), words.rend()});
+  app.parse(std::vector(words.rbegin(), words.rend()));
   ExperimentOptions options;
   arguments.Apply(options);
   return options;
