@@ -64,6 +64,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"services/metrics/closed_loop", "metrics", "all roles in one process, and their metrics"},
     {"services/runtime/transport", "runtime", "carries the bytes"},
     {"services/runtime/discovery", "runtime", "finds runs by what is carried"},
+    {"services/runtime/node", "runtime", "a role's part in any run"},
     {"services/runtime/lockstep", "runtime", "a role's part in a run that waits"},
     {"services/runtime/realtime", "runtime", "a role's part in a run that does not wait"},
     {"services/runtime/coordination", "runtime", "the runner's part in both"},

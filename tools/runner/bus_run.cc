@@ -29,7 +29,7 @@
 #include "services/recorder/recorder.h"
 #include "services/runtime/coordination/run_coordinator.h"
 #include "services/runtime/discovery/beacon.h"
-#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/node/runner_watch.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/realtime/fallback_log.h"
 #include "services/runtime/transport/lcm_url.h"

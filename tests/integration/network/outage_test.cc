@@ -11,7 +11,7 @@
 
 #include "common/clock.h"
 #include "services/log/event_log.h"
-#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/node/runner_watch.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/network_test.h"

@@ -1,4 +1,4 @@
-#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/node/runner_watch.h"
 
 #include <gtest/gtest.h>
 
