@@ -15,7 +15,7 @@ namespace fogline {
 class OwnPauses {
  public:
   /// Two looks at the clock that are further apart than this are a pause. Every process looks
-  /// several times a second (Node::kHeartbeat is the longest interval).
+  /// several times a second (OwnStatus::kHeartbeat is the longest interval).
   static constexpr Duration kPause = milliseconds(500);
 
   explicit OwnPauses(TimePoint now) : looked_(now) {}

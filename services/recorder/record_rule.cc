@@ -19,18 +19,24 @@ constexpr std::size_t kMaxHeard = 4096;
 
 }  // namespace
 
-RecordRule::RecordRule(runtime::Node& node, const Scenario& scenario, double speed,
-                       std::int64_t run_id)
-    : runtime::RealtimeRule(node, scenario, speed), run_id_(run_id) {}
+RecordRule::RecordRule(runtime::Parts& parts, const Scenario& scenario)
+    : parts_(parts),
+      watch_(parts, scenario),
+      overdue_(duration_cast<Duration>(
+          kOverduePeriods *
+          std::chrono::duration<double>(runtime::PeriodOf(scenario, parts.run.pace)))) {}
 
 void RecordRule::ListenToStatus() {
   listening_ = true;
-  bus().Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
+  parts_.bus.Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
     const auto* status = arrival.As<status_t>();
-    if (status == nullptr || status->header.run_id != run_id_ || heard_.size() >= kMaxHeard) return;
+    if (status == nullptr || status->header.run_id != *parts_.run.id ||
+        heard_.size() >= kMaxHeard) {
+      return;
+    }
     const runtime::Bytes bytes = arrival.bytes();
-    heard_.push_back(
-        {.step = std::max<std::int64_t>(newest(), 0), .bytes = {bytes.begin(), bytes.end()}});
+    heard_.push_back({.step = std::max<std::int64_t>(watch_.horizon().newest(), 0),
+                      .bytes = {bytes.begin(), bytes.end()}});
   });
 }
 
@@ -40,48 +46,42 @@ void RecordRule::TakeStatus(std::int64_t step, const std::function<void(runtime:
   }
 }
 
-runtime::StepRing::Verdict RecordRule::Classify(std::size_t input, std::int64_t step,
-                                                runtime::Bytes bytes) {
-  const runtime::StepRing::Verdict verdict = runtime::RealtimeRule::Classify(input, step, bytes);
-  const runtime::StepRing& ring = inputs()[input].ring;
-  // The log has the message if the ring has its step. Whether the log has the message of a step
-  // older than the ring is not known.
-  if (verdict != runtime::StepRing::Verdict::kLate || ring.Has(step) ||
-      step <= ring.newest() - runtime::kRingSteps) {
-    return verdict;
-  }
+void RecordRule::OnInput(std::size_t input, std::int64_t step, runtime::Arrival& arrival) {
+  const auto verdict = watch_.Judge(input, step, arrival.bytes());
+  if (verdict == runtime::StepRing::Verdict::kLate) CountRefused(input, step);
+  if (!parts_.inputs.Keep(input, step, arrival, verdict)) return;
+  OpenUpTo(step, arrival.time());
+  OpenAt(step, arrival.time());
+  watch_.Heard(input, step, arrival.time());
+}
+
+void RecordRule::CountRefused(std::size_t input, std::int64_t step) {
+  const runtime::StepRing& ring = parts_.inputs.all()[input].ring;
+  // A message of the step that stands in the ring is in the log; of an older one it is not known.
+  if (ring.Has(step) || step <= ring.newest() - runtime::kRingSteps) return;
   Refused& refused = refused_[input];
   if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;
-  return verdict;
 }
 
 void RecordRule::WriteStatus(TimePoint now) {
-  runtime::RealtimeRule::WriteStatus(now);
-  for (std::size_t i = 0; i < status().input_late.size(); ++i) {
-    status().input_late[i] = refused_[i].count;
-  }
-}
-
-void RecordRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
-  OpenUpTo(step, time);
-  OpenAt(step, time);
-  runtime::RealtimeRule::OnInput(input, step, time);
+  watch_.WriteStatus(now);
+  std::vector<std::int64_t>& late = parts_.own.message().input_late;
+  for (std::size_t i = 0; i < late.size(); ++i) late[i] = refused_[i].count;
 }
 
 void RecordRule::OnProgress() {
-  runtime::RealtimeRule::OnProgress();
+  watch_.OnProgress();
   const TimePoint now = Clock::now();
-  const std::int64_t step = std::min(progress(), NewestPossible(now));
-  if (step <= newest()) return;
+  const std::int64_t step = std::min(parts_.run.progress, watch_.NewestPossible(now));
+  if (step <= watch_.horizon().newest()) return;
   OpenUpTo(step, now);
-  KnowOf(step);
+  watch_.horizon().KnowOf(step);
 }
 
 void RecordRule::OpenUpTo(std::int64_t step, TimePoint now) {
-  for (std::int64_t k = std::max({next(), newest() + 1, step - runtime::kRingSteps + 1}); k <= step;
-       ++k) {
-    OpenAt(k, now);
-  }
+  const std::int64_t first = std::max(
+      {parts_.steps.next(), watch_.horizon().newest() + 1, step - runtime::kRingSteps + 1});
+  for (std::int64_t k = first; k <= step; ++k) OpenAt(k, now);
 }
 
 RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
@@ -90,42 +90,54 @@ RecordRule::Open& RecordRule::OpenAt(std::int64_t step, TimePoint now) {
   return open;
 }
 
+TimePoint RecordRule::Poll(TimePoint now) {
+  return watch_.Poll(now, [this](TimePoint time) { return Fire(time); });
+}
+
 TimePoint RecordRule::Fire(TimePoint now) {
   if (!listening_) ListenToStatus();
-  while (Running() && next() <= newest() && (Complete(next()) || GivenUp(next(), now))) {
-    const TimePoint due = std::ranges::max_element(inputs(), {}, &Input::heard)->heard;
-    ComputeDue(next(), due, now);
+  const auto inputs = parts_.inputs.all();
+  const auto is_due = [&, this] {
+    const std::int64_t next = parts_.steps.next();
+    return parts_.own.Running() && next <= watch_.horizon().newest() &&
+           (Complete(next) || GivenUp(next, now));
+  };
+  while (is_due()) {
+    const TimePoint due = std::ranges::max_element(inputs, {}, &runtime::Input::heard)->heard;
+    watch_.ComputeDue(parts_.steps.next(), due, now);
   }
-  if (!Running() || next() > newest()) return now + kHeartbeat;
+  if (!parts_.own.Running() || parts_.steps.next() > watch_.horizon().newest()) {
+    return now + runtime::OwnStatus::kHeartbeat;
+  }
   if (now >= ask_at_) AskForHoles(now);
   return ask_at_;
 }
 
 bool RecordRule::Complete(std::int64_t step) const {
-  return std::ranges::all_of(inputs(), [step](const Input& input) { return input.ring.Has(step); });
+  return std::ranges::all_of(parts_.inputs.all(),
+                             [step](const runtime::Input& input) { return input.ring.Has(step); });
 }
 
 bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
   const Open& open = OpenAt(step, now);
-  return step <= newest() - kMaxOpen ||
+  return step <= watch_.horizon().newest() - kMaxOpen ||
          (open.asked >= kAsks && now > open.asked_at + 2 * kAskEvery);
 }
 
 void RecordRule::AskForHoles(TimePoint now) {
   ask_at_ = now + kAskEvery;
-  const auto overdue =
-      duration_cast<Duration>(kOverduePeriods * std::chrono::duration<double>(period()));
-  std::int64_t end = next();  // end of the steps to be asked for
-  while (end <= newest() && now >= OpenAt(end, now).seen + overdue) ++end;
-  std::int64_t first = next();
+  const std::int64_t newest = watch_.horizon().newest();
+  std::int64_t end = parts_.steps.next();  // end of the steps to be asked for
+  while (end <= newest && now >= OpenAt(end, now).seen + overdue_) ++end;
+  std::int64_t first = parts_.steps.next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;
-  for (const Input& input : inputs()) {
+  for (const runtime::Input& input : parts_.inputs.all()) {
     for (std::int64_t step = first; step < end; ++step) {
       if (input.ring.Has(step)) continue;
       std::int64_t count = 1;
       while (step + count < end && !input.ring.Has(step + count)) ++count;
-      Ask(kChannels[input.channel].name, {.first = step, .count = count});
-      ++status().repairs_asked;
+      parts_.requests.Ask(kChannels[input.channel].name, {.first = step, .count = count});
+      ++parts_.own.message().repairs_asked;
       step += count;
     }
   }

@@ -10,17 +10,17 @@
 #include <functional>
 #include <vector>
 
-#include "services/runtime/realtime/realtime_rule.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/realtime/realtime_watch.h"
 
 namespace fogline::recorder {
 
-class RecordRule final : public runtime::RealtimeRule {
+class RecordRule final : public runtime::FireRule {
  public:
-  RecordRule(runtime::Node& node, const Scenario& scenario, double speed, std::int64_t run_id);
+  RecordRule(runtime::Parts& parts, const Scenario& scenario);
 
-  runtime::StepRing::Verdict Classify(std::size_t input, std::int64_t step,
-                                      runtime::Bytes bytes) override;
-  void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  void OnInput(std::size_t input, std::int64_t step, runtime::Arrival& arrival) override;
+  TimePoint Poll(TimePoint now) override;
   void OnProgress() override;
   /// Counts as late only messages that the log lacks, because `unlogged_messages` is computed from
   /// this count.
@@ -49,8 +49,12 @@ class RecordRule final : public runtime::RealtimeRule {
         steps{};  // plus one: the steps that were counted last
   };
 
-  TimePoint Fire(TimePoint now) override;
-  /// Notes that the steps up to this one are under way. From now on their missing messages count as
+  /// Writes the steps that are due, and asks for what they lack.
+  /// @return the latest time for the next call
+  TimePoint Fire(TimePoint now);
+  /// Counts a late message that is not in the log.
+  void CountRefused(std::size_t input, std::int64_t step);
+  /// Steps up to this one are under way. From now on a message of them that has not come counts as
   /// late.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
@@ -60,7 +64,9 @@ class RecordRule final : public runtime::RealtimeRule {
   void AskForHoles(TimePoint now);
   void ListenToStatus();
 
-  std::int64_t run_id_;
+  runtime::Parts& parts_;
+  runtime::RealtimeWatch watch_;
+  Duration overdue_;  // after this time a message is asked for
   std::array<Open, runtime::kRingSteps> open_{};
   std::array<Refused, kNumChannels> refused_{};  // by input
   std::deque<Heard> heard_;

@@ -33,37 +33,24 @@ constexpr Duration kLimiterRetry = milliseconds(1);
 
 }  // namespace
 
-/// Lockstep that also answers requests for old steps.
-class Recorder::AnsweringRule final : public runtime::LockstepRule {
- public:
-  explicit AnsweringRule(Recorder& recorder)
-      : runtime::LockstepRule(recorder), recorder_(recorder) {}
-
-  TimePoint Poll(TimePoint now) override {
-    return std::min(runtime::LockstepRule::Poll(now), recorder_.AnswerSome(now));
-  }
-
- private:
-  Recorder& recorder_;
-};
-
 Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
                    const std::filesystem::path& file, Existing existing)
-    : runtime::Node(bus, Role::kRecorder, run_id), file_(file), existing_(existing) {
+    : node_(bus, Role::kRecorder, run_id, *this), file_(file), existing_(existing) {
   // In memory no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
-  limiter_ = runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  node_.outputs().limiter() =
+      runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
+  parts_.inputs.Of(IndexOf<truth_t>()).keep = [this](std::int64_t step, runtime::Arrival& arrival) {
+    if (arrival.As<truth_t>()->last) final_ = step;
+  };
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
-void Recorder::Configure(const Scenario& scenario) {
+std::unique_ptr<runtime::FireRule> Recorder::Join(const Scenario& scenario) {
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
   step_us_ = std::llround(scenario.step_s * 1e6);
-}
-
-std::unique_ptr<runtime::FireRule> Recorder::MakeRule(const Scenario& scenario) {
-  if (!realtime()) return std::make_unique<AnsweringRule>(*this);
-  auto rule = std::make_unique<RecordRule>(*this, scenario, pace(), run_id());
+  if (!parts_.run.realtime) return std::make_unique<runtime::LockstepRule>(parts_);
+  auto rule = std::make_unique<RecordRule>(parts_, scenario);
   recording_ = rule.get();
   return rule;
 }
@@ -72,11 +59,12 @@ bool Recorder::Resume() {
   std::error_code missing;
   const bool is_there = std::filesystem::file_size(file_, missing) > 0 && !missing;
   const log::LogFront front = is_there ? log::ReadFront(file_) : log::LogFront();
-  if (!front.parts.empty() && front.run_id != run_id()) {
+  const std::int64_t run_id = *parts_.run.id;
+  if (!front.parts.empty() && front.run_id != run_id) {
     throw InputError(fmt::format("{}: the log is that of run {}, not of {}", file_.string(),
-                                 front.run_id, run_id()));
+                                 front.run_id, run_id));
   }
-  if (!front.parts.empty() && front.parts.hash() != parts().hash()) {
+  if (!front.parts.empty() && front.parts.hash() != parts_.run.parts.hash()) {
     throw InputError(fmt::format("{}: the log is that of another scenario", file_.string()));
   }
   const log::Remains remains = ReadOwnRemains(front);
@@ -84,24 +72,24 @@ bool Recorder::Resume() {
   log_.emplace(file_, remains.head);
   history_.emplace(file_, front, remains);
   if (remains.final) final_ = remains.steps - 1;
-  first_ = remains.steps;
-  StartAt(first_);
-  if (!realtime()) RememberLastSteps();
+  parts_.steps.StartAt(remains.steps);
+  if (!parts_.run.realtime) RememberLastSteps();
   return true;
 }
 
 log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   const auto say_so_far = [this](std::int64_t steps) {
-    status().header.step = steps - 1;
-    PublishStatus();
+    parts_.own.message().header.step = steps - 1;
+    parts_.own.Publish();
   };
   log::Remains remains;
   if (front.parts.Complete()) remains = log::ReadRemains(file_, front, say_so_far);
   // The world begins a step only after the step kMaxAhead before it is on disk. In real time it
   // does not wait, and a missing step is a hole.
-  if (!realtime() && remains.steps <= progress() - runtime::kMaxAhead) {
+  const std::int64_t written = parts_.run.progress - runtime::kMaxAhead + 1;
+  if (!parts_.run.realtime && remains.steps < written) {
     throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
-                                 remains.steps, progress() - runtime::kMaxAhead + 1));
+                                 remains.steps, written));
   }
   return remains;
 }
@@ -110,57 +98,37 @@ void Recorder::RememberLastSteps() {
   const std::int64_t steps = history_->steps();
   for (std::int64_t step = std::max<std::int64_t>(0, steps - runtime::kRingSteps); step < steps;
        ++step) {
-    auto input = inputs().begin();  // the inputs stand in the order of the log, too
+    std::size_t input = 0;  // the inputs stand in the order of the log, too
     history_->ForEachMessage(step, [&](std::string_view /*channel*/, runtime::Bytes bytes) {
-      (input++)->ring.Store(step, bytes);
+      parts_.inputs.Remember(input++, step, bytes);
     });
   }
 }
 
 void Recorder::WriteScenario() {
   if (!log_) log_.emplace(file_);
+  const runtime::RunNews& news = parts_.run;
+  const std::vector<std::string>& texts = news.parts.parts();
   std::vector<std::uint8_t> buffer;
-  for (std::size_t i = 0; i < parts().parts().size(); ++i) {
-    run_t run =
-        runtime::MakeRunPart(run_id(), run_t::PREPARE, 0, parts().hash(), parts().parts(), i);
-    if (realtime()) {
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    run_t run = runtime::MakeRunPart(*news.id, run_t::PREPARE, 0, news.parts.hash(), texts, i);
+    if (news.realtime) {
       run.realtime = 1;
-      run.pace = pace();
+      run.pace = news.pace;
     }
     runtime::Encode(run, buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
   log_->Flush();
-  const log::LogHead head{.bytes = log_->size(), .events = std::ssize(parts().parts())};
+  const log::LogHead head{.bytes = log_->size(), .events = std::ssize(texts)};
   history_.emplace(
-      file_, log::LogFront{.run_id = run_id(), .parts = {}, .realtime = realtime(), .head = head},
+      file_,
+      log::LogFront{.run_id = *news.id, .parts = {}, .realtime = news.realtime, .head = head},
       log::Remains{.head = head, .last = head.bytes});
 }
 
-runtime::RefusalCounter Recorder::Wrong(std::size_t input, runtime::Arrival& arrival) {
-  runtime::RefusalCounter wrong = nullptr;
-  ForEachStepChannel([&]<class M>(std::size_t channel) {
-    if (channel == inputs()[input].channel) wrong = arrival.Wrong<M>();
-  });
-  return wrong;
-}
-
-runtime::RefusalCounter Recorder::Accept(std::size_t input, std::int64_t step,
-                                         runtime::Arrival& arrival) {
-  runtime::RefusalCounter wrong = nullptr;
-  ForEachStepChannel([&]<class M>(std::size_t channel) {
-    if (channel != inputs()[input].channel) return;
-    const M* message = arrival.As<M>();
-    if (message == nullptr) wrong = arrival.Wrong<M>();
-    if constexpr (std::is_same_v<M, truth_t>) {
-      if (message != nullptr && message->last) final_ = step;
-    }
-  });
-  return wrong;
-}
-
 void Recorder::Write(std::int64_t step) {
-  for (const Input& input : inputs()) {
+  for (const runtime::Input& input : parts_.inputs.all()) {
     if (!input.ring.Has(step)) continue;
     const runtime::Bytes bytes = input.ring.Get(step);
     constexpr std::size_t kTimeOffset = runtime::kStepOffset + 8;
@@ -183,14 +151,19 @@ void Recorder::Compute(std::int64_t step) {
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
-    status().header.step = step;
-    PublishStatus();
+    parts_.own.message().header.step = step;
+    parts_.own.Publish();
   }
 }
 
-void Recorder::OnStatusAsked(std::int64_t step, TimePoint /*now*/) {
-  rule().Expect(std::min(step, next() + runtime::kRingSteps - 1));
-  if (next() > step) PublishStatus();
+TimePoint Recorder::Poll(TimePoint now) {
+  return recording_ != nullptr ? TimePoint::max() : AnswerSome(now);
+}
+
+void Recorder::OnStatusAsked(std::int64_t step) {
+  const std::int64_t next = parts_.steps.next();
+  node_.rule().Expect(std::min(step, next + runtime::kRingSteps - 1));
+  if (next > step) parts_.own.Publish();
 }
 
 void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) {
@@ -198,7 +171,7 @@ void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimeP
   // Newer steps are in the rings of their producers. Steps that are kMaxAhead old are acknowledged,
   // so they can be read from the file.
   static_assert(kAcknowledgeEvery <= runtime::kMaxAhead);
-  steps.count = std::min(steps.count, next() - runtime::kMaxAhead - steps.first);
+  steps.count = std::min(steps.count, parts_.steps.next() - runtime::kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);
   if (place == kNumChannels || kChannels[place].pace != Pace::kStep) return;
   for (std::int64_t k = steps.first; k < steps.first + steps.count; ++k) {
@@ -213,14 +186,15 @@ TimePoint Recorder::AnswerSome(TimePoint now) {
   if (asked_.empty()) return TimePoint::max();
   // New messages are read first. A role repeats a request that waits behind old answers, and if
   // repetitions were not read together, each would get its own answer.
-  bus().Drain();
-  for (int i = 0; i < kStepsAtOnce && limiter_.Has(now); ++i) {
+  parts_.bus.Drain();
+  runtime::RateLimiter& limiter = node_.outputs().limiter();
+  for (int i = 0; i < kStepsAtOnce && limiter.Has(now); ++i) {
     const auto asked = asked_.Take();
     if (!asked) return TimePoint::max();
     AnswerStep(*asked, now);
   }
   // Returns so that new messages are read. The next call is when the rate limiter allows it.
-  return asked_.empty() ? TimePoint::max() : limiter_.Has(now) ? now : now + kLimiterRetry;
+  return asked_.empty() ? TimePoint::max() : limiter.Has(now) ? now : now + kLimiterRetry;
 }
 
 void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
@@ -228,7 +202,7 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
     const std::size_t channel = ChannelNamed(name);
     const AskedSteps::Channels bit = AskedSteps::Channels{1} << channel;
     if ((asked.channels & bit) == 0) return;
-    if (!limiter_.Has(now)) return asked_.Add(asked.step, bit);
+    if (!node_.outputs().limiter().Has(now)) return asked_.Add(asked.step, bit);
     answered_[channel][runtime::RingSlot(asked.step)] = {.step = asked.step, .at = now};
     Answer(name, bytes, now);
   });
@@ -237,12 +211,12 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
 // In real time no role computes old steps again. A restarted world needs the positions of the cars:
 // it is the only role that asks for TRUTH, and the process that produced it is dead.
 void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
-  if (channel != ChannelOf<truth_t>().name || !limiter_.Has(now)) return;
-  const auto truth = std::ranges::find(inputs(), IndexOf<truth_t>(), &Input::channel);
+  if (channel != ChannelOf<truth_t>().name || !node_.outputs().limiter().Has(now)) return;
+  const runtime::StepRing& truths = parts_.inputs.Of(IndexOf<truth_t>()).ring;
   bool answered = false;
   for (std::int64_t step = steps.first; step < steps.first + steps.count; ++step) {
-    if (!truth->ring.Has(step)) continue;
-    Answer(channel, truth->ring.Get(step), now);
+    if (!truths.Has(step)) continue;
+    Answer(channel, truths.Get(step), now);
     answered = true;
   }
   // The recorder may have been restarted itself: then its ring is empty, and the answer comes from
@@ -254,41 +228,43 @@ void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, 
       now);
 }
 
-std::string Recorder::Contradiction(std::int64_t step, const ChannelInfo& channel) const {
-  if (step >= first_) return runtime::Node::Contradiction(step, channel);
-  return fmt::format(
-      "step {}: {} is not what the log has: {} is another program, or another "
-      "version, than the one that was recorded",
-      step, channel.name, NameOf(channel.from));
+void Recorder::Answer(std::string_view channel, runtime::Bytes bytes, TimePoint now) {
+  if (!node_.outputs().limiter().Take(now)) return;
+  parts_.bus.Publish(channel, bytes);
+  ++parts_.own.message().repairs_served;
 }
 
 void Recorder::BeforeStatus() {
   // STATUS acknowledges every step up to its own, so they must be handed to the operating system
   // before.
-  if (!log_ || state() == status_t::FAILED) return;
+  if (!log_ || parts_.own.message().state == status_t::FAILED) return;
   try {
     log_->Flush();
   } catch (const std::exception& error) {
-    Fail(error.what());
+    parts_.own.Fail(error.what());
   }
   TellWritten();
 }
 
 void Recorder::TellWritten() {
   if (!log_) return;  // the recorder has failed and left
-  status().log_begin = log_->written().begin;
-  status().log_bytes = log_->written().bytes;
-  status().log_checksum = log_->written().checksum;
+  status_t& status = parts_.own.message();
+  status.log_begin = log_->written().begin;
+  status.log_bytes = log_->written().bytes;
+  status.log_checksum = log_->written().checksum;
 }
 
 void Recorder::OnLeave() {
   // A run that ends early leaves incomplete steps. The messages that are there are kept.
   if (!log_) return;
   std::int64_t newest = -1;
-  for (const Input& input : inputs()) newest = std::max(newest, input.ring.newest());
+  for (const runtime::Input& input : parts_.inputs.all()) {
+    newest = std::max(newest, input.ring.newest());
+  }
+  const std::int64_t next = parts_.steps.next();
   try {
-    for (std::int64_t step = next(); step <= newest; ++step) Write(step);
-    if (recording_ != nullptr) WriteStatus(std::max(newest, next() - 1));
+    for (std::int64_t step = next; step <= newest; ++step) Write(step);
+    if (recording_ != nullptr) WriteStatus(std::max(newest, next - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
     // The disk is full. If the run needs the space, an earlier write has reported it. These
@@ -296,7 +272,7 @@ void Recorder::OnLeave() {
   }
   TellWritten();
   log_.reset();
-  for (int i = 0; i < kLastWords; ++i) PublishStatus();
+  for (int i = 0; i < kLastWords; ++i) parts_.own.Publish();
 }
 
 }  // namespace fogline::recorder

@@ -11,13 +11,13 @@
 #include "services/log/event_log.h"
 #include "services/recorder/asked_steps.h"
 #include "services/recorder/history.h"
-#include "services/runtime/lockstep/node.h"
+#include "services/runtime/node/node.h"
 
 namespace fogline::recorder {
 
 class RecordRule;
 
-class Recorder final : public runtime::Node {
+class Recorder final : public runtime::Work {
  public:
   /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
@@ -28,18 +28,14 @@ class Recorder final : public runtime::Node {
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
 
- private:
-  class AnsweringRule;
+  runtime::Node& node() override { return node_; }
 
-  void Configure(const Scenario& scenario) override;
-  std::unique_ptr<runtime::FireRule> MakeRule(const Scenario& scenario) override;
-  runtime::RefusalCounter Wrong(std::size_t input, runtime::Arrival& arrival) override;
-  runtime::RefusalCounter Accept(std::size_t input, std::int64_t step,
-                                 runtime::Arrival& arrival) override;
+ private:
+  std::unique_ptr<runtime::FireRule> Join(const Scenario& scenario) override;
   void Compute(std::int64_t step) override;
-  void OnStatusAsked(std::int64_t step, TimePoint now) override;
+  TimePoint Poll(TimePoint now) override;
+  void OnStatusAsked(std::int64_t step) override;
   void OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) override;
-  std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const override;
   void BeforeStatus() override;
   void OnLeave() override;
 
@@ -60,12 +56,15 @@ class Recorder final : public runtime::Node {
   /// Answers some of the requests. @return when to call it again
   TimePoint AnswerSome(TimePoint now);
   void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
+  /// Publishes a requested message again, unless the rate limiter refuses.
+  void Answer(std::string_view channel, runtime::Bytes bytes, TimePoint now);
 
+  runtime::Node node_;
+  runtime::Parts& parts_ = node_.parts();
   const std::filesystem::path file_;
   const Existing existing_;
   std::optional<log::EventLogWriter> log_;
   std::optional<History> history_;
-  std::int64_t first_ = 0;   // first step that it records; the log had those before it
   std::int64_t final_ = -1;  // last step of the run; -1 until it is known
   std::int64_t step_us_ = 0;
   AskedSteps asked_;

@@ -91,7 +91,7 @@ class Run {
         return Say(follower);
       }
       case kPoll:
-        for (runtime::Node* node : nodes_) node->Poll(Clock::now());
+        for (runtime::Work* role : roles_) role->node().Poll(Clock::now());
         return bus_.Drain();
       default: {
         const std::size_t channel = cutter.Byte() % kNumChannels;
@@ -103,8 +103,9 @@ class Run {
   }
 
   void DemandSound() const {
-    for (const runtime::Node* node : nodes_) {
-      Demand(node->left() || node->error().empty(), "a node that fails leaves");
+    for (runtime::Work* role : roles_) {
+      const runtime::OwnStatus& own = role->node().parts().own;
+      Demand(own.left() || own.message().error.empty(), "a role that fails leaves");
     }
     if (listener_.steps() > 0) Took();
   }
@@ -136,7 +137,7 @@ class Run {
   runtime::StepNode<world::World, world::FailsafeWorld> world_{bus_, {}};
   runtime::StepNode<driver::Driver> driver_{bus_, {}};
   recorder::Recorder recorder_{bus_, {}, log_.path()};
-  std::array<runtime::Node*, 3> nodes_{&world_, &driver_, &recorder_};
+  std::array<runtime::Work*, 3> roles_{&world_, &driver_, &recorder_};
   std::int64_t step_ = 0;
   std::int64_t sequence_ = 0;
   bool realtime_ = false;  // true from the first kAnnounceRealtime on

@@ -99,26 +99,26 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
 // ---- memq --------------------------------------------------------------------------------------
 
 template <class Algorithm>
-std::unique_ptr<runtime::Node> MakeNode(runtime::Bus& bus, std::int64_t run_id) {
+std::unique_ptr<runtime::Work> MakeWork(runtime::Bus& bus, std::int64_t run_id) {
   return std::make_unique<runtime::StepNode<Algorithm>>(bus, run_id);
 }
 
 void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::int64_t run_id,
                  const Scenario& scenario, const std::filesystem::path& log,
                  recorder::Recorder::Existing existing) {
-  std::vector<std::unique_ptr<runtime::Node>> nodes;
-  for (const auto make : {MakeNode<world::World>, MakeNode<radar::Radar>, MakeNode<lidar::Lidar>,
-                          MakeNode<fusion::Fusion>, MakeNode<acc::Acc>, MakeNode<driver::Driver>,
-                          MakeNode<arbitrator::Arbitrator>, MakeNode<follower::Follower>}) {
-    nodes.push_back(make(bus, run_id));
+  std::vector<std::unique_ptr<runtime::Work>> roles;
+  for (const auto make : {MakeWork<world::World>, MakeWork<radar::Radar>, MakeWork<lidar::Lidar>,
+                          MakeWork<fusion::Fusion>, MakeWork<acc::Acc>, MakeWork<driver::Driver>,
+                          MakeWork<arbitrator::Arbitrator>, MakeWork<follower::Follower>}) {
+    roles.push_back(make(bus, run_id));
   }
-  nodes.push_back(std::make_unique<recorder::Recorder>(bus, run_id, log, existing));
+  roles.push_back(std::make_unique<recorder::Recorder>(bus, run_id, log, existing));
   Progress progress("step", scenario.steps);
   while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
          coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
-    for (const auto& node : nodes) next = std::min(next, node->Poll(now));
+    for (const auto& role : roles) next = std::min(next, role->node().Poll(now));
     // Messages come first: nothing is due by the clock while there are any.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());

@@ -8,8 +8,8 @@
 
 #include "common/process/this_process.h"
 #include "common/text.h"
-#include "services/runtime/lockstep/node.h"
 #include "services/runtime/lockstep/possible_status.h"
+#include "services/runtime/node/own_status.h"
 
 namespace fogline::runtime {
 namespace {
@@ -42,7 +42,7 @@ RunCoordinator::RunCoordinator(Bus& bus, RunCoordinatorOptions options)
       options_(std::move(options)),
       parts_(SplitScenario(options_.scenario_text)),
       hash_(HashOf(options_.scenario_text)),
-      signs_of_life_(Node::kHeartbeat),
+      signs_of_life_(OwnStatus::kHeartbeat),
       deaf_(options_.realtime ? options_.period : Duration::zero()),
       host_(HostName()),
       began_(Clock::now()),

@@ -12,8 +12,8 @@ namespace {
 
 // A STATUS may take this long on its way. If one arrives later than that, its sender is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
-// A process that hears that another process has its place leaves within this time (Node): five of
-// the runner's signs of life.
+// A process that hears that another process has its place leaves within this time (Membership):
+// five of the runner's signs of life.
 constexpr Duration kLeaves = milliseconds(1000);
 
 }  // namespace

@@ -1,62 +1,94 @@
 #include "services/runtime/lockstep/lockstep_rule.h"
 
-#include <algorithm>
-
 namespace fogline::runtime {
 namespace {
 
-// The shortest time between two requests of a node that asks because another process asked it.
+// The shortest time between two requests of a role that asks because another process asked it.
 constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
 
-LockstepRule::LockstepRule(Node& node) : FireRule(node), expected_(progress()), late_(progress()) {}
+LockstepRule::LockstepRule(Parts& parts, StepGate* gate)
+    : parts_(parts), gate_(gate), expected_(parts.run.progress), late_(parts.run.progress) {
+  if (gate_ != nullptr) gate_->BegunBefore(parts_.run.progress);
+}
 
-StepRing::Verdict LockstepRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
-  const Input& from = inputs()[input];
-  const auto verdict = from.ring.Classify(step, bytes, FirstNeeded(from));
-  // A node that catches up also hears the current steps of the others, which are too new for it.
+void LockstepRule::OnGo(const run_t& run, TimePoint now) {
+  if (gate_ == nullptr) return;
+  gate_->OnGo(run, now);
+  Expect(next());
+  Advance(now);
+}
+
+StepRing::Verdict LockstepRule::Judge(const Input& input, std::int64_t step, Bytes bytes) const {
+  const auto verdict = input.ring.Classify(step, bytes, FirstNeeded(input));
+  // A role that catches up also hears the current steps of the others, which are too new for it.
   const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
   return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
                                                                  : verdict;
 }
 
-void LockstepRule::OnInput(std::size_t /*input*/, std::int64_t step, TimePoint time) {
+void LockstepRule::OnInput(std::size_t input, std::int64_t step, Arrival& arrival) {
+  Inputs& inputs = parts_.inputs;
+  const auto verdict = Judge(inputs.all()[input], step, arrival.bytes());
+  if (!inputs.Keep(input, step, arrival, verdict)) return;
   Expect(step);
-  if (CatchingUp()) retry_.Arrived(time);
-  Advance(time);
+  if (CatchingUp()) retry_.Arrived(arrival.time());
+  Advance(arrival.time());
 }
 
 TimePoint LockstepRule::Poll(TimePoint now) {
+  TimePoint at = now + OwnStatus::kHeartbeat;
+  if (gate_ != nullptr) {
+    at = std::min(at, PollGate(now));
+    if (!parts_.own.Running()) return at;
+  }
   Advance(now);
-  return Repair(now);
+  return std::min(at, Repair(now));
+}
+
+TimePoint LockstepRule::PollGate(TimePoint now) {
+  if (gate_->started()) Expect(next());
+  if (gate_->Finished(next()) && FirstMissing() == nullptr) parts_.own.SetState(status_t::DONE);
+  if (const auto step = gate_->WantsRecorded(next(), now)) {
+    parts_.requests.Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
+  }
+  return gate_->NextPoll(next(), now);
 }
 
 void LockstepRule::OnProgress() {
-  Expect(progress());
-  if (progress() > next() + kMaxAhead) late_ = progress();
+  const std::int64_t progress = parts_.run.progress;
+  if (gate_ != nullptr) gate_->BegunBefore(progress);
+  Expect(progress);
+  if (progress > next() + kMaxAhead) late_ = progress;
 }
 
 void LockstepRule::OnAskedAhead(std::int64_t step, TimePoint now) {
   // A request may name a wrong step, so its effect is limited.
   Expect(std::min(step, next() + kRingSteps - 1));
-  // A node that catches up has already asked for its inputs.
+  // A role that catches up has already asked for its inputs.
   if (!CatchingUp() && now - retry_.asked() >= kMinBetweenAsks) AskForMissing(now);
 }
 
 void LockstepRule::WriteStatus(TimePoint now) {
   const Input* missing = retry_.since() ? FirstMissing() : nullptr;
   if (missing == nullptr) return;
-  status().waiting_for = kChannels[missing->channel].name;
-  status().last_heard_step = missing->ring.newest();
-  status().last_heard_ms = status().last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
-  status().waiting_ms = Milliseconds(now - *retry_.since());
+  status_t& status = parts_.own.message();
+  status.waiting_for = kChannels[missing->channel].name;
+  status.last_heard_step = missing->ring.newest();
+  status.last_heard_ms = status.last_heard_step < 0 ? 0 : Milliseconds(now - missing->heard);
+  status.waiting_ms = Milliseconds(now - *retry_.since());
 }
 
-const LockstepRule::Input* LockstepRule::FirstMissing() const {
+void LockstepRule::SetFinal(std::int64_t step) {
+  if (gate_ != nullptr) gate_->SetFinal(step);
+}
+
+const Input* LockstepRule::FirstMissing() const {
+  const auto inputs = parts_.inputs.all();
   const auto missing = std::ranges::find_if_not(
-      inputs(), [this](const Input& input) { return input.ReadyFor(next()); });
-  return missing == inputs().end() ? nullptr : &*missing;
+      inputs, [this](const Input& input) { return input.ReadyFor(next()); });
+  return missing == inputs.end() ? nullptr : &*missing;
 }
 
 std::int64_t LockstepRule::FirstNeeded(const Input& input) const {
@@ -64,14 +96,15 @@ std::int64_t LockstepRule::FirstNeeded(const Input& input) const {
 }
 
 void LockstepRule::Advance(TimePoint now) {
-  while (Running() && InputsReady() && MayCompute(next(), now)) {
-    if (!Compute(next())) return;
+  while (parts_.own.Running() && FirstMissing() == nullptr &&
+         (gate_ == nullptr || gate_->Open(next(), now))) {
+    if (!parts_.steps.Compute(next())) return;
     retry_.Computed(now);
   }
 }
 
 TimePoint LockstepRule::Repair(TimePoint now) {
-  if (expected_ < next() || FirstMissing() == nullptr) return now + kHeartbeat;
+  if (expected_ < next() || FirstMissing() == nullptr) return now + OwnStatus::kHeartbeat;
   const TimePoint ask_at = retry_.Wait(now);
   // The step has not been asked for yet, so none of its inputs can be on their way.
   if (CatchingUp() && next() > asked_) {
@@ -88,11 +121,11 @@ void LockstepRule::AskForMissing(TimePoint now) {
   retry_.Asked(now);
   // Up to the newest step that is known to be under way, but no more steps than the rings can hold.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
-  for (const Input& input : inputs()) {
+  for (const Input& input : parts_.inputs.all()) {
     const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);
     if (steps.count == 0) continue;
-    Ask(kChannels[input.channel].name, steps);
-    ++status().repairs_asked;
+    parts_.requests.Ask(kChannels[input.channel].name, steps);
+    ++parts_.own.message().repairs_asked;
   }
 }
 

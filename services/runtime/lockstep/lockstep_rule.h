@@ -8,48 +8,56 @@
 // computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
 // sends old inputs, their producers send the last ones. The node does not publish old outputs,
 // because the recorder has them.
+//
+// The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays near
+// the log on disk (step_gate.h).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
-#include "services/runtime/lockstep/fire_rule.h"
 #include "services/runtime/lockstep/retry_timer.h"
+#include "services/runtime/lockstep/step_gate.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/node/parts.h"
 #include "services/runtime/wire/step_ring.h"
 
 namespace fogline::runtime {
 
-class LockstepRule : public FireRule {
+class LockstepRule final : public FireRule {
  public:
-  explicit LockstepRule(Node& node);
+  /// @param gate of the role that begins the steps; nullptr for every other role
+  explicit LockstepRule(Parts& parts, StepGate* gate = nullptr);
 
-  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
-  void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  void OnGo(const run_t& run, TimePoint now) override;
+  void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) override;
   TimePoint Poll(TimePoint now) override;
   void OnProgress() override;
   void Expect(std::int64_t step) override { expected_ = std::max(expected_, step); }
   void OnAskedAhead(std::int64_t step, TimePoint now) override;
   void WriteStatus(TimePoint now) override;
-
- protected:
-  /// Whether the step may be computed now although its inputs are there.
-  virtual bool MayCompute(std::int64_t /*step*/, TimePoint /*now*/) { return true; }
-  /// Computes every step that can be computed.
-  void Advance(TimePoint now);
-  /// Whether all inputs of the next step are there.
-  bool InputsReady() const { return FirstMissing() == nullptr; }
+  void SetFinal(std::int64_t step) override;
 
  private:
+  std::int64_t next() const { return parts_.steps.next(); }
+  StepRing::Verdict Judge(const Input& input, std::int64_t step, Bytes bytes) const;
   /// The first input that the next step waits for; nullptr if there is none.
   const Input* FirstMissing() const;
-  /// The first step of an input that the node still needs.
+  /// The first step of an input that the role still needs.
   std::int64_t FirstNeeded(const Input& input) const;
+  /// Computes every step that can be computed.
+  void Advance(TimePoint now);
+  /// Does what is due at the gate. @return the latest time for the next call
+  TimePoint PollGate(TimePoint now);
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
   /// The steps from `first` to `last` that an input lacks and that one request should ask for.
   StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
-  /// Whether the next step is older than the steps that were under way when this node joined.
+  /// Whether the next step is older than the steps that were under way when this role joined.
   bool CatchingUp() const { return next() <= late_; }
 
+  Parts& parts_;
+  StepGate* const gate_;
   std::int64_t expected_;    // highest step that is known to be under way
   std::int64_t late_;        // last step to catch up with
   std::int64_t asked_ = -1;  // last step whose inputs were asked for

@@ -54,7 +54,7 @@ struct Arguments {
 class Service {
  public:
   /// @throws InputError, std::runtime_error if it cannot join the network
-  Service(const Arguments& arguments, const NodeFactory& make)
+  Service(const Arguments& arguments, const WorkFactory& make)
       : arguments_(arguments), make_(make), began_(Clock::now()), pauses_(began_) {
     Join(NetworkUrl(arguments.url), arguments.run_id);
     if (arguments.run_id) return;
@@ -64,19 +64,19 @@ class Service {
 
   /// Takes part in one run. @return the exit code
   int Run() {
-    while (!node_->left()) {
+    while (!own().left()) {
       if (WasInterrupted()) {
-        node_->Leave();
+        own().Leave();
         return kInterrupted;
       }
       const TimePoint now = Clock::now();
       pauses_.Attend(now);
-      if (node_->released()) {
+      if (own().released()) {
         StartOver(now);
-      } else if (node_->Waits()) {
+      } else if (own().Waits()) {
         WarnOfSignatures();
         Seek(now);
-      } else if (node_->RunnerSilent(now)) {
+      } else if (work_->node().membership().RunnerSilent(now)) {
         SeekAnother(now);
       } else {
         seeker_.reset();
@@ -84,19 +84,24 @@ class Service {
       }
       TakePart();
     }
-    if (node_->error().empty()) return kDone;
-    Complain(fmt::format("{}: error: {}", arguments_.name, node_->error()));
+    const std::string& error = own().message().error;
+    if (error.empty()) return kDone;
+    Complain(fmt::format("{}: error: {}", arguments_.name, error));
     return kRunFailed;
   }
 
  private:
   void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
+  OwnStatus& own() { return work_->node().parts().own; }
+  /// What the role knows of its run.
+  const RunNews& news() { return work_->node().parts().run; }
+
   /// If it cannot, it stays where it is. @throws as Bus()
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
     auto bus = std::make_unique<Bus>(url);
     Apply(arguments_.traffic, arguments_.role, *bus);
-    node_ = make_(*bus, run_id);
+    work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
   }
@@ -113,7 +118,7 @@ class Service {
   void TakePart() {
     try {
       const TimePoint now = Clock::now();
-      bus_->Wait(node_->Poll(now) - now);
+      bus_->Wait(work_->node().Poll(now) - now);
     } catch (const std::exception& error) {
       if (!seeker_ || !seeker_->Tries()) throw;
       GoBack(error.what());  // the relay that a message named has ended
@@ -171,10 +176,10 @@ class Service {
   /// (The node itself hears runs on its present network.)
   void SeekAnother(TimePoint now) {
     if (!MaySeek() || !OpenSeeker(now)) return;
-    seeker_->Ignore(node_->run_id());
+    seeker_->Ignore(*news().id);
     const auto run = seeker_->Look(now);
     if (!run) return;
-    node_->Release(fmt::format("went to run {}: the runner was silent", run->run_id));
+    own().Release(fmt::format("went to run {}: the runner was silent", run->run_id));
     began_ = now;
     GoTo(*run);
   }
@@ -183,7 +188,7 @@ class Service {
   /// there. @throws std::runtime_error after --wait
   void StartOver(TimePoint now) {
     if (!std::exchange(starts_over_, true)) {
-      Say(node_->error());
+      Say(own().message().error);
       began_ = now;
       try_at_ = now;
     }
@@ -191,7 +196,7 @@ class Service {
     if (now < try_at_) return;
     const bool had_seeker = seeker_.has_value();
     if (MaySeek() && OpenSeeker(now) && !had_seeker && !SameNetwork(bus_->url(), MeetingUrl())) {
-      seeker_->Stay(node_->run_id(), now);
+      seeker_->Stay(*news().id, now);
     }
     try_at_ = now + kTryAgain;
     try {
@@ -217,17 +222,17 @@ class Service {
   }
 
   void PreferIfRealtime() {
-    if (!node_->realtime() || std::exchange(preferred_, true)) return;
+    if (!news().realtime || std::exchange(preferred_, true)) return;
     // If the kernel does not grant it, the process keeps time as well as the machine allows.
     RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
   }
 
   const Arguments& arguments_;
-  const NodeFactory& make_;
+  const WorkFactory& make_;
   TimePoint began_;  // when the wait for a run began
   OwnPauses pauses_;
   std::unique_ptr<Bus> bus_;
-  std::unique_ptr<Node> node_;
+  std::unique_ptr<Work> work_;
   std::optional<RunSeeker> seeker_;  // while there is no run yet
   TimePoint try_at_{};               // when to try again what a network that is away has prevented
   bool starts_over_ = false;
@@ -244,7 +249,7 @@ std::string_view PurposeOf(Role role) {
 
 }  // namespace
 
-int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
+int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
                const std::function<void(CLI::App&)>& extend) {
   TakeStandardDescriptors();
   Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};

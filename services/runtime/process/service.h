@@ -13,14 +13,14 @@ class App;
 
 namespace fogline::runtime {
 
-/// Makes the node of a process. Called after the command line has been read.
-using NodeFactory =
-    std::function<std::unique_ptr<Node>(Bus& bus, std::optional<std::int64_t> run_id)>;
+/// Makes the work of a process, with its node. Called after the command line has been read.
+using WorkFactory =
+    std::function<std::unique_ptr<Work>(Bus& bus, std::optional<std::int64_t> run_id)>;
 
 /// Reads the command line, takes part in one run, and returns the exit code: 0 stopped by the
 /// runner, 2 bad usage, 3 failed, 130 ended by SIGINT, SIGTERM or SIGHUP (interrupt.h).
 /// @param extend adds options of this service, before the command line is read
-int RunProcess(int argc, char** argv, Role role, const NodeFactory& make,
+int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
                const std::function<void(CLI::App&)>& extend = {});
 
 /// The same for an algorithm. Failsafe replaces it in real time (step_node.h).

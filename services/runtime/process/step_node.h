@@ -1,5 +1,5 @@
-// An algorithm as a node: it connects the typed inputs and outputs of the algorithm with the bytes
-// of Node.
+// An algorithm as the work of a node: it connects the typed inputs and outputs of the algorithm
+// with the bytes of Inputs and Outputs.
 //
 // Two roles go on in real time when inputs fail: the role that begins the steps (the world) and one
 // that decides in every step (the arbitrator). They have an algorithm for that, Failsafe, which
@@ -18,9 +18,11 @@
 #include <fmt/core.h>
 
 #include "services/algorithm.h"
-#include "services/runtime/lockstep/lead_rule.h"
-#include "services/runtime/lockstep/node.h"
+#include "services/runtime/lockstep/lockstep_rule.h"
+#include "services/runtime/lockstep/step_gate.h"
+#include "services/runtime/node/node.h"
 #include "services/runtime/realtime/deadline_rule.h"
+#include "services/runtime/realtime/realtime_rule.h"
 #include "services/runtime/realtime/tick_rule.h"
 
 namespace fogline::runtime {
@@ -28,13 +30,17 @@ namespace fogline::runtime {
 /// @tparam Failsafe the algorithm that replaces Algorithm in real time; void: Algorithm also runs
 ///     in real time
 template <class Algorithm, class Failsafe = void>
-class StepNode final : public Node {
+class StepNode final : public Work {
  public:
   using Traits = AlgorithmTraits<Algorithm>;
 
-  StepNode(Bus& bus, std::optional<std::int64_t> run_id) : Node(bus, Traits::kRole, run_id) {
-    if constexpr (Traits::kStarts) gate_.emplace(bus, status());
+  StepNode(Bus& bus, std::optional<std::int64_t> run_id)
+      : node_(bus, Traits::kRole, run_id, *this) {
+    WithIndex<kInputs>([this]<std::size_t I> { KeepMessagesOf<I>(parts_.inputs.Of(kPlace<I>)); });
+    if constexpr (Traits::kStarts) gate_.emplace(bus, parts_.own.message());
   }
+
+  Node& node() override { return node_; }
 
  private:
   template <class Messages>
@@ -49,6 +55,8 @@ class StepNode final : public Node {
   template <std::size_t I>
   static constexpr std::int64_t kLag = LagOf(ChannelOf<std::tuple_element_t<I, AllInputs>>().from,
                                              Traits::kRole);
+  template <std::size_t I>
+  static constexpr std::size_t kPlace = IndexOf<std::tuple_element_t<I, AllInputs>>();
   static constexpr bool kFailsafe = !std::is_void_v<Failsafe>;
   struct Nothing {};
   using InRealtime = std::conditional_t<kFailsafe, Failsafe, Nothing>;
@@ -56,56 +64,49 @@ class StepNode final : public Node {
       !kFailsafe || Traits::kHasOnDemand == requires { &InRealtime::SetOnDemandInput; },
       "an algorithm and its failsafe have the same input on demand");
 
-  void Configure(const Scenario& scenario) override {
+  /// The input puts its messages into the ring of decoded messages.
+  template <std::size_t I>
+  void KeepMessagesOf(Input& input) {
+    input.keep = [this](std::int64_t step, Arrival& arrival) {
+      std::get<I>(rings_)[RingSlot(step)] = *arrival.As<std::tuple_element_t<I, AllInputs>>();
+    };
+  }
+
+  std::unique_ptr<FireRule> Join(const Scenario& scenario) override {
     algorithm_ = std::make_unique<Algorithm>(scenario);
     if constexpr (Traits::kHasOnDemand) {
       uses_on_demand_ = Traits::UsesOnDemandInput(scenario);
-      if (uses_on_demand_) ReadOnDemand(IndexOf<std::tuple_element_t<kInputs, AllInputs>>());
+      if (uses_on_demand_) KeepMessagesOf<kInputs>(parts_.inputs.ReadOnDemand(kPlace<kInputs>));
     }
     if constexpr (kFailsafe) {
-      if (realtime()) failsafe_ = std::make_unique<Failsafe>(scenario);
+      if (parts_.run.realtime) failsafe_ = std::make_unique<Failsafe>(scenario);
     }
-    if constexpr (Traits::kStarts) gate_->Configure(scenario, run_id());
+    if constexpr (Traits::kStarts) gate_->Configure(scenario, *parts_.run.id);
+    return parts_.run.realtime ? RuleInRealtime(scenario) : RuleInLockstep();
   }
 
-  RefusalCounter Wrong(std::size_t input, Arrival& arrival) override {
-    RefusalCounter wrong = nullptr;
-    WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
-      using M = std::tuple_element_t<I, AllInputs>;
-      if (inputs()[input].channel == IndexOf<M>()) wrong = arrival.Wrong<M>();
-    });
-    return wrong;
+  std::unique_ptr<FireRule> RuleInLockstep() {
+    return std::make_unique<LockstepRule>(parts_, gate_ ? &*gate_ : nullptr);
   }
 
-  RefusalCounter Accept(std::size_t input, std::int64_t step, Arrival& arrival) override {
-    RefusalCounter wrong = nullptr;
-    WithIndex<std::tuple_size_v<InputRings>>([&]<std::size_t I> {
-      using M = std::tuple_element_t<I, AllInputs>;
-      if (inputs()[input].channel != IndexOf<M>()) return;
-      if (const M* message = arrival.As<M>()) {
-        std::get<I>(rings_)[RingSlot(step)] = *message;
-      } else {
-        wrong = arrival.Wrong<M>();
-      }
-    });
-    return wrong;
-  }
-
-  std::unique_ptr<FireRule> MakeRule(const Scenario& scenario) override {
-    if (!realtime()) {
-      if constexpr (Traits::kStarts) return std::make_unique<LeadRule>(*this, *gate_);
-      return Node::MakeRule(scenario);
-    }
+  std::unique_ptr<FireRule> RuleInRealtime([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kFailsafe && Traits::kStarts) {
-      return std::make_unique<TickRule>(*this, scenario, pace(), *gate_,
-                                        [this](const truth_t& truth) { Resume(truth); });
+      return Watched(std::make_unique<TickRule>(parts_, scenario, *gate_,
+                                                [this](const truth_t& truth) { Resume(truth); }));
     } else if constexpr (kFailsafe) {
-      return std::make_unique<DeadlineRule>(*this, scenario, pace());
+      return Watched(std::make_unique<DeadlineRule>(parts_, scenario));
     } else if constexpr (Traits::kStarts) {
       throw std::runtime_error("nothing here keeps the time of a run in real time");
     } else {
-      return std::make_unique<RealtimeRule>(*this, scenario, pace());
+      return std::make_unique<RealtimeRule>(parts_, scenario);
     }
+  }
+
+  /// Remembers how the rule judges the inputs.
+  template <class Rule>
+  std::unique_ptr<Rule> Watched(std::unique_ptr<Rule> rule) {
+    watch_ = &rule->watch();
+    return rule;
   }
 
   void Compute(std::int64_t step) override {
@@ -113,7 +114,7 @@ class StepNode final : public Node {
       if (failsafe_) return ComputeFailsafe(step);
     }
     if constexpr (Traits::kStarts) {
-      if (step == 0) return Publish(step, algorithm_->Start(run_id()));
+      if (step == 0) return Publish(step, algorithm_->Start(*parts_.run.id));
     }
     PassOnDemandInput(*algorithm_, step);
     Publish(step, Step(step, std::make_index_sequence<kInputs>{}));
@@ -131,7 +132,7 @@ class StepNode final : public Node {
       if (!uses_on_demand_) return;
       static const std::tuple_element_t<kInputs, AllInputs> kBeforeTheRun{};
       const auto* newest = NewestOf<kInputs>(step - kLag<kInputs>);
-      if (newest == nullptr && !realtime()) newest = &kBeforeTheRun;
+      if (newest == nullptr && !parts_.run.realtime) newest = &kBeforeTheRun;
       if (newest != nullptr) algorithm.SetOnDemandInput(*newest);
     }
   }
@@ -140,30 +141,24 @@ class StepNode final : public Node {
   /// lockstep it is the message of `step`.
   template <std::size_t I>
   const std::tuple_element_t<I, AllInputs>* NewestOf(std::int64_t step) {
-    const StepRing& ring = InputOf<I>().ring;
+    const StepRing& ring = parts_.inputs.Of(kPlace<I>).ring;
     std::int64_t newest = std::min(step, ring.newest());
     const std::int64_t oldest = std::max<std::int64_t>(0, newest - kRingSteps + 1);
     while (newest >= oldest && !ring.Has(newest)) --newest;
     return newest < oldest ? nullptr : &std::get<I>(rings_)[RingSlot(newest)];
   }
 
-  template <std::size_t I>
-  const Input& InputOf() {
-    return *std::ranges::find(inputs(), IndexOf<std::tuple_element_t<I, AllInputs>>(),
-                              &Input::channel);
-  }
-
   // ---- real time, with the inputs that are there ------------------------------------------------
 
   void ComputeFailsafe(std::int64_t step) {
     if constexpr (Traits::kStarts) {
-      Publish(step, step == 0 ? failsafe_->Start(run_id()) : StepFailsafe(step));
+      Publish(step, step == 0 ? failsafe_->Start(*parts_.run.id) : StepFailsafe(step));
     } else {
-      if ((minimal_risk() & status_t::HOST) != 0) failsafe_->DemandMinimalRisk();
+      if ((parts_.run.minimal_risk & status_t::HOST) != 0) failsafe_->DemandMinimalRisk();
       Publish(step, StepFailsafe(step));
     }
-    status().fallback = failsafe_->fallback();
-    status().minimal_risk = failsafe_->minimal_risk();
+    parts_.own.message().fallback = failsafe_->fallback();
+    parts_.own.message().minimal_risk = failsafe_->minimal_risk();
   }
 
   const typename Traits::Output& StepFailsafe(std::int64_t step) {
@@ -182,9 +177,8 @@ class StepNode final : public Node {
   Heard<std::tuple_element_t<I, AllInputs>> HeardBy(std::int64_t step) {
     const auto* newest = NewestOf<I>(step);
     if (newest == nullptr) return {};
-    const auto place = static_cast<std::size_t>(&InputOf<I>() - inputs().data());
-    const auto& rule = static_cast<const RealtimeRule&>(this->rule());
-    return {.state = rule.StateFor(place, step), .newest = newest};
+    const auto input = &parts_.inputs.Of(kPlace<I>) - parts_.inputs.all().data();
+    return {.state = watch_->StateFor(static_cast<std::size_t>(input), step), .newest = newest};
   }
 
   /// The header of the first input, which brings the step.
@@ -194,13 +188,13 @@ class StepNode final : public Node {
   /// to the known progress again without publishing them, so that no step is published twice.
   void Resume(const truth_t& truth) {
     if constexpr (kFailsafe && Traits::kStarts) {
-      failsafe_->Resume(truth, minimal_risk());
+      failsafe_->Resume(truth, parts_.run.minimal_risk);
       truth_t newest = truth;
-      while (newest.header.step < progress() && !newest.last) {
+      while (newest.header.step < parts_.run.progress && !newest.last) {
         newest = std::get<truth_t>(StepFailsafe(newest.header.step + 1));
       }
-      StartAt(newest.header.step + 1);
-      if (newest.last) rule().SetFinal(newest.header.step);
+      parts_.steps.StartAt(newest.header.step + 1);
+      if (newest.last) node_.rule().SetFinal(newest.header.step);
     }
   }
 
@@ -214,7 +208,7 @@ class StepNode final : public Node {
           [&]<std::size_t I> { PublishOne(step, std::get<I>(output)); });
     }
     if constexpr (Traits::kStarts) {
-      if (std::get<truth_t>(output).last) rule().SetFinal(step);
+      if (std::get<truth_t>(output).last) node_.rule().SetFinal(step);
     }
   }
 
@@ -225,7 +219,7 @@ class StepNode final : public Node {
                                            ChannelOf<M>().name));
     }
     Encode(message, encoded_);
-    Emit(IndexOf<M>(), step, encoded_);
+    node_.outputs().Publish(IndexOf<M>(), step, encoded_);
   }
 
   template <std::size_t N, class F>
@@ -234,12 +228,15 @@ class StepNode final : public Node {
     (std::make_index_sequence<N>{});
   }
 
+  Node node_;
+  Parts& parts_ = node_.parts();
   std::unique_ptr<Algorithm> algorithm_;
   std::unique_ptr<InRealtime> failsafe_;  // in real time, if Failsafe is not void
   InputRings rings_;
   bool uses_on_demand_ = false;  // whether the input on demand is read in this scenario
   std::vector<std::uint8_t> encoded_;
-  std::optional<StepGate> gate_;  // only for the role that begins the steps
+  std::optional<StepGate> gate_;          // only for the role that begins the steps
+  const RealtimeWatch* watch_ = nullptr;  // of the rule in real time, if Failsafe is not void
 };
 
 }  // namespace fogline::runtime

@@ -5,21 +5,30 @@
 // at once.
 #pragma once
 
-#include <optional>
-
-#include "services/runtime/realtime/realtime_rule.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/realtime/realtime_watch.h"
 
 namespace fogline::runtime {
 
-class DeadlineRule final : public RealtimeRule {
+class DeadlineRule final : public FireRule {
  public:
-  DeadlineRule(Node& node, const Scenario& scenario, double speed);
+  DeadlineRule(Parts& parts, const Scenario& scenario);
+
+  void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) override;
+  TimePoint Poll(TimePoint now) override;
+  void OnProgress() override { watch_.OnProgress(); }
+  void WriteStatus(TimePoint now) override { watch_.WriteStatus(now); }
+
+  const RealtimeWatch& watch() const { return watch_; }
 
  private:
-  TimePoint Fire(TimePoint now) override;
+  /// Decides the steps that are due. @return the latest time for the next call
+  TimePoint Fire(TimePoint now);
   /// Decides with the inputs that are there.
   void Decide(std::int64_t step, TimePoint now);
 
+  Parts& parts_;
+  RealtimeWatch watch_;
   Duration until_deadline_;  // from the tick to the deadline
 };
 

@@ -8,10 +8,12 @@
 // becomes looser. If two clocks drift apart, newer proofs are better, so old ones are forgotten.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
 #include "common/clock.h"
+#include "services/runtime/wire/step_ring.h"
 
 namespace fogline::runtime {
 
@@ -63,6 +65,64 @@ class StepHorizon {
   Proof loosest_;
   Proof recent_;  // loosest of the last ones
   TimePoint recent_since_{};
+};
+
+/// The newest step of a run, by its messages and by what the runner reports.
+///
+/// The progress that the runner reports always limits the steps. The steps that were heard limit
+/// them, too, unless no new step was heard for some periods. So a role that is wrong about the
+/// progress corrects itself soon (for example a role that was started in the middle of the run and
+/// heard an old message first). One false message can mislead a role by the slack of two steps.
+/// Many false messages can mislead it by no more than the runner's report allows, which is one
+/// second.
+class RunHorizon {
+ public:
+  /// @param period of the steps on the wall clock, above 0
+  explicit RunHorizon(Duration period)
+      : period_(period),
+        heard_(period, kSlack, kHeardPeriods * period),
+        told_(period, kSlack + kHearsay / period, kToldFor) {}
+
+  /// A message of the step came.
+  void Heard(std::int64_t step, TimePoint now) {
+    heard_.Heard(step, now);
+    KnowOf(step);
+  }
+  /// The runner has reported this progress.
+  void Told(std::int64_t progress, TimePoint now) { told_.Heard(progress, now); }
+  /// This step is under way, by the runner's word or by a message of the step.
+  void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
+
+  /// Newest step that is known to be under way, -1 if none.
+  std::int64_t newest() const { return newest_; }
+  /// Newest step that can be under way. @pre the runner has reported its progress
+  /// @param silence the time since the newest step was first heard of
+  std::int64_t NewestPossible(TimePoint now, Duration silence) const {
+    const std::int64_t told = told_.Newest(now);
+    const bool hears = heard_.known() && silence <= kUnheard * period_;
+    return hears ? std::min(heard_.Newest(now), told) : told;
+  }
+
+ private:
+  /// The steps by which the world may be ahead of the estimate: one because a tick may be early by
+  /// the delay of an earlier one, which is less than a period, and one because a message was on its
+  /// way for a moment.
+  static constexpr std::int64_t kSlack = 2;
+  /// The greatest age of the progress that the runner reports: five signs of life of the roles,
+  /// some of which may be lost.
+  static constexpr Duration kHearsay = milliseconds(1000);
+  /// How long a proof of the run's progress counts. A message that is sent again comes late, but a
+  /// message that is older than a ring is not sent again. The runner reports old progress while it
+  /// hears nothing itself, which lasts less than a minute in a run that goes on.
+  static constexpr std::int64_t kHeardPeriods = kRingSteps;
+  static constexpr Duration kToldFor = milliseconds(60'000);
+  /// After this many periods without a newer step, the runner's progress counts, too.
+  static constexpr int kUnheard = 3;
+
+  Duration period_;
+  StepHorizon heard_;  // by the steps that were heard
+  StepHorizon told_;   // by the runner's progress
+  std::int64_t newest_ = -1;
 };
 
 }  // namespace fogline::runtime

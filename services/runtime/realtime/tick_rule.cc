@@ -28,35 +28,37 @@ Duration operator*(double share, Duration period) {
 
 }  // namespace
 
-TickRule::TickRule(Node& node, const Scenario& scenario, double speed, StepGate& gate,
-                   TakeOver take_over)
-    : RealtimeRule(node, scenario, speed),
+TickRule::TickRule(Parts& parts, const Scenario& scenario, StepGate& gate, TakeOver take_over)
+    : parts_(parts),
+      watch_(parts, scenario),
       gate_(gate),
       take_over_(std::move(take_over)),
-      steps_(scenario.steps) {}
+      grid_{.period = PeriodOf(scenario, parts.run.pace)} {}
 
 void TickRule::OnGo(const run_t& run, TimePoint now) {
   if (phase_ != Phase::kWaiting) return;
   gate_.OnGo(run, now);
-  start_ = now;
-  phase_ = progress() < 0 ? Phase::kTicking : Phase::kResuming;
+  grid_.start = now;
+  phase_ = parts_.run.progress < 0 ? Phase::kTicking : Phase::kResuming;
 }
 
-StepRing::Verdict TickRule::Classify(std::size_t input, std::int64_t step, Bytes bytes) {
-  const StepRing::Verdict verdict = RealtimeRule::Classify(input, step, bytes);
+void TickRule::OnInput(std::size_t input, std::int64_t step, Arrival& arrival) {
+  const auto verdict = watch_.Judge(input, step, arrival.bytes());
   if (verdict == StepRing::Verdict::kLate) TakeLatency(input, step, Clock::now());
-  return verdict;
+  if (!parts_.inputs.Keep(input, step, arrival, verdict)) return;
+  watch_.Heard(input, step, arrival.time());
+  TakeLatency(input, step, arrival.time());
 }
 
-void TickRule::OnInput(std::size_t input, std::int64_t step, TimePoint time) {
-  RealtimeRule::OnInput(input, step, time);
-  TakeLatency(input, step, time);
+TimePoint TickRule::Poll(TimePoint now) {
+  return watch_.Poll(now, [this](TimePoint time) { return Fire(time); });
 }
 
 void TickRule::TakeLatency(std::size_t input, std::int64_t step, TimePoint time) {
   Sent& sent = sent_[RingSlot(step)];
-  if (inputs()[input].channel != IndexOf<arbitration_t>() || sent.step != step) return;
-  statistics().Latency(time - sent.time);
+  const std::size_t channel = parts_.inputs.all()[input].channel;
+  if (channel != IndexOf<arbitration_t>() || sent.step != step) return;
+  watch_.statistics().Latency(time - sent.time);
   sent.step = -1;
 }
 
@@ -66,8 +68,8 @@ void TickRule::SetFinal(std::int64_t step) {
 }
 
 void TickRule::WriteStatus(TimePoint now) {
-  RealtimeRule::WriteStatus(now);
-  status().ticks_missed = ticks_missed_;
+  watch_.WriteStatus(now);
+  parts_.own.message().ticks_missed = grid_.missed;
 }
 
 TimePoint TickRule::Fire(TimePoint now) {
@@ -81,102 +83,110 @@ TimePoint TickRule::Fire(TimePoint now) {
     case Phase::kEnding:
       return End(now);
   }
-  return now + kHeartbeat;
+  return now + OwnStatus::kHeartbeat;
 }
 
 TimePoint TickRule::Due(std::int64_t n) const {
-  return start_ +
-         duration_cast<Duration>(static_cast<double>(n) * std::chrono::duration<double>(period()));
+  return grid_.start + duration_cast<Duration>(static_cast<double>(n) *
+                                               std::chrono::duration<double>(grid_.period));
 }
 
 bool TickRule::Answered() const {
-  const std::int64_t step = next();
-  return std::ranges::all_of(inputs(), [step](const Input& input) { return input.ReadyFor(step); });
+  const std::int64_t step = parts_.steps.next();
+  return std::ranges::all_of(parts_.inputs.all(),
+                             [step](const Input& input) { return input.ReadyFor(step); });
 }
 
 TimePoint TickRule::Tick(TimePoint now) {
-  if (now < Due(tick_)) return Due(tick_);
+  if (now < Due(grid_.next)) return Due(grid_.next);
   const bool answered = Answered();
-  if (!answered && now - Due(tick_) > kHeldUp * period()) {
-    if (!finish_by_) finish_by_ = now + std::min(kFinish, kApart * period());
+  if (!answered && now - Due(grid_.next) > kHeldUp * grid_.period) {
+    if (!finish_by_) finish_by_ = now + std::min(kFinish, kApart * grid_.period);
     if (now < *finish_by_) return *finish_by_;
   }
   finish_by_.reset();
-  if (!answered) statistics().Miss();
-  std::int64_t missed = (now - Due(tick_)) / period();
-  tick_ += missed;
-  const TimePoint due = Due(tick_);
-  ++tick_;
-  if (Due(tick_) - now < kApart * period()) {
-    ++tick_;
+  if (!answered) watch_.statistics().Miss();
+  std::int64_t missed = (now - Due(grid_.next)) / grid_.period;
+  grid_.next += missed;
+  const TimePoint due = Due(grid_.next);
+  ++grid_.next;
+  if (Due(grid_.next) - now < kApart * grid_.period) {
+    ++grid_.next;
     ++missed;
   }
-  ticks_missed_ += missed;
-  const std::int64_t step = next();
-  Begun(step, now);
-  ComputeDue(step, due, now);
+  grid_.missed += missed;
+  const std::int64_t step = parts_.steps.next();
+  watch_.Begun(step, now);
+  watch_.ComputeDue(step, due, now);
   sent_[RingSlot(step)] = {.step = step, .time = Clock::now()};
-  return phase_ == Phase::kTicking ? Due(tick_) : now;
+  return phase_ == Phase::kTicking ? Due(grid_.next) : now;
 }
 
 TimePoint TickRule::End(TimePoint now) {
+  const std::int64_t next = parts_.steps.next();
   if (!give_up_at_) give_up_at_ = now + kEndLimit;
-  if (gate_.Finished(next()) || now >= *give_up_at_) {
-    SetState(status_t::DONE);
-    return now + kHeartbeat;
+  if (gate_.Finished(next) || now >= *give_up_at_) {
+    parts_.own.SetState(status_t::DONE);
+    return now + OwnStatus::kHeartbeat;
   }
-  if (const auto step = gate_.WantsRecorded(next(), now)) {
-    Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
+  if (const auto step = gate_.WantsRecorded(next, now)) {
+    parts_.requests.Ask(ChannelOf<status_t>().name, {.first = *step, .count = 1});
   }
-  return std::min(*give_up_at_, gate_.NextPoll(next(), now));
+  return std::min(*give_up_at_, gate_.NextPoll(next, now));
 }
 
 TimePoint TickRule::Resume(TimePoint now) {
-  start_ = now;
+  grid_.start = now;
   phase_ = Phase::kTicking;  // take_over_ sets another phase if the run ends with this step
   try {
-    take_over_(*truth_);
+    take_over_(*search_.newest);
   } catch (const std::exception&) {  // the TRUTH does not fit this scenario
-    ++status().malformed;
-    truth_.reset();
+    ++parts_.own.message().malformed;
+    search_.newest.reset();
     phase_ = Phase::kResuming;
-    return ask_at_;
+    return search_.ask_at;
   }
   return now;
 }
 
-std::int64_t TickRule::FirstAsked() { return std::max<std::int64_t>(0, progress() - kProgressAge); }
+std::int64_t TickRule::FirstAsked() const {
+  return std::max<std::int64_t>(0, parts_.run.progress - kProgressAge);
+}
 
-// The TRUTH must be of this run, and its step must be near the known progress.
-bool TickRule::CanResume(const truth_t& truth) {
-  return truth.header.run_id == status().header.run_id && truth.header.step >= 0 &&
-         truth.header.step < std::min(steps_, FirstAsked() + kRingSteps);
+// The TRUTH must be of this run, and near the known progress.
+bool TickRule::CanResume(const truth_t& truth) const {
+  return truth.header.run_id == *parts_.run.id && truth.header.step >= 0 &&
+         truth.header.step < std::min(parts_.run.steps, FirstAsked() + kRingSteps);
 }
 
 TimePoint TickRule::LookForTruth(TimePoint now) {
-  if (!subscribed_) {
-    subscribed_ = true;
-    bus().Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
+  if (!search_.listening) {
+    search_.listening = true;
+    parts_.bus.Subscribe(ChannelOf<truth_t>().name, [this](Arrival& arrival) {
       const auto* truth = arrival.As<truth_t>();
       if (phase_ != Phase::kResuming || truth == nullptr || !CanResume(*truth)) return;
-      if (!truth_) truth_at_ = arrival.time();
-      if (!truth_ || truth->header.step > truth_->header.step) truth_ = *truth;
+      if (!search_.newest) search_.answered_at = arrival.time();
+      if (!search_.newest || truth->header.step > search_.newest->header.step) {
+        search_.newest = *truth;
+      }
     });
   }
-  if (truth_ && now >= truth_at_ + kAnswersLast) {
-    return Resume(now);
+  if (search_.newest && now >= search_.answered_at + kAnswersLast) return Resume(now);
+  if (now >= search_.ask_at) {
+    search_.ask_at = now + kAskEvery;
+    AskForTruth();
   }
-  if (now >= ask_at_) {
-    ask_at_ = now + kAskEvery;
-    const std::int64_t first = FirstAsked();
-    Ask(ChannelOf<truth_t>().name, {.first = first, .count = kRingSteps});
-    // Also asks for the commands of these steps, from their producers.
-    for (const Input& input : inputs()) {
-      Ask(kChannels[input.channel].name, {.first = first, .count = kRingSteps});
-    }
-    ++status().repairs_asked;
+  return search_.newest ? search_.answered_at + kAnswersLast : search_.ask_at;
+}
+
+void TickRule::AskForTruth() {
+  const StepRange steps{.first = FirstAsked(), .count = kRingSteps};
+  parts_.requests.Ask(ChannelOf<truth_t>().name, steps);
+  // Also asks for the commands of these steps, from their producers.
+  for (const Input& input : parts_.inputs.all()) {
+    parts_.requests.Ask(kChannels[input.channel].name, steps);
   }
-  return truth_ ? truth_at_ + kAnswersLast : ask_at_;
+  ++parts_.own.message().repairs_asked;
 }
 
 }  // namespace fogline::runtime

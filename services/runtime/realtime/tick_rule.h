@@ -16,33 +16,40 @@
 #include <optional>
 
 #include "services/runtime/lockstep/step_gate.h"
-#include "services/runtime/realtime/realtime_rule.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/realtime/realtime_watch.h"
 
 namespace fogline::runtime {
 
-class TickRule final : public RealtimeRule {
+class TickRule final : public FireRule {
  public:
   /// Takes over after the step of `truth`, and computes the steps that are known to be under way
   /// without publishing them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 
-  TickRule(Node& node, const Scenario& scenario, double speed, StepGate& gate, TakeOver take_over);
+  TickRule(Parts& parts, const Scenario& scenario, StepGate& gate, TakeOver take_over);
 
   void OnGo(const run_t& run, TimePoint now) override;
-  StepRing::Verdict Classify(std::size_t input, std::int64_t step, Bytes bytes) override;
-  void OnInput(std::size_t input, std::int64_t step, TimePoint time) override;
+  void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) override;
+  TimePoint Poll(TimePoint now) override;
+  void OnProgress() override { watch_.OnProgress(); }
   void SetFinal(std::int64_t step) override;
   void WriteStatus(TimePoint now) override;
+
+  const RealtimeWatch& watch() const { return watch_; }
 
  private:
   enum class Phase { kWaiting, kResuming, kTicking, kEnding };
 
-  TimePoint Fire(TimePoint now) override;
+  /// Does what is due in this phase. @return the latest time for the next call
+  TimePoint Fire(TimePoint now);
   TimePoint LookForTruth(TimePoint now);
+  /// Asks the recorder for TRUTH, and the producers of the commands for theirs.
+  void AskForTruth();
   /// The first of the steps that a restarted world asks for.
-  std::int64_t FirstAsked();
+  std::int64_t FirstAsked() const;
   /// Whether the world can continue after this TRUTH.
-  bool CanResume(const truth_t& truth);
+  bool CanResume(const truth_t& truth) const;
   TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
@@ -53,28 +60,37 @@ class TickRule final : public RealtimeRule {
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
 
-  StepGate& gate_;
-  TakeOver take_over_;
-  std::int64_t steps_;  // of the scenario
-  Phase phase_ = Phase::kWaiting;
-
-  TimePoint start_{};
-  std::int64_t tick_ = 0;  // next tick on the grid
-  std::int64_t ticks_missed_ = 0;
-  // The latest time until which a late tick waits for the step before.
-  std::optional<TimePoint> finish_by_{};
+  /// The ticks of the wall clock.
+  struct Grid {
+    Duration period;
+    TimePoint start{};
+    std::int64_t next = 0;    // next tick
+    std::int64_t missed = 0;  // ticks at which no step was begun
+  };
   /// A published step whose command has not come yet.
   struct Sent {
     std::int64_t step = -1;
     TimePoint time{};
   };
+  /// The search of a restarted world for the last TRUTH.
+  struct Search {
+    bool listening = false;
+    TimePoint ask_at{};
+    std::optional<truth_t> newest;  // that has come as an answer
+    TimePoint answered_at{};        // when the first answer came
+  };
+
+  Parts& parts_;
+  RealtimeWatch watch_;
+  StepGate& gate_;
+  TakeOver take_over_;
+  Phase phase_ = Phase::kWaiting;
+  Grid grid_;
+  // The latest time until which a late tick waits for the step before.
+  std::optional<TimePoint> finish_by_{};
   std::array<Sent, kRingSteps> sent_{};
   std::optional<TimePoint> give_up_at_{};  // end of the wait for the recorder at the end of the run
-
-  std::optional<truth_t> truth_;  // newest TRUTH that has come as an answer
-  TimePoint truth_at_{};          // when the first one came
-  TimePoint ask_at_{};
-  bool subscribed_ = false;
+  Search search_;
 };
 
 }  // namespace fogline::runtime

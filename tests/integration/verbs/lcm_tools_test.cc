@@ -236,16 +236,17 @@ class DriverThatWaits {
     bus_.Subscribe("TRUTH", [this](runtime::Bytes truth) {
       begun_ = runtime::ReadInt64(truth, runtime::kStepOffset) + 1;
     });
-    node_.emplace(bus_, std::nullopt);
+    driver_.emplace(bus_, std::nullopt);
   }
 
   /// Takes part in one run of `steps` steps. @return false if it takes too long
   [[nodiscard]] bool TakePart(std::int64_t steps) {
     std::int64_t waited = 0;
     auto end = Clock::now() + kPatience;  // the time limit of the next step
-    while (!node_->left() && Clock::now() < end) {
+    runtime::Node& node = driver_->node();
+    while (!node.parts().own.left() && Clock::now() < end) {
       const TimePoint now = Clock::now();
-      bus_.Wait(std::min(node_->Poll(now) - now, Duration(milliseconds(100))));
+      bus_.Wait(std::min(node.Poll(now) - now, Duration(milliseconds(100))));
       if (begun_ <= waited || begun_ == steps) continue;
       waited = begun_;
       const std::string step = std::to_string(waited);
@@ -253,13 +254,13 @@ class DriverThatWaits {
       if (waited % kStepsOfSpy == 0 && !spy_.CatchUp("SHOWN_" + step)) return false;
       end = Clock::now() + kPatience;
     }
-    return node_->left() && node_->error().empty();
+    return node.parts().own.left() && node.parts().own.message().error.empty();
   }
 
  private:
   runtime::Bus bus_;
   std::int64_t begun_ = 0;  // the number of steps that have begun
-  std::optional<runtime::StepNode<driver::Driver>> node_;
+  std::optional<runtime::StepNode<driver::Driver>> driver_;
   Logger& logger_;
   Spy& spy_;
 };

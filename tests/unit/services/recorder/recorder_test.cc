@@ -51,15 +51,18 @@ class RecorderTest : public testing::Test {
   void RecordAll(const std::string& name, recorder::Recorder::Existing existing) {
     Script script;
     const auto recorder = Record(script, name, existing);
-    EXPECT_EQ(recorder->error(), "");
+    EXPECT_EQ(ErrorOf(*recorder), "");
     for (std::int64_t step = 0; step < kSteps; ++step) SayStep(script, step);
-    recorder->Leave();
+    recorder->node().parts().own.Leave();
+  }
+  static const std::string& ErrorOf(recorder::Recorder& recorder) {
+    return recorder.node().parts().own.message().error;
   }
   /// Lets it answer all requests, a part of them in each turn.
   void AnswerAll(recorder::Recorder& recorder) {
     constexpr int kTurns = 100;
     for (int i = 0; i < kTurns; ++i) {
-      recorder.Poll(Clock::now());
+      recorder.node().Poll(Clock::now());
       script_.bus().Drain();
     }
   }
@@ -167,7 +170,7 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherRunAlone) {
     others.Say(runtime::MakeRunPart(Script::kRunId + 1, run_t::GO, 0,
                                     runtime::HashOf(others.text()), parts, i));
   }
-  EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of run 7, not of 8"));
+  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is that of run 7, not of 8"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
 }
 
@@ -183,14 +186,14 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherScenarioAlone) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     others.Say(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0, runtime::HashOf(text), parts, i));
   }
-  EXPECT_THAT(recorder.error(), HasSubstr("whole: the log is that of another scenario"));
+  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is that of another scenario"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
 }
 
 TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
   std::ofstream(folder_.File("text")) << "hello, world";
   const auto recorder = Record(script_, "text", recorder::Recorder::Existing::kResume);
-  EXPECT_THAT(recorder->error(), HasSubstr("not an LCM event log"));
+  EXPECT_THAT(ErrorOf(*recorder), HasSubstr("not an LCM event log"));
   EXPECT_EQ(Content(folder_.File("text")), "hello, world");
 }
 
@@ -198,7 +201,7 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
   // The world has begun step 400, so step 368 must be on disk.
   const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, 400);
-  EXPECT_THAT(recorder->error(), HasSubstr("the log has 150 steps, but 369 were in it"));
+  EXPECT_THAT(ErrorOf(*recorder), HasSubstr("the log has 150 steps, but 369 were in it"));
 }
 
 TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
@@ -213,7 +216,7 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
   std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * log::kTailBytes);
   // WHEN a recorder continues it
   const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
-  EXPECT_EQ(recorder->error(), "");
+  EXPECT_EQ(ErrorOf(*recorder), "");
   // THEN the recorder has reported its progress during that time, and then that it is ready
   std::vector<std::int64_t> steps;
   for (const status_t& status : status_) {
@@ -265,7 +268,7 @@ TEST_F(RecorderTest, ReadsOfALongLogOnlyItsEndWhenItGoesOn) {
   const std::int64_t before = BytesRead();
   const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
   // THEN it is ready at the last step, with a checksum of the end of the log
-  EXPECT_EQ(recorder->error(), "");
+  EXPECT_EQ(ErrorOf(*recorder), "");
   EXPECT_EQ(status_.back().state, status_t::READY);
   EXPECT_EQ(status_.back().header.step, steps + kLastSteps - 1);
   EXPECT_EQ(status_.back().log_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
@@ -278,11 +281,11 @@ TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
   WholeLog();
   const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, kSteps - 1);
   SayStep(script_, kSteps - 2);
-  EXPECT_EQ(recorder->error(), "");
+  EXPECT_EQ(ErrorOf(*recorder), "");
   auto command = Script::Of<driver_command_t>(kSteps - 2);
   command.acceleration_mps2 = 1;
   script_.Say(command);
-  EXPECT_EQ(recorder->error(),
+  EXPECT_EQ(ErrorOf(*recorder),
             "step 148: DRIVER_COMMAND is not what the log has: driver is another program, or "
             "another version, than the one that was recorded");
 }
@@ -290,7 +293,7 @@ TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {
   recorder::Recorder recorder(script_.bus(), Script::kRunId, "/dev/full");
   script_.SayRun(run_t::GO, -1);
-  EXPECT_THAT(recorder.error(), HasSubstr("cannot write to /dev/full: No space left on device"));
+  EXPECT_THAT(ErrorOf(recorder), HasSubstr("cannot write to /dev/full: No space left on device"));
   EXPECT_EQ(status_.back().state, status_t::FAILED);
 }
 
@@ -311,7 +314,7 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   // WHEN it leaves in an incomplete step, THEN its last STATUS covers that part, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);
-  recorder->Leave();
+  recorder->node().parts().own.Leave();
   script_.bus().Drain();
   const std::string whole = Content(folder_.File("log"));
   EXPECT_GT(whole.size(), content.size());

@@ -1,4 +1,4 @@
-// A node or a run coordinator alone on a bus in memory. The test publishes the messages of all
+// A role or a run coordinator alone on a bus in memory. The test publishes the messages of all
 // other processes and sees the answers.
 #pragma once
 
@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "scenario/io/loader.h"
-#include "services/runtime/lockstep/node.h"
+#include "services/runtime/node/node.h"
+#include "services/runtime/node/work.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/scenario_parts.h"
 
@@ -84,21 +85,21 @@ class Script {
     Say(resend);
   }
 
-  /// Lets the node do its due work once, at this time, however much time has passed since the last
+  /// Lets the role do once what is due at this time, however much time has passed since the last
   /// call.
-  void Poll(runtime::Node& node, TimePoint now = Clock::now()) {
-    wakes_[&node] = std::max(node.Poll(now), now + milliseconds(1));
+  void Poll(runtime::Work& role, TimePoint now = Clock::now()) {
+    wakes_[&role] = std::max(role.node().Poll(now), now + milliseconds(1));
     bus_.Drain();
   }
-  /// Calls the node up to this time, each time that it has asked for, as its process would.
-  void PollUpTo(runtime::Node& node, TimePoint now = Clock::now()) {
-    TimePoint& wake = wakes_.try_emplace(&node, TimePoint::max()).first->second;
-    while (wake < now) Poll(node, wake);
-    Poll(node, now);
+  /// Calls the role up to this time, each time that it has asked for, as its process would.
+  void PollUpTo(runtime::Work& role, TimePoint now = Clock::now()) {
+    TimePoint& wake = wakes_.try_emplace(&role, TimePoint::max()).first->second;
+    while (wake < now) Poll(role, wake);
+    Poll(role, now);
   }
 
  private:
-  std::map<runtime::Node*, TimePoint> wakes_;  // when each node wants the next call
+  std::map<runtime::Work*, TimePoint> wakes_;  // when each role wants the next call
   std::string text_;
   std::int64_t sequence_ = 0;  // of the runner's messages
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,

@@ -1,5 +1,5 @@
-// A node in a run. The example is the driver: TRUTH in, DRIVER_COMMAND out.
-#include "services/runtime/lockstep/node.h"
+// A role in a run. The example is the driver: TRUTH in, DRIVER_COMMAND out.
+#include "services/runtime/node/node.h"
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "services/driver/driver.h"
 #include "services/runtime/process/step_node.h"
-#include "tests/unit/services/runtime/script.h"
+#include "tests/unit/runtime/script.h"
 
 namespace fogline {
 namespace {
@@ -71,6 +71,7 @@ class NodeTest : public testing::Test {
   std::vector<driver_command_t>& commands_ = script_.Listen<driver_command_t>();
   std::vector<status_t>& status_ = script_.Listen<status_t>();
   runtime::StepNode<driver::Driver> node_{script_.bus(), Script::kRunId};
+  runtime::OwnStatus& own_ = node_.node().parts().own;
   std::size_t served_ = 0;
   Duration later_{};
 };
@@ -194,7 +195,7 @@ TEST_F(NodeTest, TakesNoUnsoundMessageForASecondProducer) {
   script_.SayRun(run_t::GO, -1);
   script_.Say(Truth(0));
   SayUnsound(0);
-  EXPECT_FALSE(node_.left());
+  EXPECT_FALSE(own_.left());
   EXPECT_EQ(Status().wrong_type, 1);
   EXPECT_EQ(Status().malformed, 1);
   EXPECT_EQ(Status().not_finite, 1);
@@ -202,8 +203,8 @@ TEST_F(NodeTest, TakesNoUnsoundMessageForASecondProducer) {
   truth_t other = Truth(0);
   other.host_gap_m += 1;
   script_.Say(other);
-  EXPECT_TRUE(node_.left());
-  EXPECT_EQ(node_.error(),
+  EXPECT_TRUE(own_.left());
+  EXPECT_EQ(own_.message().error,
             "step 0: TRUTH came twice with different contents: is there a second world?");
 }
 
@@ -227,7 +228,7 @@ TEST_F(NodeTest, CountsWhatItRefusesOfRunAndResend) {
   EXPECT_EQ(Status().out_of_window, 3);
   SayBytes("RESEND", std::vector<std::uint8_t>(3));
   EXPECT_EQ(Status().malformed, 1);
-  EXPECT_FALSE(node_.left());
+  EXPECT_FALSE(own_.left());
 }
 
 TEST_F(NodeTest, LetsAnOlderWordOfTheRunnerCountForNothing) {
@@ -235,11 +236,11 @@ TEST_F(NodeTest, LetsAnOlderWordOfTheRunnerCountForNothing) {
   run_t older = runtime::MakeRunPart(Script::kRunId, run_t::STOP, 0, "", {"x"}, 0);
   older.sequence = 1;
   script_.Say(older);
-  EXPECT_FALSE(node_.left());
+  EXPECT_FALSE(own_.left());
   EXPECT_EQ(Status().duplicates, 1);
   older.sequence = 1000;
   script_.Say(older);
-  EXPECT_TRUE(node_.left());
+  EXPECT_TRUE(own_.left());
 }
 
 TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioIsThere) {
@@ -250,11 +251,11 @@ TEST_F(NodeTest, LooksForAnotherRunWhenARunnerFallsSilentBeforeAllOfTheScenarioI
       runtime::MakeRunPart(Script::kRunId + 1, run_t::PREPARE, 0, runtime::HashOf("{}"), parts, 0),
       0));
   other.SayRun(run_t::PREPARE, -1);
-  EXPECT_TRUE(node.Waits());
+  EXPECT_TRUE(node.node().parts().own.Waits());
   other.Poll(node);
   other.PollUpTo(node, Clock::now() + milliseconds(6000));
   other.SayRun(run_t::PREPARE, -1);
-  EXPECT_FALSE(node.Waits());
+  EXPECT_FALSE(node.node().parts().own.Waits());
 }
 
 /// A driver that was started by hand, in a run that waited for it.
@@ -263,7 +264,7 @@ class ExternalNodeTest : public testing::Test {
   ExternalNodeTest() {
     script_.SayRun(run_t::PREPARE, -1);
     script_.Poll(node_);
-    EXPECT_FALSE(node_.Waits());
+    EXPECT_FALSE(own_.Waits());
   }
 
   /// The runner announces which process is the driver.
@@ -278,6 +279,7 @@ class ExternalNodeTest : public testing::Test {
   Script script_;
   std::vector<status_t>& status_ = script_.Listen<status_t>();
   runtime::StepNode<driver::Driver> node_{script_.bus(), std::nullopt};
+  runtime::OwnStatus& own_ = node_.node().parts().own;
 };
 
 TEST_F(ExternalNodeTest, JoinsNoRunThatHasItsRoleOrStartsItItself) {
@@ -293,17 +295,17 @@ TEST_F(ExternalNodeTest, JoinsNoRunThatHasItsRoleOrStartsItItself) {
     EXPECT_TRUE(said.empty());
   }
   other.SayRun(run_t::PREPARE, -1);
-  EXPECT_FALSE(node.Waits());
+  EXPECT_FALSE(node.node().parts().own.Waits());
 }
 
 TEST_F(ExternalNodeTest, GoesWhenAnotherProcessHasItsPlace) {
   SayHolder(Script::kRunId, 0);
   SayHolder(Script::kRunId, instance());
-  EXPECT_FALSE(node_.released());
+  EXPECT_FALSE(own_.released());
   SayHolder(Script::kRunId, instance() + 1);
-  EXPECT_TRUE(node_.released());
+  EXPECT_TRUE(own_.released());
   EXPECT_EQ(status_.back().state, status_t::LEFT);
-  EXPECT_EQ(node_.error(), "another process is the driver of run 7");
+  EXPECT_EQ(own_.message().error, "another process is the driver of run 7");
   // AND it publishes nothing more
   const std::size_t said = status_.size();
   script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
@@ -314,25 +316,25 @@ TEST_F(ExternalNodeTest, GoesToARunThatWaitsForItOnlyWhenItsOwnRunnerIsSilent) {
   const std::int64_t another = Script::kRunId + 1;
   script_.PollUpTo(node_, Clock::now() + milliseconds(1900));
   SayHolder(another, 0);
-  EXPECT_FALSE(node_.released()) << "the runner may be there";
+  EXPECT_FALSE(own_.released()) << "the runner may be there";
   script_.PollUpTo(node_, Clock::now() + milliseconds(2100));
   SayHolder(another, 4711);
-  EXPECT_FALSE(node_.released()) << "that run has a driver";
+  EXPECT_FALSE(own_.released()) << "that run has a driver";
   SayHolder(another, 0);
-  EXPECT_TRUE(node_.released());
-  EXPECT_THAT(node_.error(), testing::MatchesRegex("the runner of run 7 has been silent for "
-                                                   "[0-9.]+ s; run 8 waits for the driver"));
+  EXPECT_TRUE(own_.released());
+  EXPECT_THAT(own_.message().error, testing::MatchesRegex("the runner of run 7 has been silent for "
+                                                          "[0-9.]+ s; run 8 waits for the driver"));
 }
 
 TEST_F(ExternalNodeTest, HoldsItsOwnPauseAgainstNoRunner) {
   const TimePoint now = Clock::now();
   script_.Poll(node_, now + milliseconds(20'000));
-  EXPECT_FALSE(node_.left()) << node_.error();
+  EXPECT_FALSE(own_.left()) << own_.message().error;
   script_.PollUpTo(node_, now + milliseconds(38'000));
-  EXPECT_FALSE(node_.left()) << node_.error();
+  EXPECT_FALSE(own_.left()) << own_.message().error;
   script_.PollUpTo(node_, now + milliseconds(39'500));
-  EXPECT_TRUE(node_.left());
-  EXPECT_EQ(node_.error(), "the runner has been silent for 19 s");
+  EXPECT_TRUE(own_.left());
+  EXPECT_EQ(own_.message().error, "the runner has been silent for 19 s");
 }
 
 TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
@@ -346,7 +348,7 @@ TEST_F(ExternalNodeTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
   other.SayRun(run_t::GO, -1);
   other.Poll(started);
   other.PollUpTo(started, Clock::now() + milliseconds(25'000));
-  EXPECT_FALSE(started.left()) << started.error();
+  EXPECT_FALSE(started.node().parts().own.left()) << started.node().parts().own.message().error;
 }
 
 TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
@@ -359,8 +361,8 @@ TEST_F(NodeTest, CutsAnErrorToWhatAStatusHasPlaceFor) {
     other.Say(
         runtime::MakeRunPart(Script::kRunId, run_t::PREPARE, 0, runtime::HashOf(huge), parts, i));
   }
-  EXPECT_TRUE(node.left());
-  EXPECT_LE(node.error().size(), 700U);
+  EXPECT_TRUE(node.node().parts().own.left());
+  EXPECT_LE(node.node().parts().own.message().error.size(), 700U);
 }
 
 TEST_F(NodeTest, AnswersAFloodOfRequestsWithAFewMessages) {

@@ -158,7 +158,7 @@ TEST_F(OnDemandTest, OfTwoProducersEndsTheRun) {
   script_.SayRun(run_t::GO, -1);
   SayHost(0);
   script_.Say(Script::Of<arbitration_t>(0));
-  EXPECT_EQ(node_.error(),
+  EXPECT_EQ(node_.node().parts().own.message().error,
             "step 0: HOST_COMMAND came twice with different contents: is there a second "
             "arbitrator?");
 }

@@ -45,10 +45,10 @@ class RealtimeRulesTest : public testing::Test {
     for (const M& message : messages) steps.push_back(message.header.step);
     return steps;
   }
-  /// The node's STATUS one heartbeat later.
-  const status_t& Status(runtime::Node& node) {
+  /// The role's STATUS one heartbeat later.
+  const status_t& Status(runtime::Work& role) {
     later_ += milliseconds(201);
-    script_.PollUpTo(node, Clock::now() + later_);
+    script_.PollUpTo(role, Clock::now() + later_);
     return status_.back();
   }
 

@@ -1,0 +1,43 @@
+// When a role computes a step, and what it does about missing inputs. This is all that differs
+// between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
+#pragma once
+
+#include <cstdint>
+
+#include "common/clock.h"
+#include "fogline/run_t.hpp"
+#include "services/runtime/wire/arrival.h"
+
+namespace fogline::runtime {
+
+/// The rule of one role, from when the role has joined a run. It works with the parts that it is
+/// handed (parts.h).
+class FireRule {
+ public:
+  virtual ~FireRule() = default;
+  FireRule(const FireRule&) = delete;
+  FireRule& operator=(const FireRule&) = delete;
+
+  /// The runner says GO. May be called repeatedly.
+  virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
+  /// A message of an input has come (its place in Inputs::all()). It is of this run and of a step
+  /// of the scenario. The rule judges it and passes it to Inputs::Keep().
+  virtual void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
+  /// Does what is due. @return the latest time for the next call
+  virtual TimePoint Poll(TimePoint now) = 0;
+  /// A RUN has told how far the run is.
+  virtual void OnProgress() {}
+  /// This step is known to be under way.
+  virtual void Expect(std::int64_t /*step*/) {}
+  /// Another process asks for the output of a step that this role has not computed yet.
+  virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}
+  /// Called before every STATUS: adds what the rule knows.
+  virtual void WriteStatus(TimePoint /*now*/) {}
+  /// This step is the last one of the run.
+  virtual void SetFinal(std::int64_t /*step*/) {}
+
+ protected:
+  FireRule() = default;
+};
+
+}  // namespace fogline::runtime

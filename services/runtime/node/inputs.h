@@ -1,0 +1,74 @@
+// The inputs of a role: the channels that it reads, and the last steps of each. They refuse what is
+// of another run or cannot be of this one. The rule decides about the rest.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/graph.h"
+#include "services/runtime/node/own_status.h"
+#include "services/runtime/node/run_news.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline::runtime {
+
+/// One channel that a role reads.
+struct Input {
+  std::size_t channel;       // in kChannels
+  std::int64_t fingerprint;  // of its type
+  std::int64_t lag;          // step k uses this input's step k - lag
+  bool on_demand;            // (algorithm.h) in real time the role does not wait for it
+  StepRing ring;
+  TimePoint heard{};
+  // Takes a sound message that is new; may be empty.
+  std::function<void(std::int64_t step, Arrival& arrival)> keep{};
+
+  /// Whether this input has the message that a step uses. A step whose message would be from before
+  /// step 0 uses none.
+  bool ReadyFor(std::int64_t step) const { return step < lag || ring.Has(step - lag); }
+};
+
+class Inputs {
+ public:
+  /// Reads the role's inputs except those on demand. The recorder reads every channel of steps.
+  /// @param rule the role's rule, null until the role has joined
+  Inputs(Bus& bus, Role role, const RunNews& run, OwnStatus& own,
+         const std::unique_ptr<FireRule>& rule);
+
+  /// In the order of kChannels; the inputs on demand stand behind them.
+  std::span<Input> all() { return inputs_; }
+  std::span<const Input> all() const { return inputs_; }
+  /// The input of a channel (its place in kChannels). @pre the role reads it
+  Input& Of(std::size_t channel);
+  /// Reads this channel, too. Call it in Work::Join().
+  Input& ReadOnDemand(std::size_t channel);
+
+  /// Does with a message of an input what the rule has decided, and counts what it refuses. A
+  /// second message of a step with other bytes ends the role's part in the run.
+  /// @return whether it is new and sound: the input now has it
+  bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
+  /// An input's message of a step is known from the log of a predecessor.
+  void Remember(std::size_t input, std::int64_t step, Bytes bytes);
+
+ private:
+  Input& Read(std::size_t channel, bool on_demand);
+  void OnMessage(std::size_t input, Arrival& arrival);
+  /// The error text for a message that contradicts an earlier message of its step and channel.
+  std::string Contradiction(std::int64_t step, const ChannelInfo& channel) const;
+
+  Bus& bus_;
+  const Role role_;
+  const RunNews& run_;
+  OwnStatus& own_;
+  const std::unique_ptr<FireRule>& rule_;
+  std::vector<Input> inputs_;
+  std::int64_t remembered_ = 0;  // the steps before this one are those of a log
+};
+
+}  // namespace fogline::runtime

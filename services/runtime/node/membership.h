@@ -1,0 +1,63 @@
+// How a role joins a run and leaves it: it hears RUN, collects the scenario, and watches its
+// runner.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/clock.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/node/parts.h"
+#include "services/runtime/node/rate_limiter.h"
+#include "services/runtime/node/runner_watch.h"
+#include "services/runtime/node/work.h"
+
+namespace fogline::runtime {
+
+class Membership {
+ public:
+  /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
+  /// @param rule where the rule of the run goes when the role joins
+  Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
+             std::unique_ptr<FireRule>& rule);
+
+  /// Does what is due: asks for the scenario, leaves a runner that is gone.
+  /// @return the latest time for the next call
+  TimePoint Poll(TimePoint now);
+  /// Whether its runner has been silent for so long that the role may join another run.
+  bool RunnerSilent(TimePoint now) { return runner_.Silent(runner_.Attend(now)); }
+
+ private:
+  void OnRun(Bytes bytes);
+  /// Handles a RUN of another run.
+  void OnOtherRun(const run_t& run, TimePoint now);
+  /// Whether the runner has sent this RUN now, not in an old run. If that is not known, asks the
+  /// runner.
+  bool IsFresh(const run_t& run, TimePoint now);
+  /// Asks a runner for a RUN that answers this process.
+  void AskWhetherThere(const run_t& run, TimePoint now);
+  /// In lockstep the role fails if nothing could be sent for as long as the run waits for a step.
+  void CheckSends(TimePoint now);
+  /// Takes a RUN's news about the whole run. @return whether the RUN is newer than all before
+  bool TakeNews(const run_t& run, TimePoint now);
+  /// Forgets a run whose runner fell silent before the whole scenario had come.
+  void Unbind();
+  void Join(const run_t& run);
+
+  Parts& parts_;
+  RunNews& run_;
+  OwnStatus& own_;
+  Work& work_;
+  std::unique_ptr<FireRule>& rule_;
+  const bool chosen_;  // whether an option names the run: then the role looks for no other run
+  bool fresh_;         // the runner has answered this process, or there is no key and it need not
+  RateLimiter questions_{200, 20};  // limits the requests that ask runners for an answer
+  TimePoint part_at_{};             // when to ask for the next part of the scenario
+  TimePoint announced_at_{};        // when a repeated announcement was last answered
+  RunnerWatch runner_{Clock::now()};
+  // The runner has started this process, and the kernel ends both together.
+  const bool ends_with_runner_;
+};
+
+}  // namespace fogline::runtime

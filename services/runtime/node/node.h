@@ -1,0 +1,48 @@
+// One role's part in a run, made of its parts: Membership joins, Inputs and Outputs hold messages,
+// a FireRule decides when a step is computed, and Work computes it.
+//
+// Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/clock.h"
+#include "services/graph.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/node/membership.h"
+#include "services/runtime/node/outputs.h"
+#include "services/runtime/node/parts.h"
+#include "services/runtime/node/work.h"
+#include "services/runtime/transport/bus.h"
+
+namespace fogline::runtime {
+
+class Node {
+ public:
+  /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
+  /// @param work what the role does, which owns this node
+  Node(Bus& bus, Role role, std::optional<std::int64_t> run_id, Work& work);
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Does what is due (repair, status). Call it after every Bus::Wait().
+  /// @return the latest time for the next call
+  TimePoint Poll(TimePoint now);
+
+  Parts& parts() { return parts_; }
+  Membership& membership() { return membership_; }
+  Outputs& outputs() { return outputs_; }
+  /// @pre the role has joined
+  FireRule& rule() { return *rule_; }
+
+ private:
+  Work& work_;
+  std::unique_ptr<FireRule> rule_;  // null until the role has joined
+  Parts parts_;
+  Membership membership_;
+  Outputs outputs_;
+};
+
+}  // namespace fogline::runtime

@@ -1,0 +1,54 @@
+// The outputs of a role: it publishes each step of them once, keeps the last steps, and answers
+// requests for them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/graph.h"
+#include "services/runtime/node/fire_rule.h"
+#include "services/runtime/node/parts.h"
+#include "services/runtime/node/rate_limiter.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/load_shedder.h"
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline::runtime {
+
+class Outputs {
+ public:
+  /// @param rule the role's rule, null until the role has joined
+  Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
+
+  /// Publishes the output of a step on one of the role's channels (its place in kChannels) and
+  /// keeps it. A step that the recorder answers for is only kept.
+  /// @throws std::runtime_error if it is too large
+  void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
+  /// The limit for answers about older steps.
+  RateLimiter& limiter() { return limiter_; }
+
+ private:
+  struct Output {
+    std::size_t channel;
+    Bus::Topic& topic;
+    StepRing ring;
+    std::array<TimePoint, kRingSteps> answered{};  // when its steps were last published again
+  };
+
+  void OnResend(Bytes bytes);
+  void AnswerFrom(Output& output, StepRange steps, TimePoint now);
+
+  Parts& parts_;
+  Work& work_;
+  const std::unique_ptr<FireRule>& rule_;
+  std::vector<Output> outputs_;
+  // In messages per second and per burst. Repairs on a network that loses a third of the messages
+  // take a few hundred a second.
+  RateLimiter limiter_{2000, 500};
+  LoadShedder requests_{3000};  // RESEND per second: many times the number on the worst network
+};
+
+}  // namespace fogline::runtime

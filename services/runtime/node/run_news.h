@@ -1,0 +1,24 @@
+// What a role knows about its run. All of it comes from the runner's RUN.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "services/runtime/wire/scenario_parts.h"
+#include "services/runtime/wire/step_ring.h"
+
+namespace fogline::runtime {
+
+struct RunNews {
+  std::optional<std::int64_t> id;  // nullopt: in no run
+  std::int64_t sequence = 0;       // of the newest RUN
+  std::int64_t progress = -1;      // last step that the world has begun, as far as the runner knows
+  std::int8_t minimal_risk = 0;    // in real time: the cars in a minimal risk manoeuvre; status_t
+  ScenarioParts parts;
+  // Known once the scenario is complete:
+  std::int64_t steps = kMaxStep;
+  bool realtime = false;
+  double pace = 0;  // simulated seconds per second, 0 if there is no limit
+};
+
+}  // namespace fogline::runtime

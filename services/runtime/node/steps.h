@@ -1,0 +1,44 @@
+// The steps of a role, in order. Each is computed once.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+
+#include "services/runtime/node/own_status.h"
+#include "services/runtime/node/work.h"
+
+namespace fogline::runtime {
+
+class Steps {
+ public:
+  Steps(OwnStatus& own, Work& work) : own_(own), work_(work) {}
+
+  /// The step to compute next. It uses each input's message of step next() - lag.
+  std::int64_t next() const { return next_; }
+  /// A predecessor has done the steps before this one.
+  void StartAt(std::int64_t step) {
+    next_ = step;
+    own_.message().header.step = step - 1;
+  }
+  /// Computes a step now. The next step is then the one after it.
+  /// @return false if the computation failed; the role has then said so
+  bool Compute(std::int64_t step) {
+    try {
+      work_.Compute(step);
+    } catch (const std::exception& error) {
+      own_.Fail(error.what());
+      return false;
+    }
+    own_.message().header.step = step;
+    next_ = step + 1;
+    if (own_.message().state == status_t::READY) own_.SetState(status_t::RUNNING);
+    return true;
+  }
+
+ private:
+  OwnStatus& own_;
+  Work& work_;
+  std::int64_t next_ = 0;
+};
+
+}  // namespace fogline::runtime

@@ -1,0 +1,119 @@
+// What every rule in real time does: it decides which messages are in time, judges every input by
+// age (input_health.h), computes a step that is due, and keeps the statistics of the role.
+//
+// A message that comes after the end of its step is late: it is counted and never used. A message
+// of a step that cannot be under way is refused (step_horizon.h). An input on demand is not judged.
+//
+// STATUS reports the state of each input, the culprit, and how well the role keeps its time. A
+// change of a state is reported at once.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenario/sections/scenario.h"
+#include "services/runtime/node/parts.h"
+#include "services/runtime/realtime/input_health.h"
+#include "services/runtime/realtime/realtime_statistics.h"
+#include "services/runtime/realtime/run_clock.h"
+#include "services/runtime/realtime/step_horizon.h"
+
+namespace fogline::runtime {
+
+/// How long a step takes on the wall clock.
+/// @pre IsSpeed(speed)
+Duration PeriodOf(const Scenario& scenario, double speed);
+
+class RealtimeWatch {
+ public:
+  /// @pre IsSpeed(parts.run.pace)
+  RealtimeWatch(Parts& parts, const Scenario& scenario);
+
+  /// Decides what to do with an input's message of a step, and counts the message if it is late.
+  StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
+  /// An input has a new message of a step (Inputs::Keep()).
+  void Heard(std::size_t input, std::int64_t step, TimePoint time);
+  /// Both at once, for a rule that adds nothing to them.
+  void Take(std::size_t input, std::int64_t step, Arrival& arrival) {
+    const auto verdict = Judge(input, step, arrival.bytes());
+    if (parts_.inputs.Keep(input, step, arrival, verdict)) Heard(input, step, arrival.time());
+  }
+  /// Reads the messages that wait and judges the inputs. Then, if the role still runs, calls
+  /// `fire`, which computes the steps that are due and returns the latest time for the next call.
+  /// @return the latest time for the next call
+  TimePoint Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire);
+  /// A RUN has told how far the run is.
+  void OnProgress() { horizon_.Told(parts_.run.progress, Clock::now()); }
+  /// Adds to a STATUS what is known of inputs and time.
+  void WriteStatus(TimePoint now);
+
+  InputState StateOf(std::size_t input) const { return health_[input].state(); }
+  /// The state of an input for an algorithm that computes a step without some of its inputs. The
+  /// world's tick of this step counts as OK if it is there, however long it was silent before.
+  InputState StateFor(std::size_t input, std::int64_t step) const;
+  /// Whether a message of the input has come lately, in time or too late to be used.
+  bool Speaks(std::size_t input, TimePoint now) const;
+
+  /// The inputs that a step needs: all but those on demand.
+  std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
+  /// The input that brings the world's ticks; the number of inputs if there is none.
+  std::size_t tick_input() const { return tick_input_; }
+  /// The first step up to `newest` that may still be computed.
+  std::int64_t Oldest(std::int64_t newest) const {
+    return std::max(parts_.steps.next(), newest - kRingSteps + 1);
+  }
+  /// Computes a step that was due at `due`. Steps between the last one and this one are counted as
+  /// missed.
+  void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
+
+  /// The world has begun this step now.
+  void Begun(std::int64_t step, TimePoint now);
+  RunHorizon& horizon() { return horizon_; }
+  /// Newest step that can be under way.
+  std::int64_t NewestPossible(TimePoint now) const {
+    return horizon_.NewestPossible(now, clock_.Silence(now));
+  }
+  RealtimeStatistics& statistics() { return statistics_; }
+
+ private:
+  /// Messages of an input that were too late to be used.
+  struct Late {
+    std::int64_t count = 0;
+    TimePoint at{};  // when the last one came
+  };
+  /// The times at which this process was held up: a call came much later than it was asked for.
+  struct OwnPause {
+    TimePoint wake = TimePoint::max();  // the latest time for which the next call was asked
+    Duration sum{};
+  };
+
+  void NoticeOwnPause(TimePoint now);
+  /// Takes the time into account. @return when the passage of time may next change a state
+  TimePoint UpdateHealth(TimePoint now);
+  /// The clock that judges an input. The world's ticks are judged on the wall clock without this
+  /// process's own pauses, in which it could not hear them. All other inputs are judged on the
+  /// clock of the run.
+  TimePoint ClockOf(std::size_t input, TimePoint now) const {
+    return input == tick_input_ && clock_.started() ? now - pause_.sum : clock_.At(now);
+  }
+  void NameCulprit(TimePoint now);
+
+  Parts& parts_;
+  Duration period_;
+  std::int64_t step_us_;
+  HealthSection limits_;
+  OwnPause pause_;
+  RunClock clock_;
+  RunHorizon horizon_;
+  std::size_t tick_input_;
+  std::vector<InputHealth> health_;  // one for each awaited input
+  std::vector<Late> late_;           // one for each input
+  RealtimeStatistics statistics_;
+  std::string fallback_;  // in the last STATUS
+};
+
+}  // namespace fogline::runtime
