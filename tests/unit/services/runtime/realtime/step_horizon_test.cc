@@ -78,5 +78,33 @@ TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
   EXPECT_EQ(horizon_.Newest(At(99 * kSteps)), kSteps - 1 + kSlack);
 }
 
+// ---- of a run ----------------------------------------------------------------------------------
+
+constexpr Duration kLong = 10 * kPeriod;  // a silence in which only the runner's word counts
+
+TEST(RunHorizonTest, IsLimitedByTheRunnerUntilAStepIsHeard) {
+  runtime::RunHorizon horizon(kPeriod);
+  horizon.Told(50, At(5000));
+  // The report may be a second old: ten periods.
+  EXPECT_EQ(horizon.NewestPossible(At(5000), Duration::zero()), 50 + 10 + kSlack);
+  EXPECT_EQ(horizon.newest(), -1);
+}
+
+TEST(RunHorizonTest, IsLimitedByTheStepsThatAreHeardUnlessThereIsSilence) {
+  runtime::RunHorizon horizon(kPeriod);
+  horizon.Told(50, At(5000));
+  horizon.Heard(48, At(5000));
+  EXPECT_EQ(horizon.newest(), 48);
+  EXPECT_EQ(horizon.NewestPossible(At(5000), Duration::zero()), 48 + kSlack);
+  EXPECT_EQ(horizon.NewestPossible(At(5000), kLong), 50 + 10 + kSlack);
+}
+
+TEST(RunHorizonTest, IsNoFurtherThanTheRunnersWordLetsItBe) {
+  runtime::RunHorizon horizon(kPeriod);
+  horizon.Told(50, At(5000));
+  horizon.Heard(1000, At(5000));
+  EXPECT_EQ(horizon.NewestPossible(At(5000), Duration::zero()), 50 + 10 + kSlack);
+}
+
 }  // namespace
 }  // namespace fogline
