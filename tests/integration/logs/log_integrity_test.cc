@@ -15,7 +15,7 @@
 #include "services/log/log_seal.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/message_signer.h"
-#include "tests/integration/relay_fixture.h"
+#include "tests/integration/network/relay_fixture.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

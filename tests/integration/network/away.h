@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/clock.h"
-#include "services/runtime/lockstep/runner_watch.h"
+#include "services/runtime/node/runner_watch.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
