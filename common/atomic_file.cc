@@ -91,7 +91,7 @@ std::string Obstacle(const fs::path& file, const Target& target) {
   }
   if (fs::exists(target.status)) return "it is no regular file";
   if (target.path == file) return "";
-  return fmt::format("it is a link to {}, which is not there", PathText(target.path));
+  return fmt::format("it is a link to {}, which does not exist", PathText(target.path));
 }
 
 /// A name that no other process has chosen or can predict.
@@ -265,7 +265,7 @@ void RefuseToReplace(const fs::path& file, std::string_view option, bool force,
   if (fs::is_empty(file, ignored) || !fs::is_regular_file(file, ignored) || is_of_kind(file)) {
     return;
   }
-  refuse(fmt::format("is no {} and stays as it is, --force or not", kind));
+  refuse(fmt::format("is no {} and is not replaced, even with --force", kind));
 }
 
 }  // namespace fogline

@@ -91,7 +91,8 @@ void RequireWritableFolder(const std::filesystem::path& folder, std::string_view
 /// of another kind, so that a mistyped name does not destroy it. An empty file is accepted with
 /// `force`, a pipe and a device are always accepted.
 /// @param kind such as "sweep"
-/// @throws InputError "FILE: error: --out: the file is no sweep and stays as it is, --force or not"
+/// @throws InputError "FILE: error: --out: the file is no sweep and is not replaced, even with
+/// --force"
 void RefuseToReplace(const std::filesystem::path& file, std::string_view option, bool force,
                      std::string_view kind,
                      const std::function<bool(const std::filesystem::path&)>& is_of_kind);

@@ -61,14 +61,14 @@ struct RoleInfo {
 /// Every role that is a process of its own, in the order of evaluation within a step.
 inline constexpr std::array kRoles{
     RoleInfo{Role::kWorld, "world", "moves the cars and is the clock of the run"},
-    RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly touches it"},
+    RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly affects it"},
     RoleInfo{Role::kLidar, "lidar", "measures range; fog deceives it"},
     RoleInfo{Role::kFusion, "fusion", "extended Kalman filter over both sensors"},
     RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
-    RoleInfo{Role::kDriver, "driver", "the human agent: follows the car ahead by what he sees"},
+    RoleInfo{Role::kDriver, "driver", "the human agent: follows the car ahead, as far as it sees"},
     RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
     RoleInfo{Role::kFollower, "follower",
-             "drives the cars behind the host: the same ACC, or people"},
+             "drives the cars behind the host: the same ACC, or human drivers"},
     RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
 };
 

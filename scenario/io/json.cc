@@ -217,7 +217,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
       const JsonMember& member = object[order[i]];
       if (member.key != object[order[i - 1]].key) continue;
       mistakes_.Add(member.place, JoinPointer(OpenPointer(), member.key), "duplicate-key",
-                    "duplicate key; it has a value above already, and one of them must go");
+                    "duplicate key; it already has a value above; remove one of them");
     }
   }
 

@@ -15,8 +15,8 @@ ConflictMeter::ConflictMeter(const Scenario& scenario)
   is_posterior_ = section.measure_scale == MeasureScale::kProbability;
   if (is_posterior_ && !policies::RowOf(section.measure).posterior) {
     throw InputError(
-        fmt::format("/arbitrator/measure_scale: \"probability\" is for measures that are one, as "
-                    "\"lidar_modes\"; /arbitrator/measure is \"{}\"",
+        fmt::format("/arbitrator/measure_scale: \"probability\" needs a measure whose score is a "
+                    "probability, such as \"lidar_modes\"; /arbitrator/measure is \"{}\"",
                     policies::RowOf(section.measure).name));
   }
   if (section.measure == MeasureChoice::kDoc) return;

@@ -244,7 +244,7 @@ std::optional<Event> EventLogReader::Next() {
   std::string_view why;
   const auto event = ParseEvent(rest, why);
   if (!event) {
-    torn_ = fmt::format("{} after event {} (byte {}); {} bytes behind it are ignored", why,
+    torn_ = fmt::format("{} after event {} (byte {}); {} bytes after it are ignored", why,
                         events_ - 1, offset_, rest.size());
     return std::nullopt;
   }

@@ -78,9 +78,10 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
   const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
   if (fd >= 0) close(fd);
   if (error == 0) return;
-  throw std::runtime_error(fmt::format(
-      "cannot seal {}: {}; {}", log.string(), WhyWriteFailed(error),
-      left ? "a part of the seal is in it" : "the log is as the run left it, without a seal"));
+  throw std::runtime_error(fmt::format("cannot seal {}: {}; {}", log.string(),
+                                       WhyWriteFailed(error),
+                                       left ? "the log contains a part of the seal"
+                                            : "the log is as the run left it, without a seal"));
 }
 
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {
@@ -89,13 +90,13 @@ std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {
   file.ReadThrough(0, before, [&hash](runtime::Bytes piece) { hash.Add(piece); });
   const bool same = hash.Hex() == seal.says.file_hash;
   if (seal.copied) return same ? "the time of its seal was changed" : "";
-  if (!same) return "other bytes than those that were sealed";
+  if (!same) return "the bytes differ from the sealed ones";
   std::string_view why;
   const runtime::Bytes last = file.content().subspan(before);
   const auto event = ParseEvent(last, why);
   if (!event || event->number != seal.before.events) return "the number of its seal was changed";
   if (SizeInFile(*event) != last.size()) {
-    return fmt::format("{} bytes behind the seal", last.size() - SizeInFile(*event));
+    return fmt::format("{} bytes after the seal", last.size() - SizeInFile(*event));
   }
   return "";
 }
@@ -121,8 +122,8 @@ std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenL
                      [&](runtime::Bytes piece) { checksum = ChecksumOf(checksum, piece); });
     if (std::cmp_equal(to, told.bytes) && checksum == told.checksum) continue;
     return fmt::format(
-        "the log on disk is not what the recorder wrote: {} bytes with checksum {:08x}, on disk {} "
-        "with {:08x}",
+        "the log on disk is not what the recorder wrote: it wrote {} bytes with checksum {:08x}, "
+        "on disk are {} with {:08x}",
         told.bytes, told.checksum, to, checksum);
   }
   return "";

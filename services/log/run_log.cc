@@ -151,7 +151,7 @@ class RunLogReader::Assembler {
     const LogSeal& seal = *run_.seal;
     if (!seal.whole) return "its seal was changed";
     if (seal.says.digest != run_.digest || seal.says.steps != run_.steps) {
-      return fmt::format("sealed with digest {} of {} steps, it has {} of {}",
+      return fmt::format("the seal names digest {} of {} steps; the log has {} of {}",
                          EscapeControls(seal.says.digest), seal.says.steps, run_.digest,
                          run_.steps);
     }

@@ -222,14 +222,15 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   number("max_handover_jerk_mps3", m.max_handover_jerk_mps3, "m/s3",
          "largest jerk of the host within measures.handover_s after a change of the authorities");
   number("wrong_human_s", m.detection.wrong_human_s, "s",
-         "time, weighed by authority, of the human while the LiDAR is right");
+         "time, weighted by authority, in which the human drives although the LiDAR is right");
   number("wrong_automation_s", m.detection.wrong_automation_s, "s",
-         "the same of the automation while LiDAR and fusion are deceived");
+         "time, weighted by authority, in which the automation drives although LiDAR and fusion "
+         "are deceived");
   number("deception_to_alarm_s", m.detection.deception_to_alarm_s, "s",
-         "from the first step with the LiDAR off by more than measures.lidar_tolerance_m to DoC >= "
-         "threshold; 0 if DoC was there before");
+         "time from the first step with a LiDAR error above measures.lidar_tolerance_m until DoC "
+         ">= threshold; 0 if DoC had reached it before");
   number("false_alarms_ph", m.detection.false_alarms_ph, "1/h",
-         "alarms that begin in clear air, per hour of it");
+         "alarms that begin in clear air, per hour of clear air");
   number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
          "largest acceleration or braking of the host");
   number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");

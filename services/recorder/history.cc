@@ -96,7 +96,7 @@ std::int64_t History::Find(std::int64_t step) {
       high = from;
     } else {
       throw std::runtime_error(
-          fmt::format("cannot read {} again: there is no step {} behind byte {}", file_.string(),
+          fmt::format("cannot read {} again: there is no step {} after byte {}", file_.string(),
                       low.step + 1, low.begin));
     }
     guess = low.begin + (high - low.begin) / 2;

@@ -61,11 +61,11 @@ bool Recorder::Resume() {
   const log::LogFront front = is_there ? log::ReadFront(file_) : log::LogFront();
   const std::int64_t run_id = *parts_.run.id;
   if (!front.parts.empty() && front.run_id != run_id) {
-    throw InputError(fmt::format("{}: the log is that of run {}, not of {}", file_.string(),
+    throw InputError(fmt::format("{}: the log is of run {}, not of run {}", file_.string(),
                                  front.run_id, run_id));
   }
   if (!front.parts.empty() && front.parts.hash() != parts_.run.parts.hash()) {
-    throw InputError(fmt::format("{}: the log is that of another scenario", file_.string()));
+    throw InputError(fmt::format("{}: the log is of another scenario", file_.string()));
   }
   const log::Remains remains = ReadOwnRemains(front);
   if (!front.parts.Complete()) return false;
@@ -88,8 +88,8 @@ log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   // does not wait, and a missing step is a hole.
   const std::int64_t written = parts_.run.progress - runtime::kMaxAhead + 1;
   if (!parts_.run.realtime && remains.steps < written) {
-    throw InputError(fmt::format("{}: the log has {} steps, but {} were in it", file_.string(),
-                                 remains.steps, written));
+    throw InputError(fmt::format("{}: the log has {} steps, but the recorder had written {}",
+                                 file_.string(), remains.steps, written));
   }
   return remains;
 }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kHelpFooter =
     "Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted.\n\n"
-    "Example: as `fogline run` starts it; a run has one recorder, so a second log is that of\n"
-    "lcm-logger\n"
+    "Example: `fogline run` starts it like this. A run has one recorder; use lcm-logger for\n"
+    "a second log.\n"
     "  fogline-recorder --log logs/run.lcm --lcm-url 'udpm://239.255.76.67:7700?ttl=0'";
 
 }  // namespace

@@ -47,7 +47,8 @@ TakeOverTime::TakeOverTime(const TakeOverParameters& parameters, double lead_s)
     return;
   }
   const double spare = z * z - 2.0 * std::log(lead_s / mean_s);
-  Require(spare >= 0.0, "take-over time: no log-normal distribution is late so often");
+  Require(spare >= 0.0,
+          "take-over time: no log-normal distribution has so large a probability of being late");
   scale_ = z - std::sqrt(spare);
   location_ = std::log(mean_s) - 0.5 * scale_ * scale_;
 }

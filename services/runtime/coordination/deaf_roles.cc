@@ -25,8 +25,8 @@ constexpr std::int64_t kAhead = 5;
 
 std::string Text(const Deafness& deaf) {
   const ChannelInfo& channel = kChannels[deaf.channel];
-  return fmt::format("has heard no {} for {:.1f} s, which the {} has published all the while",
-                     channel.name, Seconds(deaf.missed), NameOf(channel.from));
+  return fmt::format("has heard no {} for {:.1f} s, although the {} has published it", channel.name,
+                     Seconds(deaf.missed), NameOf(channel.from));
 }
 
 DeafRoles::DeafRoles(Duration period)

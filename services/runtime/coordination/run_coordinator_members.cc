@@ -112,8 +112,8 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
 }
 
 void RunCoordinator::FailForTwo(const status_t& one, const status_t& other) {
-  Fail(fmt::format("two processes are the {}: pid {} on {} and pid {} on {}", one.role, one.pid,
-                   one.host, other.pid, other.host));
+  Fail(fmt::format("two processes have the role {}: pid {} on {} and pid {} on {}", one.role,
+                   one.pid, one.host, other.pid, other.host));
 }
 
 void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {

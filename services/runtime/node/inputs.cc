@@ -104,8 +104,8 @@ std::string Inputs::Contradiction(std::int64_t step, const ChannelInfo& channel)
                        step, channel.name, NameOf(channel.from));
   }
   return fmt::format(
-      "step {}: {} is not what the log has: {} is another program, or another "
-      "version, than the one that was recorded",
+      "step {}: {} differs from the log: {} is not the program or version that was "
+      "recorded",
       step, channel.name, NameOf(channel.from));
 }
 

@@ -40,7 +40,7 @@ struct Arguments {
   void AddTo(CLI::App& app) {
     app.add_option("--lcm-url", url, "LCM network to join (default: see above)");
     app.add_option("--run-id", run_id, "Join only the run with this id");
-    app.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
+    app.add_option("--wait", wait_s, "Longest wait for a run, in s (0: for ever)")
         ->check(CLI::Range(0.0, 1e6))
         ->check([](const std::string& text) {  // CLI::Range accepts NaN
           return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
@@ -157,7 +157,7 @@ class Service {
   void Seek(TimePoint now) {
     LimitWait(now);
     if (!MaySeek() || !OpenSeeker(now)) return;
-    if (seeker_->InVain(now)) return GoBack("nothing is heard of it");
+    if (seeker_->InVain(now)) return GoBack("no message of the announced run has come");
     const auto run = seeker_->Look(now);
     if (!run) return;
     GoTo(*run);
@@ -255,13 +255,12 @@ int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
   Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
   const std::string& name = arguments.name;
   CLI::App app{
-      fmt::format(
-          "Fogline's {}: {}.\n"
-          "Joins the next run on the LCM network, takes part in it, and leaves when the\n"
-          "runner says so. Without --lcm-url the network is $LCM_DEFAULT_URL or, if that is\n"
-          "not set, {}, and that of any run that waits\n"
-          "for this role and is announced there.",
-          NameOf(role), PurposeOf(role), kLcmDefaultUrl),
+      fmt::format("Fogline's {}: {}.\n"
+                  "Joins the next run on the LCM network, takes part in it, and leaves when the\n"
+                  "runner says so. Without --lcm-url it uses $LCM_DEFAULT_URL or, if that is not\n"
+                  "set, {}. It also joins runs that are\n"
+                  "announced there and wait for this role.",
+                  NameOf(role), PurposeOf(role), kLcmDefaultUrl),
       name};
   app.set_version_flag("--version", VersionText());
   arguments.AddTo(app);

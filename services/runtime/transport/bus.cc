@@ -135,10 +135,10 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   Filter(ChannelFilter({}));
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
-    Notice(fmt::format(
-        "warning: the kernel takes no socket filter: whatever is sent to {} reaches LCM's "
-        "parser (`fogline doctor` says more)",
-        url_));
+    Notice(
+        fmt::format("warning: the kernel accepts no socket filter, so every message to {} reaches "
+                    "LCM's parser (`fogline doctor` says more)",
+                    url_));
   }
 }
 
@@ -149,11 +149,11 @@ Bus::~Bus() {
 void Bus::Secure(const MessageSigner& signer) {
   if (url_.starts_with("mpudpm://")) {
     throw InputError(
-        "error: --key: with mpudpm nothing filters what reaches LCM's parser; use udpm");
+        "error: --key: mpudpm has no filter, so every message reaches LCM's parser; use udpm");
   }
   if (!filtered_) {
     throw InputError(
-        "error: --key: the kernel takes no socket filter, so messages reach LCM's parser before "
+        "error: --key: the kernel accepts no socket filter, so messages reach LCM's parser before "
         "their signature is checked; `fogline doctor` says more");
   }
   signer_ = signer;

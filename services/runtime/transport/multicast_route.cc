@@ -138,7 +138,7 @@ std::string WhyNoMulticast(std::string_view url) {
   if (RouteError(*group).empty()) return "";
   return fmt::format(
       "this machine has no route for multicast to {}; as root: \"{}\" for traffic on this machine "
-      "alone, or with the network's interface in place of lo",
+      "only; for other machines replace lo with the network's interface",
       *group, kLoopbackRoute);
 }
 

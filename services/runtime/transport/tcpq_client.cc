@@ -171,7 +171,7 @@ void Client::SendFrame() {
     if (!stalled) stalled = now;
     if (now - *stalled >= kStallLimit) {
       throw Lost(endpoint_,
-                 fmt::format("it has taken nothing for {} s", Milliseconds(kStallLimit) / 1000));
+                 fmt::format("it has accepted no data for {} s", Milliseconds(kStallLimit) / 1000));
     }
     const bool room = received_.size() < kMaxReceived;
     if (Ready(room ? POLLOUT | POLLIN : POLLOUT, *stalled + kStallLimit - now) && room) Receive();

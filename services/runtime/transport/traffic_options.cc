@@ -17,7 +17,7 @@ constexpr const char* kKeyVariable = "FOGLINE_KEY";
 
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
   app.add_option("--key", options.key_file,
-                 "Sign with the key in this file; refuse what is not signed")
+                 "Sign messages with the key in this file, and refuse unsigned ones")
       ->envname(kKeyVariable)
       ->check([](const std::string& file) {
         return file.empty() ? "the name of the key's file is empty" : "";

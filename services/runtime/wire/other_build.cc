@@ -6,12 +6,13 @@ namespace fogline::runtime {
 
 std::string OtherBuild::Text() const {
   const std::string process = fmt::format("{} (pid {} on {})", NameOf(role), pid, host);
-  if (build == kUnknownBuild) return process + " does not say of which build it is";
+  if (build == kUnknownBuild) return process + " does not report its build";
   if (ours == kUnknownBuild) {
-    return fmt::format("{} is of build {}, and the runner has no fogline-{} beside it to compare",
-                       process, BuildText(build), NameOf(role));
+    return fmt::format(
+        "{} is of build {}, and beside the runner is no fogline-{} to compare it with", process,
+        BuildText(build), NameOf(role));
   }
-  return fmt::format("{} is of build {}, that of the runner is {}", process, BuildText(build),
+  return fmt::format("{} is of build {}, but the runner is of build {}", process, BuildText(build),
                      BuildText(ours));
 }
 

@@ -144,7 +144,7 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesEndsTheRunByBothNames) {
       {Program("fogline-acc"), "--lcm-url", watched.url(), "--run-id", watched.RunId()});
   EXPECT_EQ(watched.run().Wait(), 3);
   const std::string err = watched.run().Err();
-  EXPECT_THAT(err, HasSubstr("error: two processes are the acc: pid "));
+  EXPECT_THAT(err, HasSubstr("error: two processes have the role acc: pid "));
   EXPECT_THAT(err, HasSubstr("pid " + ours + " on "));
   EXPECT_THAT(err, HasSubstr("pid " + std::to_string(second.pid()) + " on "));
 }

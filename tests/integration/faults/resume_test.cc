@@ -200,9 +200,8 @@ TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
     const Outcome outcome = Resume({"--transport", transport});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_THAT(outcome.err,
-                HasSubstr("error: recorder: step 190: DRIVER_COMMAND is not what the log has: "
-                          "driver is another program, or another version, than the one that was "
-                          "recorded\n"));
+                HasSubstr("error: recorder: step 190: DRIVER_COMMAND differs from the log: driver "
+                          "is not the program or version that was recorded\n"));
   }
 }
 

@@ -186,12 +186,13 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 0);
   // --force does not replace a file that no export has written.
   std::ofstream(mat_) << "MATLAB 5.0 MAT-file, my own analysis";
-  EXPECT_EQ(Export({"--out", mat_, "--force"}).err,
-            mat_ + ": error: --out: the file is no export and stays as it is, --force or not\n");
+  EXPECT_EQ(
+      Export({"--out", mat_, "--force"}).err,
+      mat_ + ": error: --out: the file is no export and is not replaced, even with --force\n");
   const std::string csv = out_ + "/RADAR.csv";
   std::ofstream(csv) << "range,rate\n";
   EXPECT_EQ(Export({"--out", out_, "--force"}).err,
-            csv + ": error: --out: the file is no export and stays as it is, --force or not\n");
+            csv + ": error: --out: the file is no export and is not replaced, even with --force\n");
   std::filesystem::remove(csv);
   std::ofstream(out_ + "/scenario.json") << "{\"mine\": 1}";
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 2);
@@ -206,9 +207,9 @@ TEST_F(ExportTest, ReplacesNoScenarioThatDoesNotStandBesideTheFilesOfAnExport) {
   std::filesystem::remove(out_ + "/RADAR.csv");
   const Outcome outcome = Export({"--out", out_, "--force"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, scenario +
-                             ": error: --out: the file is no export and stays as it is, --force "
-                             "or not\n");
+  EXPECT_EQ(
+      outcome.err,
+      scenario + ": error: --out: the file is no export and is not replaced, even with --force\n");
   EXPECT_EQ(Content(scenario), before);
 }
 

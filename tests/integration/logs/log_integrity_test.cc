@@ -210,7 +210,7 @@ TEST_F(LogIntegrityTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
   FlipLowestBit(log_, status.at + status.size - 1);
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log_});
   EXPECT_EQ(metrics.code, 1);
-  EXPECT_THAT(metrics.err, HasSubstr("altered: other bytes than those that were sealed"));
+  EXPECT_THAT(metrics.err, HasSubstr("altered: the bytes differ from the sealed ones"));
 }
 
 TEST_F(LogIntegrityTest, ARunThatIsInterruptedSealsWhatItHas) {
@@ -234,7 +234,7 @@ TEST_F(LogIntegrityTest, EveryReaderNamesALogThatWasChangedSinceItWasSealed) {
         Words{"export", "--out", folder_.File("run.mat")}}) {
     const Outcome outcome = RunCommand(With(With({Program("fogline")}, verb), {log}));
     EXPECT_EQ(outcome.code, 1) << verb.front() << ": " << outcome.out;
-    EXPECT_THAT(outcome.err, HasSubstr("altered: sealed with digest ")) << verb.front();
+    EXPECT_THAT(outcome.err, HasSubstr("altered: the seal names digest ")) << verb.front();
   }
 }
 

@@ -164,7 +164,7 @@ TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
   Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
   Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
   EXPECT_EQ(run.Wait(), 3);
-  EXPECT_THAT(run.Err(), HasSubstr("two processes are the driver: "));
+  EXPECT_THAT(run.Err(), HasSubstr("two processes have the role driver: "));
   EXPECT_THAT(run.Err(), HasSubstr("pid " + std::to_string(one.pid()) + " on lab2"));
   EXPECT_THAT(run.Err(), HasSubstr("pid " + std::to_string(two.pid()) + " on lab3"));
 }

@@ -60,7 +60,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   bool radar = false;
   for (const auto& role : result["restarts"]) {
     EXPECT_THAT(role["last"].get<std::string>(),
-                HasSubstr("s, which the world has published all the while, and was killed"));
+                HasSubstr("s, although the world has published it, and was killed"));
     radar = radar || role["role"] == "radar";
     EXPECT_NE(role["role"], "fusion") << "no role published the input that it lacked";
   }

@@ -63,8 +63,9 @@ TEST(PolicyOnAPosteriorTest, IsRefusedBeforeTheRunForAMeasureThatIsNone) {
                     "--set", "/arbitrator/measure_scale=probability"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.err,
-              "scenario/dense_fog.json: error: /arbitrator/measure_scale: \"probability\" is for "
-              "measures that are one, as \"lidar_modes\"; /arbitrator/measure is \"doc\"\n");
+              "scenario/dense_fog.json: error: /arbitrator/measure_scale: \"probability\" needs a "
+              "measure whose score is a probability, such as \"lidar_modes\"; /arbitrator/measure "
+              "is \"doc\"\n");
   }
 }
 

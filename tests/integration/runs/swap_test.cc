@@ -326,7 +326,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   command.insert(command.end(), {"--pace", "1"});
   const Outcome run = RunCommand(command);
   EXPECT_EQ(run.code, 3);
-  EXPECT_THAT(run.err, HasSubstr("error: two processes are the driver: pid "));
+  EXPECT_THAT(run.err, HasSubstr("error: two processes have the role driver: pid "));
   EXPECT_THAT(run.err, HasSubstr("pid " + one.pid() + " on "));
   EXPECT_THAT(run.err, HasSubstr("pid " + two.pid() + " on "));
   EXPECT_EQ(one.process().Wait(), 0) << "told to leave";

@@ -176,9 +176,9 @@ TEST_F(OutputFilesTest, AForcedCalibrationReplacesOnlyAScenario) {
   std::ofstream(thesis) << "\\documentclass{book}";
   const Outcome refused = calibrate(thesis);
   EXPECT_EQ(refused.code, 2);
-  EXPECT_EQ(refused.err, thesis +
-                             ": error: --out: the file is no scenario and stays as it is, "
-                             "--force or not\n");
+  EXPECT_EQ(
+      refused.err,
+      thesis + ": error: --out: the file is no scenario and is not replaced, even with --force\n");
   EXPECT_EQ(Content(thesis), "\\documentclass{book}");
   const std::string found = folder_.File("found.json");
   std::filesystem::copy(SourceDirectory() / "scenario/dense_fog.json", found);
@@ -202,7 +202,7 @@ TEST_F(OutputFilesTest, ASweepReplacesNoFileBesideItsOwnThatIsOfNoSweep) {
                       "--seeds", "1:4", "--out", file, force});
       EXPECT_EQ(sweep.code, 2);
       EXPECT_EQ(sweep.err, file + files[1] + ": error: --out: the file is no " + files[2] +
-                               " and stays as it is, --force or not\n");
+                               " and is not replaced, even with --force\n");
       EXPECT_EQ(Content(file + files[1]), content);
     }
   }

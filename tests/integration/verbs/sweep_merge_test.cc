@@ -94,7 +94,7 @@ TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
                      File(shards[0]),    File(shards[1]), "--out"};
   EXPECT_EQ(RunCommand(forced + Words{File("there.csv")}).err,
             File("there.csv") +
-                ": error: --out: the file is no sweep and stays as it is, --force or not\n");
+                ": error: --out: the file is no sweep and is not replaced, even with --force\n");
   EXPECT_EQ(Content(File("there.csv")), "precious");
   Made("sweep.csv", kShort + Words{"--seeds", "7:7"});
   EXPECT_EQ(RunCommand(forced + Words{File("sweep.csv")}).code, 0);
@@ -138,7 +138,7 @@ TEST_F(SweepMergeTest, ReplacesNoFileBesideTheMergedOneThatIsOfNoSweep) {
     const Outcome merge = Merge(shards, files[0]);
     EXPECT_EQ(merge.code, 2);
     EXPECT_EQ(merge.err, side + ": error: --out: the file is no " + files[2] +
-                             " and stays as it is, --force or not\n");
+                             " and is not replaced, even with --force\n");
     EXPECT_EQ(Content(side), before);
     EXPECT_FALSE(std::filesystem::exists(File(files[0])));
   }

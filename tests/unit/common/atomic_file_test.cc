@@ -114,7 +114,8 @@ TEST_F(AtomicFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
   EXPECT_TRUE(std::filesystem::is_symlink(file_));
   EXPECT_EQ(Content(target), "new");
   std::filesystem::remove(target);
-  EXPECT_THAT(ErrorOf([&] { AtomicFile file(file_); }), testing::EndsWith(", which is not there"));
+  EXPECT_THAT(ErrorOf([&] { AtomicFile file(file_); }),
+              testing::EndsWith(", which does not exist"));
 }
 
 TEST_F(AtomicFileTest, HandsEverythingToADeviceAtTheEnd) {
@@ -173,7 +174,7 @@ TEST_F(AtomicFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
   EXPECT_EQ(error(true), "");
   std::ofstream(file_) << "thesis";
   EXPECT_EQ(error(true),
-            file_ + ": error: --out: the file is no page and stays as it is, --force or not");
+            file_ + ": error: --out: the file is no page and is not replaced, even with --force");
   EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/dev/null", "--out", false, "page", is_page); }), "");
 }
 

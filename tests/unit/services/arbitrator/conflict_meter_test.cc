@@ -123,8 +123,8 @@ TEST(ConflictMeterTest, RefusesToTakeAnyOtherScoreForAProbability) {
       ADD_FAILURE() << row.name;
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
-                "/arbitrator/measure_scale: \"probability\" is for measures that are one, as "
-                "\"lidar_modes\"; /arbitrator/measure is \"" +
+                "/arbitrator/measure_scale: \"probability\" needs a measure whose score is a "
+                "probability, such as \"lidar_modes\"; /arbitrator/measure is \"" +
                     std::string(row.name) + "\"");
     }
   }

@@ -137,7 +137,7 @@ TEST_F(LogSealTest, ShowsStepsThatWereChangedToAReaderOfTheRunAlone) {
   const log::RunLog run = Read(log_, log::RunLogReader::Compared::kRun).run;
   EXPECT_TRUE(run.altered);
   EXPECT_FALSE(run.complete);
-  EXPECT_THAT(run.note, HasSubstr("altered: sealed with digest "));
+  EXPECT_THAT(run.note, HasSubstr("altered: the seal names digest "));
 }
 
 TEST_F(LogSealTest, ThatDoesNotFitLeavesTheLogAsItWas) {
@@ -254,7 +254,8 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   // A change before the end that the first writer has reported. The second writer has relied on
   // that part.
   content[50] ^= 1;
-  EXPECT_THAT(why({first}), HasSubstr("the log on disk is not what the recorder wrote: 133 bytes"));
+  EXPECT_THAT(why({first}),
+              HasSubstr("the log on disk is not what the recorder wrote: it wrote 133 bytes"));
   // A change behind that end.
   content[50] ^= 1;
   content[200] ^= 1;
@@ -262,7 +263,7 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   EXPECT_THAT(why({first, last}), HasSubstr("267 bytes with checksum "));
   // A shorter file.
   content.resize(200);
-  EXPECT_THAT(why({first, last}), HasSubstr(", on disk 200 with "));
+  EXPECT_THAT(why({first, last}), HasSubstr(", on disk are 200 with "));
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherRunAlone) {
     others.Say(runtime::MakeRunPart(Script::kRunId + 1, run_t::GO, 0,
                                     runtime::HashOf(others.text()), parts, i));
   }
-  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is that of run 7, not of 8"));
+  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is of run 7, not of run 8"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
 }
 
@@ -186,7 +186,7 @@ TEST_F(RecorderTest, LeavesTheLogOfAnotherScenarioAlone) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     others.Say(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0, runtime::HashOf(text), parts, i));
   }
-  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is that of another scenario"));
+  EXPECT_THAT(ErrorOf(recorder), HasSubstr("whole: the log is of another scenario"));
   EXPECT_TRUE(Content(folder_.File("whole")) == whole);
 }
 
@@ -201,7 +201,7 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
   // The world has begun step 400, so step 368 must be on disk.
   const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, 400);
-  EXPECT_THAT(ErrorOf(*recorder), HasSubstr("the log has 150 steps, but 369 were in it"));
+  EXPECT_THAT(ErrorOf(*recorder), HasSubstr("the log has 150 steps, but the recorder had written 369"));
 }
 
 TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
@@ -286,8 +286,8 @@ TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
   command.acceleration_mps2 = 1;
   script_.Say(command);
   EXPECT_EQ(ErrorOf(*recorder),
-            "step 148: DRIVER_COMMAND is not what the log has: driver is another program, or "
-            "another version, than the one that was recorded");
+            "step 148: DRIVER_COMMAND differs from the log: driver is not the program or version that "
+            "was recorded");
 }
 
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {

@@ -61,8 +61,7 @@ TEST_F(DeafRolesTest, ARoleIsDeafThatHearsNothingOfWhatIsPublishedForTwoSeconds)
   ASSERT_TRUE(deaf);
   EXPECT_EQ(deaf->channel, IndexOf<truth_t>());
   EXPECT_EQ(deaf->missed, milliseconds(2000));
-  EXPECT_EQ(Text(*deaf),
-            "has heard no TRUTH for 2.0 s, which the world has published all the while");
+  EXPECT_EQ(Text(*deaf), "has heard no TRUTH for 2.0 s, although the world has published it");
   EXPECT_FALSE(deaf_.Of(Role::kWorld));
 }
 

@@ -57,7 +57,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   role(Role::kAcc) = first;
   SayStatus(Role::kAcc);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
-  EXPECT_THAT(coordinator_.error(), HasSubstr("two processes are the acc: pid 104 on "));
+  EXPECT_THAT(coordinator_.error(), HasSubstr("two processes have the role acc: pid 104 on "));
   EXPECT_THAT(coordinator_.error(), HasSubstr(" and pid 1104 on "));
 }
 
@@ -160,7 +160,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
     Say(other);
     SpeakFor(milliseconds(100), driver);
   }
-  EXPECT_THAT(external_.error(), HasSubstr("two processes are the driver: "));
+  EXPECT_THAT(external_.error(), HasSubstr("two processes have the role driver: "));
 }
 
 TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
@@ -193,9 +193,8 @@ TEST_F(RunCoordinatorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {
         << coordinator.error();
     if (!wanted) continue;
     EXPECT_THAT(coordinator.error(), HasSubstr("driver (pid "));
-    EXPECT_THAT(coordinator.error(),
-                HasSubstr(" is of build 0000000000000011, that of the runner is "
-                          "0000000000001267 (--same-build)"));
+    EXPECT_THAT(coordinator.error(), HasSubstr(" is of build 0000000000000011, but the runner is "
+                                               "of build 0000000000001267 (--same-build)"));
   }
 }
 
@@ -207,7 +206,7 @@ TEST_F(RunCoordinatorTest, RefusesARoleThatDoesNotSayItsBuildIfTheSameIsWanted) 
                                                       .builds = builds,
                                                       .same_build = true});
   SayStatus(Role::kDriver);
-  EXPECT_THAT(coordinator.error(), HasSubstr("does not say of which build it is (--same-build)"));
+  EXPECT_THAT(coordinator.error(), HasSubstr("does not report its build (--same-build)"));
 }
 
 }  // namespace

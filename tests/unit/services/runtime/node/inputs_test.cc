@@ -123,8 +123,8 @@ TEST_F(InputsTest, BlameTheOtherProgramForAMessageThatContradictsTheLog) {
   EXPECT_FALSE(parts_.own.left()) << "it is what the log has";
   SayTruth(3, 40);
   EXPECT_EQ(counted().error,
-            "step 3: TRUTH is not what the log has: world is another program, or another version, "
-            "than the one that was recorded");
+            "step 3: TRUTH differs from the log: world is not the program or version that was "
+            "recorded");
 }
 
 TEST_F(InputsTest, BlameASecondProducerForAnyOtherContradiction) {
