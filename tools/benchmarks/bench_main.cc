@@ -75,7 +75,7 @@ int Run(const Arguments& arguments) {
 
 int Main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"Measures Fogline beside what it is compared with, in alternating rounds.",
+  CLI::App app{"Measures Fogline and the programs that it is compared with, in alternating rounds.",
                "fogline-bench"};
   app.add_flag("--quick", arguments.quick, "Fewer and shorter rounds");
   app.add_option("--rounds", arguments.rounds, "Rounds of each comparison")

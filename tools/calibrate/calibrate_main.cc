@@ -31,27 +31,27 @@ struct CalibrateArguments {
   explicit CalibrateArguments(CLI::App& verb) {
     verb.add_option("SCENARIO", scenario, "Scenario file")->required();
     verb.add_option("--free", free,
-                    "Field to find and its bounds: /pointer=lowest:highest, with :log at the end "
-                    "for a logarithmic scale (repeatable)")
+                    "Field to find and its bounds, /pointer=lowest:highest; :log at its end: "
+                    "logarithmic scale (repeatable)")
         ->required()
         ->allow_extra_args(false);
-    verb.add_option("--target", target,
-                    "Table to meet, as of `fogline table --json` (default: the scenario's own "
-                    "published rows)");
+    verb.add_option(
+        "--target", target,
+        "Target table, from `fogline table --json` (default: the scenario's published rows)");
     verb.add_option("--set", overrides, "Override a field: /steps=310 (repeatable)")
         ->allow_extra_args(false);
     verb.add_option("--seeds", seeds, "Seeds A:B, both included, of every evaluation")
         ->capture_default_str();
-    verb.add_option("--evaluations", evaluations, "Most tables to compute")
+    verb.add_option("--evaluations", evaluations, "Largest number of tables to compute")
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
-    verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE, where that of SI is 1")
+    verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE; the weight of SI is 1")
         ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--spread-weight", spread_weight, "Weight of SI's variance over the seeds")
         ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
-    verb.add_option("--jobs", jobs, "Threads; they change no result")
+    verb.add_option("--jobs", jobs, "Threads; the result does not depend on them")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     verb.add_option("--out", out, "Write the scenario with the values that were found");
@@ -59,10 +59,10 @@ struct CalibrateArguments {
     verb.add_flag("--json", json, "Print as JSON");
     cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
-        "Makes small: the squared differences of mean SI and mean RHE from the target, in points,\n"
-        "and SI's variance over the seeds, weighted. Equal arguments give equal results. Ctrl-C\n"
-        "ends it with the best values so far. Sensitivity is the change, in points, for 1 % of a\n"
-        "field's range.\n\n"
+        "Minimises a weighted sum: the squared differences of mean SI and mean RHE from the\n"
+        "target, in points, and SI's variance over the seeds. Equal arguments give equal\n"
+        "results. Ctrl-C ends the search with the best values so far. Sensitivity is the\n"
+        "change, in points, for 1 % of a field's range.\n\n"
         "Examples:\n"
         "  fogline calibrate scenario/paper.json --free /fog/bias_m=0.2:0.5\n"
         "  fogline calibrate scenario/paper.json --free /radar/bias_m=0.92:0.98 \\\n"
@@ -99,8 +99,9 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
   problem.target =
       arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
   if (problem.target.empty()) {
-    throw InputError(fmt::format("{}: error: /published: no rows to meet; give a --target",
-                                 PathText(arguments.scenario)));
+    throw InputError(
+        fmt::format("{}: error: /published: no rows, so there is no target; give a --target",
+                    PathText(arguments.scenario)));
   }
   return problem;
 }

@@ -62,9 +62,9 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
         fmt::format("{}: error: --log: the file exists; --force replaces it", PathText(log)));
   }
   if (!log::IsEventLogOrEmpty(log)) {
-    throw InputError(
-        fmt::format("{}: error: --log: the file is no event log and stays as it is, --force or not",
-                    PathText(log)));
+    throw InputError(fmt::format(
+        "{}: error: --log: the file is no event log and is not replaced, even with --force",
+        PathText(log)));
   }
   return log::LogOfRun::InPlaceOf(log, std::move(lock));
 }
@@ -102,8 +102,8 @@ void RefuseJsonBeside(const std::filesystem::path& document, std::string_view op
       std::filesystem::canonical(document, ignored) == "/dev/null") {
     return;
   }
-  throw InputError(fmt::format("error: --json: stdout is taken by {0} {1}; give {0} a file", option,
-                               PathText(document)));
+  throw InputError(fmt::format("error: --json: {0} {1} uses stdout already; give {0} a file",
+                               option, PathText(document)));
 }
 
 void PrintBeside(const std::filesystem::path& document, std::string_view text) {
@@ -129,7 +129,7 @@ std::string NetworkArguments::Url() const {
   const std::string said = fmt::format("{} {}", Follows() ? "LCM_DEFAULT_URL" : "--lcm-url", url);
   if (url.starts_with("memq:")) {
     throw InputError(
-        fmt::format("error: {}: the memory of one process, which no other can look into; give the "
+        fmt::format("error: {}: other processes cannot look into the memory of a process; give the "
                     "run a udpm:// URL",
                     said));
   }

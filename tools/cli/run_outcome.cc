@@ -53,7 +53,7 @@ std::string RemarksText(const RunOutcome& outcome) {
   }
   if (result.verification) text += VerificationText(*result.verification);
   if (outcome.computed && !result.checked) {
-    text += "the end of the log is not checked: what the recorder told of it was lost\n";
+    text += "the end of the log is not checked, because the recorder's last report was lost\n";
   }
   return text;
 }

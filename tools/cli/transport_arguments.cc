@@ -30,24 +30,23 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
                       "TCP, through a fogline-relay of its own; or an LCM URL")
           ->capture_default_str();
   verb.add_option("--lcm-url", url_,
-                  fmt::format("The same as --transport URL (without either, processes{} go to "
-                              "$LCM_DEFAULT_URL, if set)",
+                  fmt::format("The same as --transport URL. Without either, processes{} use "
+                              "$LCM_DEFAULT_URL, if set",
                               transport_ == "direct" ? " for --external" : ""))
       ->excludes(said_);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(RoleNames()));
-  verb.add_option("--wait", wait_s_, "Wait so long for roles started elsewhere, in s (0: for ever)")
+  verb.add_option("--wait", wait_s_, "Longest wait for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();
-  verb.add_flag(
-      "--same-build", same_build_,
-      "End the run if a role is of another build than this one, or does not say of which");
+  verb.add_flag("--same-build", same_build_,
+                "End the run if the build of a role is unknown, or is not that of the runner");
   CLI::Option* verify = verb.add_flag(
       "--verify", verify_,
-      "Compute every role's steps again from the log and compare (default with --external, and "
-      "for a run that goes on); roles of another build and runs in real time are left out");
-  verb.add_flag("--no-verify", no_verify_, "Do not in any case")->excludes(verify);
+      "Compute each step again from the log and compare (default with --external, and for a "
+      "resumed run). Leaves out roles of another build, and runs in real time");
+  verb.add_flag("--no-verify", no_verify_, "Do not compute the steps again")->excludes(verify);
   runtime::AddTrafficOptions(verb, traffic_);
 }
 
@@ -77,8 +76,8 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   }
   if (options.transport == "direct" && verify_) {
     throw InputError(
-        "error: --verify: a run with --transport direct is one process, in which no message can be "
-        "altered on its way");
+        "error: --verify: a run with --transport direct is one process and has no messages that "
+        "could be altered");
   }
   options.external.clear();
   for (const RoleInfo& info : kRoles) {
@@ -91,8 +90,8 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(
-        fmt::format("error: --external {}: no process can join a run with --transport {}, which is "
-                    "one process itself",
+        fmt::format("error: --external {}: no other process can join a run with --transport {}, "
+                    "which is one process",
                     external_.front(), options.transport));
   }
   if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {

@@ -28,7 +28,7 @@ int Run(const CLI::App& app, const Action& action) {
   try {
     const int code = action();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw std::runtime_error("standard output cannot be written, such as on a full disk");
+      throw std::runtime_error("standard output cannot be written (a full disk?)");
     }
     return code;
   } catch (const InputError& error) {

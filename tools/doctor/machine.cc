@@ -72,10 +72,9 @@ void ExamineTimeSynchronisation(Findings& findings) {
   timex state{};
   const bool synchronised = adjtimex(&state) >= 0 && (state.status & STA_UNSYNC) == 0;
   findings.push_back({"time_sync", Level::kOk,
-                      synchronised
-                          ? "the wall clock is synchronised"
-                          : "the wall clock is not synchronised: no run needs it, only those who "
-                            "compare times of several machines do (chrony, ptp4l)",
+                      synchronised ? "the wall clock is synchronised"
+                                   : "the wall clock is not synchronised. Runs do not need that; "
+                                     "comparing times of several machines does (chrony, ptp4l)",
                       ""});
 }
 
@@ -94,7 +93,7 @@ void ExamineProcessors(Findings& findings) {
     if (!governor.empty()) governors.insert(governor);
   }
   if (governors.empty()) {
-    findings.push_back({"governor", Level::kOk, "no frequency governor to be seen", ""});
+    findings.push_back({"governor", Level::kOk, "no frequency governor is visible", ""});
     return;
   }
   const bool full = governors == std::set<std::string>{"performance"};
@@ -115,16 +114,16 @@ void ExamineDisk(Findings& findings) {
   const auto space = std::filesystem::space(folder, error);
   if (error || access(folder.c_str(), W_OK) != 0) {
     findings.push_back({"disk", Level::kProblem, fmt::format("{} cannot be written", name),
-                        "go to a folder of your own, or say --log FILE"});
+                        "change to a folder of your own, or use --log FILE"});
     return;
   }
   const double free_mb = static_cast<double>(space.available) / kMega;
   const Level level = free_mb < kTooLittleMB ? Level::kProblem
                       : free_mb < kLittleMB  ? Level::kWarning
                                              : Level::kOk;
-  findings.push_back({"disk", level,
-                      fmt::format("{:.0f} MB are free for logs in {}", free_mb, name),
-                      level == Level::kOk ? "" : "delete old logs, or say --log FILE elsewhere"});
+  findings.push_back(
+      {"disk", level, fmt::format("{:.0f} MB are free for logs in {}", free_mb, name),
+       level == Level::kOk ? "" : "delete old logs, or use --log with a file elsewhere"});
 }
 
 }  // namespace

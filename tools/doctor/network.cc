@@ -55,7 +55,8 @@ bool ExamineGroup(const std::string& url, const std::string& group, Findings& fi
 
 std::string RouteRemedy() {
   return fmt::format(
-      "as root: {} for this machine alone, or with the network's interface in place of lo",
+      "as root: {} for this machine only; for other machines replace lo with the network's "
+      "interface",
       runtime::kLoopbackRoute);
 }
 
@@ -202,16 +203,16 @@ std::string FilteredFirst() {
 void ExamineFilter(const std::string& url, Findings& findings) {
   if (!url.starts_with("udpm://")) {
     findings.push_back({"socket_filter", Level::kWarning,
-                        "with mpudpm nothing filters what reaches LCM's parser, whose bounds are "
-                        "wrong for fragments; there is no --key",
-                        "udpm:// in place of mpudpm://"});
+                        "mpudpm has no filter, so fragments reach LCM's parser, whose bounds are "
+                        "wrong for them; --key is refused",
+                        "use udpm:// instead of mpudpm://"});
   } else if (FilteredFirst() == "LC02") {
     findings.push_back({"socket_filter", Level::kOk,
                         "the kernel keeps fragments and noise from LCM's parser", ""});
   } else {
     findings.push_back({"socket_filter", Level::kWarning,
-                        "the kernel takes no socket filter: fragments reach LCM's parser, whose "
-                        "bounds are wrong for them; there is no --key",
+                        "the kernel accepts no socket filter, so fragments reach LCM's parser, "
+                        "whose bounds are wrong for them; --key is refused",
                         "allow setsockopt(SO_ATTACH_FILTER) in the sandbox or container, or use "
                         "--transport tcpq"});
   }
@@ -245,10 +246,10 @@ void ReportAnnounced(const std::string& url, const runtime::BeaconListener& beac
   }
   if (beacons.refused() > 0) {
     findings.push_back({"announced_runs", Level::kWarning,
-                        fmt::format("on {}: {} announcements that no run of this machine can have "
-                                    "made were refused",
+                        fmt::format("on {}: {} announcements were refused, because no run of this "
+                                    "machine can have made them",
                                     url, beacons.refused()),
-                        "another port keeps a run apart"});
+                        "use another port for runs of your own"});
   }
 }
 
@@ -294,7 +295,7 @@ void ExamineTraffic(const std::string& url, Findings& findings) {
     findings.push_back({"other_runs", Level::kWarning,
                         fmt::format("on {}: {} messages of no run on channel {}", url,
                                     other.arrivals.messages, Printable(other.channel)),
-                        "fogline top shows more; another port keeps a run apart"});
+                        "fogline top shows more; use another port for runs of your own"});
   }
   if (view.runs.empty() && view.others.empty()) {
     findings.push_back({"other_runs", Level::kOk, fmt::format("no traffic on {}", url), ""});

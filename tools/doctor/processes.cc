@@ -80,9 +80,10 @@ Finding AssessRole(const Process& role, bool has_runner) {
   const std::string url = role.Option("--lcm-url");
   const std::string where = url.empty() ? "" : " on " + url;
   if (!has_runner && !role.Option("--run-id").empty()) {
-    return {"processes", Level::kWarning,
-            fmt::format("{}{} is left of a run whose runner is gone", role.Describe(), where),
-            fmt::format("kill {}", role.pid)};
+    return {
+        "processes", Level::kWarning,
+        fmt::format("{}{} is left over from a run whose runner has ended", role.Describe(), where),
+        fmt::format("kill {}", role.pid)};
   }
   if (role.state == 'T') {
     return {"processes", Level::kWarning, fmt::format("{}{} is stopped", role.Describe(), where),
@@ -90,7 +91,8 @@ Finding AssessRole(const Process& role, bool has_runner) {
   }
   if (role.replaced) {
     return {"processes", Level::kWarning,
-            fmt::format("{}{} runs a program that has been rebuilt since", role.Describe(), where),
+            fmt::format("{}{} is older than its program, which has been rebuilt", role.Describe(),
+                        where),
             fmt::format("kill {}, and start it again", role.pid)};
   }
   return {"processes", Level::kOk, fmt::format("{}{} runs by itself", role.Describe(), where), ""};

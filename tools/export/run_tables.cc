@@ -55,8 +55,9 @@ class Tabulator {
     }
     FieldTable& field = table_.fields[next_++];
     if (values.size() != field.width) {
-      throw InputError(fmt::format("message {} of {} has {} values in {}, those before have {}",
-                                   table_.messages, table_.name, values.size(), name, field.width));
+      throw InputError(
+          fmt::format("message {} of {} has {} values in {}, but the messages before have {}",
+                      table_.messages, table_.name, values.size(), name, field.width));
     }
     auto& column = std::get<std::vector<T>>(field.values);
     column.insert(column.end(), values.begin(), values.end());

@@ -149,8 +149,8 @@ void CheckLeader(const runner::LoggedRun& run, const Recording& recording,
     const double time_s = leader.start_s + sample.time_s;
     const double there_mps = recorded_mps.At(time_s);
     if (std::abs(there_mps - sample.preceding_speed_mps) <= kSameLeader_mps) continue;
-    Refuse(file, fmt::format("another leader than that of the run: {} is {:.2f} m/s at {:.1f} s, "
-                             "where the run's leader drives {:.2f} m/s",
+    Refuse(file, fmt::format("its leader is not that of the run: {} is {:.2f} m/s at {:.1f} s, but "
+                             "the run's leader drives {:.2f} m/s",
                              leader.speed_column, there_mps, time_s, sample.preceding_speed_mps));
   }
 }
@@ -258,7 +258,7 @@ int RunCompare(const CompareArguments& arguments) {
   const bool has_out = !arguments.out.empty();
   if (has_out) {
     if (IsReplaceable(arguments.out) && std::filesystem::exists(arguments.out)) {
-      Refuse(arguments.out, "--out: the file exists and stays as it is");
+      Refuse(arguments.out, "--out: the file exists and is not replaced");
     }
     RequireWritable(arguments.out, "--out");
   }
@@ -288,20 +288,21 @@ void AddCompare(CLI::App& app, cli::Action& action) {
   verb->add_option("LOG", arguments->log, "Event log of a run behind the recorded leader")
       ->required();
   verb->add_option("RECORDING", arguments->recording,
-                   "CSV file with a header line; its time column and where the run begins in it "
-                   "are those of /lead/recorded of the log's scenario")
+                   "CSV file with a header line. The scenario's /lead/recorded names its time "
+                   "column and the run's start")
       ->required();
   verb->add_option("--speed-column", arguments->speed_column, "Speed of the real car, m/s")
       ->capture_default_str();
   verb->add_option("--gap-column", arguments->gap_column,
-                   "Its gap to the leader, bumper to bumper, m")
+                   "Gap of the real car to the leader, bumper to bumper, m")
       ->capture_default_str();
-  verb->add_option("--out", arguments->out, "Write both step by step into this CSV file");
+  verb->add_option("--out", arguments->out,
+                   "Write run and recording, step by step, into this CSV file");
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
   verb->footer(
       "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
-      "the mean difference, which the choice of a headway makes. largest: of the difference.\n\n"
+      "the mean difference, which depends on the headway. largest: the largest difference.\n\n"
       "Examples:\n"
       "  fogline run scenario/recorded_lead.json\n"
       "  fogline compare logs/recorded_lead-1.lcm scenario/data/acc_platoon_a.csv");

@@ -45,7 +45,7 @@ Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
     case log::SealSignature::kWrong:
       break;
   }
-  return {"wrong", "signed with another key, or altered since"};
+  return {"wrong", "signed with another key, or altered later"};
 }
 
 /// {"world": "0123456789abcdef", ...}, with null for a role that has not reported its build. The
@@ -94,8 +94,7 @@ int RunDigest(const DigestArguments& arguments) {
       Complain(fmt::format("{}: {}", PathText(log), signature.trouble));
     }
     if (key && IsUnprovenCopy(run)) {
-      Complain(PathText(log) +
-               ": a copy of a run in real time, of which its seal proves the steps alone");
+      Complain(PathText(log) + ": a copy of a run in real time; its seal proves only the steps");
     }
     rows.push_back({{"log", log.string()},
                     {"digest", run.digest},
@@ -115,20 +114,21 @@ int RunDigest(const DigestArguments& arguments) {
 
 void AddDigest(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
-      app.add_subcommand("digest", "Print the digest of logs: equal digests, equal runs");
+      app.add_subcommand("digest", "Print the digest of logs; equal runs have equal digests");
   const auto arguments = std::make_shared<DigestArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_option("--key", arguments->key,
-                   "Demand that each log was signed with the key in this file");
+                   "Require that each log is signed with the key in this file");
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not whole or not signed"});
   verb->footer(
-      "A run ends its log with a seal (channel FOGLINE_SEAL): its digest, a hash of the file, and\n"
-      "the build of each role; with --key the run signs it. What was altered since then is named.\n"
-      "A log of a run that was killed has none. Of a log that lcm-logplayer has played and "
-      "lcm-logger has\n"
-      "recorded, the seal holds for scenario and steps alone (\"seal\": \"copy\").\n\n"
-      "Examples:\n  fogline digest logs/*.lcm\n"
+      "A run ends its log with a seal (channel FOGLINE_SEAL): its digest, a hash of the file,\n"
+      "and the build of each role. With --key the run signs the seal. A later change of the log\n"
+      "is named. The log of a killed run has no seal. If lcm-logplayer has played a log and\n"
+      "lcm-logger has recorded it, the seal covers only scenario and steps\n"
+      "(\"seal\": \"copy\").\n\n"
+      "Examples:\n"
+      "  fogline digest logs/*.lcm\n"
       "  fogline run scenario/paper.json --key lab.key --log logs/signed.lcm\n"
       "  fogline digest logs/signed.lcm --key lab.key");
   verb->callback([&action, arguments] { action = [arguments] { return RunDigest(*arguments); }; });

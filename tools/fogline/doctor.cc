@@ -20,9 +20,9 @@ namespace {
 using Level = doctor::Finding::Level;
 
 constexpr const char* kExplanation =
-    R"(Each finding is a line: ok, warning (it works, but slower or without some convenience) or problem
-(runs will fail), what was found, and after -> what to do. Nothing is changed on the machine, and no
-process is ended. Takes about two seconds.
+    R"(Each finding is a line: its level, what was found, and after -> what to do. The level is ok,
+warning (runs work, but slower or with less convenience) or problem (runs will fail). The doctor
+changes nothing on the machine and ends no process. It takes about two seconds.
 
 Examples:
   fogline doctor

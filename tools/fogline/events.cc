@@ -132,17 +132,17 @@ int RunEventsVerb(const EventsArguments& arguments) {
 }  // namespace
 
 void AddEvents(CLI::App& app, cli::Action& action) {
-  CLI::App* verb = app.add_subcommand("events", "List who drove when, and every request to do so");
+  CLI::App* verb =
+      app.add_subcommand("events", "List which side drove when, and every request to take over");
   const auto arguments = std::make_shared<EventsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
-      "What a data recorder would keep: changes of state, requests to take over and their\n"
-      "escalation, acknowledgements, transfers, first effective inputs, manoeuvres. Then the "
-      "times\n"
-      "of each request, from the start of the run. Where the driver need not be asked (take_over\n"
-      "with mode instant) there are transfers and nothing else.\n\n"
+      "Lists the events that a data recorder stores: changes of state, requests to take over\n"
+      "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres.\n"
+      "Then lists the times of each request, from the start of the run. If the driver need not\n"
+      "be asked (take_over with mode instant), the only events are transfers.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"

@@ -74,16 +74,15 @@ void AddExport(CLI::App& app, cli::Action& action) {
           "FILE.mat: one MAT-file of level 5. Else a folder: CHANNEL.csv for each channel, "
           "and scenario.json")
       ->required();
-  verb->add_flag("--force", arguments->force, "Replace files of an export that exist");
+  verb->add_flag("--force", arguments->force, "Replace existing files of an export");
   verb->add_flag("--json", arguments->json, "Print the names of the files as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete", .interruptible = true});
   verb->footer(
-      "Everything that the log has, to the last bit, in the units of the messages (lcmtypes); the\n"
-      "columns of a list are state.0, state.1 and so on, a matrix row by row. Time is "
-      "header.utime,\n"
-      "in microseconds. In a MAT-file each channel is a struct: TRUTH.host_gap_m has a row for "
-      "each\n"
-      "message. Of a log that is not complete, all that it has is written.\n\n"
+      "Writes everything in the log, to the last bit, in the units of the messages (lcmtypes).\n"
+      "The columns of a list are state.0, state.1 and so on; a matrix is written row by row.\n"
+      "Time is header.utime, in microseconds. In a MAT-file each channel is a struct:\n"
+      "TRUTH.host_gap_m has a row for each message. An incomplete log is written as far as it\n"
+      "goes.\n\n"
       "Examples:\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1.mat\n"

@@ -28,13 +28,13 @@ int Keygen(const KeygenArguments& arguments) {
 void AddKeygen(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("keygen", "Make a key for signed traffic (run --key)");
   const auto arguments = std::make_shared<KeygenArguments>();
-  verb->add_option("FILE", arguments->file, "Where to write it; an existing file is refused")
+  verb->add_option("FILE", arguments->file, "File to write; an existing file is refused")
       ->required();
   verb->add_flag("--json", arguments->json, "Print the name of the file as JSON");
   cli::ShowExitCodes(*verb);
   verb->footer(
-      "The file has mode 0600; one that others can read or change is refused. Every process\n"
-      "of a run needs the same key, on every machine.\n\n"
+      "The file has mode 0600. A key file that other users can read or change is refused. Every\n"
+      "process of a run needs the same key, on every machine.\n\n"
       "Examples:\n"
       "  fogline keygen ~/lab.key\n"
       "  fogline run scenario/paper.json --key ~/lab.key\n"

@@ -37,7 +37,7 @@ log::RunLog ReadRun(const std::filesystem::path& log) {
   const log::RunLog& run = reader.run();
   if (run.realtime) {
     Refuse(log,
-           "a run in real time: a role uses what has come by its deadline, which no log tells; "
+           "a run in real time: its log does not show which inputs had come by a role's deadline; "
            "replay takes runs in lockstep");
   }
   return run;
@@ -122,10 +122,9 @@ void AddReplay(CLI::App& app, cli::Action& action) {
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "outputs differ or the log is incomplete"});
   verb->footer(
-      "Each step's inputs are the log's, so what one role computes otherwise does not carry over\n"
-      "to another. Scenario and seed are the log's, too. Outputs are compared bit by bit: a log "
-      "of\n"
-      "before a change tells which steps of which role the change has altered.\n\n"
+      "Each step takes its inputs from the log, so a difference in one role does not affect\n"
+      "another role. Scenario and seed are those of the log, too. Outputs are compared bit by\n"
+      "bit: a log from before a change shows which steps of which role the change alters.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --log before.lcm\n"
       "  fogline replay before.lcm --role fusion      # after a change of the fusion\n"

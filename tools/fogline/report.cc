@@ -76,8 +76,8 @@ void RefuseToReplaceOther(const std::filesystem::path& output) {
     return std::tolower(a) == std::tolower(b);
   };
   if (!std::ranges::equal(head, kDocumentType, same)) {
-    throw InputError(fmt::format("{}: error: --output: the file is no HTML page and stays as it is",
-                                 PathText(output)));
+    throw InputError(fmt::format(
+        "{}: error: --output: the file is no HTML page and is not replaced", PathText(output)));
   }
 }
 
@@ -277,18 +277,19 @@ void AddReport(CLI::App& app, cli::Action& action) {
       verb->add_option("--curves", arguments->curves,
                        "Scenario file: add SI and RHE against the threshold, over seeds");
   verb->add_option("--thresholds", arguments->thresholds,
-                   "Of the curves: a,b,c or first:last:count")
+                   "Thresholds of the curves: a,b,c or first:last:count")
       ->needs(curves)
       ->capture_default_str();
-  verb->add_option("--seeds", arguments->seeds, "Of the curves: A:B, both included")
+  verb->add_option("--seeds", arguments->seeds, "Seeds of the curves: A:B, both included")
       ->needs(curves)
       ->capture_default_str();
   verb->add_option("--set", arguments->overrides,
                    "Override a field of the curves' scenario (repeatable)")
       ->needs(curves)
       ->allow_extra_args(false);
-  verb->add_option("-o,--output", arguments->output,
-                   "HTML file to write; replaces a page, and no other file; or /dev/stdout")
+  verb->add_option(
+          "-o,--output", arguments->output,
+          "HTML file to write, or /dev/stdout; of existing files, only an HTML page is replaced")
       ->capture_default_str();
   for (const FigureOption& option : kFigureOptions) {
     verb->add_option(option.name, *arguments.*option.folder, option.help);
@@ -296,13 +297,13 @@ void AddReport(CLI::App& app, cli::Action& action) {
   verb->add_flag("--json", arguments->json, "Print the name of the page, and its runs, as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
-      "Prints the name of the page, which needs no network. A log that is not complete is shown\n"
-      "as far as it goes, marked, and makes the exit code 1. The table appears for runs whose "
-      "pair\n"
-      "without traded control is among the logs. Curves are computed on all cores: means of the\n"
-      "seeds with their 95 % confidence intervals, percentiles, and the Pareto front of SI and\n"
-      "RHE.\n\n"
-      "Examples:\n  fogline report logs/paper-1.lcm\n"
+      "Prints the name of the page. The page needs no network. It shows an incomplete log as\n"
+      "far as it goes, and marks it; the exit code is then 1. The table appears for runs whose\n"
+      "pair without traded control is among the logs. Curves are computed on all cores: means\n"
+      "of the seeds with their 95 % confidence intervals, percentiles, and the Pareto front of\n"
+      "SI and RHE.\n\n"
+      "Examples:\n"
+      "  fogline report logs/paper-1.lcm\n"
       "  fogline report logs/demo/*.lcm --output logs/demo/report.html --png figures\n"
       "  fogline report logs/demo/*.lcm --svg figures --pdf figures\n"
       "  fogline report logs/demo/*.lcm --curves scenario/paper.json\n"

@@ -29,23 +29,27 @@ namespace fogline {
 namespace {
 
 constexpr const char* kExamples =
-    R"(Every run writes an LCM event log (logs/SCENARIO-N.lcm unless --log says
-otherwise; direct writes one only with --log). Ctrl-C ends a run cleanly, keeps
-its log, and gives exit code 130. A process that is killed or hangs is started
-again and catches up, and the result is the same. So is that of a run that has
-ended early, whatever ended it, and goes on with --resume LOG: scenario and seed
-are those of the log; transport, pace, key and the roles that are started
-elsewhere are given again. As the roles go on from what the log says, its steps
-are computed again and compared, unless --no-verify says otherwise. A complete
-log without a seal is compared in the same way, and then gets a seal; with
---no-verify it gets none. A complete log with a seal is compared with --verify
-only. A run has a port of its own unless LCM_DEFAULT_URL names another;
-fogline top, spy, doctor and roles without --lcm-url find it on this machine.
+    R"(Every run writes an LCM event log, logs/SCENARIO-N.lcm unless --log names
+another; with --transport direct it writes one only with --log. Ctrl-C ends a
+run cleanly, keeps its log, and gives exit code 130. A process that is killed or
+hangs is started again and catches up; the result is the same. A process hangs
+if it is silent for 2 s (1 s with --realtime), or for half of --stall-timeout if
+that is less.
+
+--resume LOG goes on with a run that has ended early, for whatever reason. The
+result is the same. Scenario and seed are those of the log. Give transport, pace,
+key and the external roles again. The roles go on from the log, so its steps are
+computed again and compared, unless --no-verify is given. A complete log without
+a seal is compared in the same way, and then gets a seal; with --no-verify it
+gets none. A complete log with a seal is compared only with --verify.
+
+A run has a port of its own unless LCM_DEFAULT_URL names another; fogline top,
+spy, doctor and roles without --lcm-url find it on this machine.
 
 Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
-  fogline run scenario/paper.json --pace 1       in real speed, for fogline top or spy
+  fogline run scenario/paper.json --pace 1       at real speed, for fogline top or spy
   fogline run scenario/paper.json --transport memq --json
   fogline run --resume logs/paper-1.lcm          goes on with a run that has ended early
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
@@ -59,34 +63,31 @@ constexpr double kMinPeriodS = 0.005;
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
     verb.get_option("SCENARIO")->required(false);  // with --resume the log has the scenario
-    verb.add_option("--resume", resume, "Go on with the run in this log, which has its scenario");
+    verb.add_option("--resume", resume, "Go on with the run in this log; the log has the scenario");
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_option("--pace", options.pace,
-                    "Slow the lockstep down to so many simulated seconds per second (0: no limit)")
+                    "Limit of the lockstep's speed, in simulated seconds per second (0: no limit)")
         ->check(cli::NumberIn(0, runtime::kMaxSpeed))
         ->capture_default_str();
-    CLI::Option* realtime = verb.add_flag(
-        "--realtime", options.realtime,
-        "Tick on the wall clock and wait for no process: inputs that fail are noticed by their "
-        "age, and another driver takes over or the car stops");
+    CLI::Option* realtime = verb.add_flag("--realtime", options.realtime,
+                                          "Run on the wall clock, without waiting: if inputs fail, "
+                                          "another driver takes over or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
         ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed))
         ->needs(realtime)
         ->capture_default_str();
     verb.add_option("--stall-timeout", stall_s,
-                    "End the run when no step completes for so long, in s")
+                    "End the run when no step completes for this time, in s")
         ->check(cli::NumberIn(1, 1e6))
         ->capture_default_str();
-    verb.add_option(
-            "--restarts", options.restarts,
-            "Start a role that is killed, or says nothing for 2 s (1 s with --realtime, never "
-            "more than half of --stall-timeout), again: at most so often in the run (0: its "
-            "death ends the run)")
+    verb.add_option("--restarts", options.restarts,
+                    "How often each role may be started again after it was killed or hung (0: its "
+                    "death ends the run)")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     verb.add_flag("--json", json, "Print the result as JSON");
-    verb.add_flag("--quiet", quiet, "Say nothing on stderr but errors");
+    verb.add_flag("--quiet", quiet, "Print only errors on stderr");
     cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(kExamples);
   }
@@ -111,7 +112,7 @@ void ApplyRealtime(RunArguments& arguments) {
         options.transport));
   }
   if (options.pace != 0) {
-    throw InputError("error: --pace: slows the lockstep down; with --realtime it is --speed");
+    throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");
   }
   options.pace = arguments.speed;
 }
@@ -121,8 +122,8 @@ void ApplyRealtime(RunArguments& arguments) {
 int Ended(const runner::ExperimentResult& result) {
   if (result.realtime && result.realtime->unlogged_messages > 0) {
     throw std::runtime_error(fmt::format(
-        "the log is not complete: at least {} messages that were published are not in it: the "
-        "recorder can have the last {} steps again, and did not hear for longer",
+        "the log is not complete: it lacks at least {} messages that were published; the recorder "
+        "heard nothing for longer than the {} steps that it can ask for again",
         result.realtime->unlogged_messages, runtime::kMaxAhead));
   }
   if (!result.verification || result.verification->Holds()) return kDone;
@@ -239,7 +240,7 @@ void CheckResume(const CLI::App& verb) {
         fmt::format("{}: --resume goes on with the scenario and the log of its run", of_the_log));
   }
   if (verb.get_option("--realtime")->count() > 0) {
-    throw CLI::ValidationError("--realtime: a run in real time does not go on, see --resume");
+    throw CLI::ValidationError("--realtime: a run in real time cannot be resumed");
   }
 }
 

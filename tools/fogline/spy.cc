@@ -30,10 +30,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSpyExplanation =
-    R"(A window with a table of every channel: type, rate, jitter, undecodable messages. A double click
-shows a channel's fields; a click on a number's sparkline, its chart. lcm-spy cannot change its
-network: without --lcm-url it starts as soon as a run is announced, on the network of the newest, or
-there is traffic where runs are announced. Uses JAVA_HOME if it is set.
+    R"(Opens a window with a table of every channel: type, rate, jitter, undecodable messages. A double
+click shows a channel's fields. A click on a number's sparkline shows its chart. lcm-spy cannot
+change its network: without --lcm-url it waits until a run is announced, or until there is traffic
+where runs are announced. It starts on that network, for several runs on that of the newest. Uses
+JAVA_HOME if it is set.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline spy
@@ -41,7 +42,7 @@ Examples:
 
 struct SpyArguments {
   explicit SpyArguments(CLI::App& verb) : network(verb, "to look at") {
-    verb.add_option("--wait", wait_s, "Wait so long for a run, in s (0: for ever)")
+    verb.add_option("--wait", wait_s, "Longest wait for a run, in s (0: for ever)")
         ->check(cli::NumberIn(0, 1e6))
         ->capture_default_str();
     verb.add_option("--types", types, "Message types (default: those of this build)");

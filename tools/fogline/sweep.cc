@@ -30,13 +30,13 @@ struct SweepArguments {
         ->allow_extra_args(false);
     verb.add_option("--seeds", seeds, "Seeds A:B, both included (default: the scenario's own)");
     verb.add_option("--jobs", jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
-    verb.add_option("--out", out,
-                    "CSV file; a pipe or /dev/stdout gets the rows alone (default: "
-                    "SCENARIO-sweep.csv in this folder, or -sweep-2.csv and so on beside other "
-                    "sweeps)");
-    verb.add_option("--shard", shard, "Only part I of N equal parts, as I/N");
+    verb.add_option(
+        "--out", out,
+        "CSV file; a pipe or /dev/stdout gets only the rows (default: SCENARIO-sweep.csv in this "
+        "folder; if that is of another sweep, SCENARIO-sweep-2.csv and so on)");
+    verb.add_option("--shard", shard, "Compute only part I of N equal parts, as I/N");
     CLI::Option* put_together =
-        verb.add_option("--merge", merge, "Put the files of all shards together into --out");
+        verb.add_option("--merge", merge, "Join the files of all shards into --out");
     for (const char* other : {"SCENARIO", "--set", "--grid", "--seeds", "--shard"}) {
       put_together->excludes(other);
     }
@@ -44,10 +44,8 @@ struct SweepArguments {
     verb.add_flag("--json", json, "Print runs, time and rate as JSON");
     cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(
-        "Rows stand in a defined order whatever --jobs is. A sweep that was stopped or killed "
-        "goes\n"
-        "on where its file ends when it is called again. FILE.json says what the sweep in FILE "
-        "is.\n"
+        "The order of the rows does not depend on --jobs. Call a stopped or killed sweep again to\n"
+        "continue at the end of its file. FILE.json describes the sweep in FILE.\n"
         "SI compares each row with the same run without traded control.\n\n"
         "Examples:\n"
         "  fogline sweep scenario/paper.json --grid /arbitrator/threshold=0.2,0.5,0.8 --seeds "

@@ -31,21 +31,23 @@ struct TableArguments {
     verb.add_option("--thresholds", thresholds,
                     "DoC thresholds a,b,c or first:last:count (default: the published ones, or "
                     "0.2,0.5,0.8)");
-    verb.add_option("--seeds", seeds, "Seeds A:B, both included: mean and standard deviation")
+    verb.add_option("--seeds", seeds,
+                    "Seeds A:B, both included; prints mean and standard deviation")
         ->excludes("--seed");
-    verb.add_option("--logs", logs, "Folder for a log of every run (replaced if they exist)");
+    verb.add_option("--logs", logs, "Folder for a log of every run; existing logs are replaced");
     verb.add_flag("--json", json, "Print as JSON");
     cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(
-        "One run without traded control and one for each threshold, in pairs of equal seeds. What\n"
-        "--external names is to be started again for each of them, all with the same --lcm-url.\n\n"
-        "Examples:\n  fogline table scenario/paper.json\n"
+        "One run without traded control and one for each threshold, in pairs of equal seeds.\n"
+        "Start the roles of --external again for each run, all with the same --lcm-url.\n\n"
+        "Examples:\n"
+        "  fogline table scenario/paper.json\n"
         "  fogline table scenario/paper.json --seeds 1:40\n"
         "  fogline table scenario/paper.json --transport udpm --logs logs/paper-table\n"
         "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n"
         "  while my_driver --lcm-url \"$URL\"; do :; done &\n"
         "  fogline table scenario/paper.json --external driver --lcm-url \"$URL\"\n\n"
-        "`fogline report --curves` draws them.");
+        "`fogline report --curves` draws the table as curves.");
   }
 
   cli::ScenarioArguments scenario;
@@ -93,7 +95,7 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                             const sweep::SeedRange& seeds) {
   const processes::ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
-    Notice(fmt::format("each of {} runs waits for the {} ({}): start it for each with: {}",
+    Notice(fmt::format("each of {} runs waits for the {} ({}); start it for each run with: {}",
                        seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
                        external.Command(role)));
   }

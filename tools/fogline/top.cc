@@ -30,12 +30,12 @@ namespace {
 constexpr const char* kTopExplanation =
     R"(Per channel and run: messages since top listens; rate and bandwidth (payload) of the last
 interval; jitter, the standard deviation of the times between messages in it; age of the last
-message; steps that have not come within the next 64 (lost), came behind a newer one (late), or
-came again (twice); messages that cannot be decoded, by the type that they seem to be. Per role,
-from its STATUS: state, step, repairs asked for and served, processor time, memory, refusals;
-silent after 1 s without STATUS. Without --lcm-url it follows the newest run that is announced on
-this machine, and names it and the others. It sees what the network brings to this machine: what is
-lost on the way here may have arrived elsewhere. q or Ctrl-C quits.
+message; steps that were missing when a step 64 newer came (lost), came after a newer one (late),
+or came again (twice); undecodable messages, by apparent type. Per role, from its STATUS: state,
+step, repairs asked for and served, processor time, memory, refusals; a role is silent after 1 s
+without STATUS. Without --lcm-url top follows the newest run that is announced on this machine, and
+names it and the others. It sees only messages that reach this machine; a message that is lost on
+the way here may have arrived elsewhere. q or Ctrl-C quits.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline top
@@ -49,10 +49,10 @@ struct TopArguments {
     verb.add_option("--interval", interval_s, "Length of an observation, in s")
         ->check(cli::NumberIn(0.1, 3600))
         ->capture_default_str();
-    verb.add_option("--for", limit_s, "Quit after so long, in s (0: do not)")
+    verb.add_option("--for", limit_s, "Quit after this time, in s (0: never)")
         ->check(cli::NumberIn(0, 1e7))
         ->capture_default_str();
-    verb.add_flag("--once", once, "Print what was seen in one interval, and quit");
+    verb.add_flag("--once", once, "Print the traffic of one interval, and quit");
     verb.add_flag("--json", json, "Print a JSON document for every interval instead of a table");
     cli::ShowExitCodes(verb, {.interruptible = true});
     verb.footer(kTopExplanation);

@@ -37,7 +37,7 @@ void Relay::Accept() {
     }
     const auto client = std::make_shared<RelayClient>(*this, next_id_++, std::move(socket));
     if (clients_.size() >= options_.clients) {
-      client->Drop(fmt::format("{} clients are here already", clients_.size()));
+      client->Drop(fmt::format("{} clients are connected already", clients_.size()));
     } else {
       clients_.emplace(next_id_ - 1, client);
       client->Start();

@@ -25,7 +25,7 @@ constexpr std::chrono::seconds kGreetingLimit(5);
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
   error_code error;
   const auto peer = socket.remote_endpoint(error);
-  if (error) return "a client that is gone already";
+  if (error) return "a client that has left already";
   return fmt::format("{}:{}", peer.address().to_string(), peer.port());
 }
 
@@ -68,7 +68,7 @@ void RelayClient::Offer(const runtime::tcpq::Frame& message) {
   if (gone_ || deaf_ || !Wants(message.name)) return;
   const std::size_t queued = sending_.size() + waiting_.size();
   if (queued > 0 && queued + message.wire.size() > relay_.options_.queue_bytes) {
-    return Drop(fmt::format("does not read: {} bytes wait for it", queued));
+    return Drop(fmt::format("does not read; {} bytes wait for it", queued));
   }
   waiting_.insert(waiting_.end(), message.wire.begin(), message.wire.end());
   relay_.Sent(message.payload.size());

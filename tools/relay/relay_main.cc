@@ -43,22 +43,22 @@ struct Arguments {
   bool quiet = false;
 
   void AddTo(CLI::App& app) {
-    app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any that is free")
+    app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free port")
         ->capture_default_str();
     app.add_option("--max-message", message_mib, "Largest message, in MiB")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     app.add_option("--max-queue", queue_mib,
-                   "What may wait for a client before it is disconnected, in MiB")
+                   "Disconnect a client for which more than this waits, in MiB")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    app.add_option("--max-clients", relay.clients, "Clients at a time")
+    app.add_option("--max-clients", relay.clients, "Most clients at a time")
         ->check(CLI::Range(1, 10'000))
         ->capture_default_str();
-    app.add_option("--max-subscriptions", relay.subscriptions, "Subscriptions of one client")
+    app.add_option("--max-subscriptions", relay.subscriptions, "Most subscriptions of one client")
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
-    app.add_flag("--quiet", quiet, "No summary at the end");
+    app.add_flag("--quiet", quiet, "Print no summary at the end");
     app.footer(kFooter);
   }
 };

@@ -173,8 +173,8 @@ class BusyElsewhere {
           std::ranges::any_of(awaited, [&peer](Role role) { return NameOf(role) == peer.role; });
       if (!is_awaited || !told_.insert(description).second) continue;
       say_(
-          fmt::format("{} is not free: it comes when that run is over, or when its runner has "
-                      "been silent for {:g} s",
+          fmt::format("{} is not free: it joins this run when that run is over, or when its runner "
+                      "has been silent for {:g} s",
                       description, Seconds(runtime::RunnerWatch::kSilent)));
     }
   }

@@ -55,8 +55,8 @@ void DirectLog::Compare(std::int64_t step, const ChannelInfo& channel, runtime::
   const auto event = old_->Next();
   if (event && event->channel == channel.name && std::ranges::equal(event->data, message)) return;
   throw InputError(
-      fmt::format("{}: error: --resume: step {}: {} is not what {} computes here: the log was made "
-                  "by another program, or another version",
+      fmt::format("{}: error: --resume: step {}: {} differs from what {} computes here: the log "
+                  "was made by another program, or another version",
                   PathText(file_), step, channel.name, NameOf(channel.from)));
 }
 

@@ -162,7 +162,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
     LoggedRun logged = options.samples ? ReadLoggedRun(log) : MeasureLoggedRun(log, scenario);
     if (logged.run_id == run.run_id) return logged;
     throw std::runtime_error(
-        fmt::format("{}: the log is that of run {}, not of this one, {}: it was replaced meanwhile",
+        fmt::format("{}: the log is of run {}, not of this run, {}: it was replaced meanwhile",
                     PathText(log), logged.run_id, run.run_id));
   };
   try {
@@ -187,12 +187,13 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   const auto key = runtime::KeyOf(options.traffic);
   const bool checked = keeper.HasAllTold(run.written);
   if (!checked && !options.realtime) {
-    throw std::runtime_error(fmt::format(
-        "{}: the log on disk is not what the recorder wrote: it is longer", PathText(log)));
+    throw std::runtime_error(
+        fmt::format("{}: the log on disk is longer than what the recorder wrote", PathText(log)));
   }
   if (!checked && key) {
-    throw std::runtime_error(fmt::format(
-        "{}: the log cannot be signed: what the recorder told of its end was lost", PathText(log)));
+    throw std::runtime_error(
+        fmt::format("{}: the log cannot be signed, because the recorder's last report was lost",
+                    PathText(log)));
   }
   ExperimentResult result = std::move(logged.result);
   if (options.verify.value_or(options.resume || !options.external.empty())) {

@@ -45,7 +45,7 @@ Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key
   }
   if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
   if (front.realtime) {
-    Refuse(log, "a run in real time: the road does not wait, only runs in lockstep can go on");
+    Refuse(log, "a run in real time cannot be resumed; only runs in lockstep can");
   }
   if (front.type_fingerprint != TypeFingerprint()) {
     Refuse(log, "the log was made with other message types, by another version of Fogline");
@@ -54,7 +54,7 @@ Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key
   const log::Remains remains = log::ReadRemains(log, front);
   if (!remains.final) {
     if (const std::string odd = log::OddEnd(log, front, remains); !odd.empty()) {
-      Refuse(log, odd + ": this is not how fogline run leaves a log");
+      Refuse(log, odd + ": fogline run does not leave a log like this");
     }
   }
   return {.front = std::move(front), .remains = remains};

@@ -42,13 +42,14 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
                                    PathText(shards.front())));
     }
     if (shard.count != count) {
-      throw InputError(fmt::format("{}: error: shard {} of {}, but {} is one of {}", PathText(path),
-                                   shard.index, shard.count, PathText(shards.front()), count));
+      throw InputError(fmt::format("{}: error: shard {} of {}, but {} is a shard of {}",
+                                   PathText(path), shard.index, shard.count,
+                                   PathText(shards.front()), count));
     }
     const auto [place, is_new] = ordered.emplace(shard.index, file);
     if (!is_new) {
-      throw InputError(fmt::format("{}: error: shard {} of {}, as {}", PathText(path), shard.index,
-                                   count, PathText(place->second.path)));
+      throw InputError(fmt::format("{}: error: shard {} of {}, the same as {}", PathText(path),
+                                   shard.index, count, PathText(place->second.path)));
     }
   }
   for (std::int64_t index = 1; index <= count; ++index) {
@@ -68,8 +69,8 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
   throw InputError(
       fmt::format("{}:{}: error: {}", PathText(shard), row + 2,
                   verdict == RowChecker::Verdict::kOther
-                      ? "not the line that its sweep has written there"
-                      : "the row has no checksum; run its sweep again to have it computed again"));
+                      ? "the line differs from the one that its sweep wrote there"
+                      : "the row has no checksum; run its sweep again to compute the row again"));
 }
 
 /// Copies the rows of a shard, with the header if it is the first one.
@@ -89,8 +90,8 @@ void Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFi
       header = line;
       out.Write(header);
     } else if (line != header) {
-      throw InputError(
-          fmt::format("{}:1: error: other columns than the first shard's", PathText(shard.path)));
+      throw InputError(fmt::format("{}:1: error: the columns differ from those of the first shard",
+                                   PathText(shard.path)));
     }
   }
   if (rows != shard.description.rows || !line.empty()) {

@@ -95,10 +95,10 @@ SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, c
 
 bool SweepFile::IsToBeReplaced(const Shard& shard, bool force) const {
   if (lseek(file_.fd, 0, SEEK_END) == 0) return true;
-  if (!IsSweep(path_)) Refuse(path_, "the file is no sweep and stays as it is, --force or not");
+  if (!IsSweep(path_)) Refuse(path_, "the file is no sweep and is not replaced, even with --force");
   if (force) return true;
   if (ReadDescription(path_) == Describe(plan_, shard)) return false;
-  Refuse(path_, "the file is there and is not of this sweep; --force replaces it");
+  Refuse(path_, "the file exists and is not of this sweep; --force replaces it");
 }
 
 SweepFile::Handle::~Handle() {
@@ -164,8 +164,8 @@ void SweepFile::Resume(const Shard& shard) {
               // following ones again
     if (!has_key || verdict == RowChecker::Verdict::kOther) {
       throw InputError(
-          fmt::format("{}:{}: error: --out: not the line that this sweep {} there; "
-                      "--force starts over",
+          fmt::format("{}:{}: error: --out: the line differs from the one that this sweep {} "
+                      "there; --force starts over",
                       PathText(path_), row + 2, has_key ? "has written" : "writes"));
     }
     position += static_cast<std::int64_t>(line.size()) + 1;
@@ -231,7 +231,7 @@ void SweepFile::Write(std::string_view text, const Handle& file) const {
   if (error == 0) return;
   if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));
   throw std::runtime_error(
-      fmt::format("{}: cannot write: {}; call it again to go on where the file ends",
+      fmt::format("{}: cannot write: {}; call it again to continue at the end of the file",
                   PathText(path_), std::strerror(error)));
 }
 

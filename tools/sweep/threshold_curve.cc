@@ -18,9 +18,9 @@ void RequireThreshold(const Scenario& scenario, const std::filesystem::path& fil
   for (const policies::PolicyRow& row : policies::Policies()) {
     if (row.uses_threshold) others += fmt::format("{}{}", others.empty() ? "" : ", ", row.name);
   }
-  throw InputError(
-      fmt::format("{}: error: /arbitrator/policy is {}: no threshold matters; one does with {}",
-                  PathText(file), policy.name, others));
+  throw InputError(fmt::format(
+      "{}: error: /arbitrator/policy is {}, which uses no threshold; these policies do: {}",
+      PathText(file), policy.name, others));
 }
 
 std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,

@@ -148,8 +148,8 @@ std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
     lines.push_back({"no messages so far; `fogline doctor` names the runs of this machine"});
   }
   if (view.forgotten > 0) {
-    lines.push_back({fmt::format("{} runs, channels or roles are forgotten, there were too many",
-                                 view.forgotten)});
+    lines.push_back({fmt::format(
+        "{} runs, channels or roles are not shown, because there were too many", view.forgotten)});
   }
   return lines;
 }

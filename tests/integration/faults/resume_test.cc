@@ -120,8 +120,8 @@ TEST_F(ResumeTest, NamesWhatTheLogHasAndIsSaidAgain) {
   ExpectRefusal(resume + Words{"--log", File("other.lcm")}, refusal("--log"));
   ExpectRefusal(resume + Words{"--force"}, refusal("--force"));
   ExpectRefusal(resume + Words{"--realtime"},
-                "fogline run: error: --realtime: a run in real time does not go on, see --resume "
-                "(see fogline run --help)\n");
+                "fogline run: error: --realtime: a run in real time cannot be resumed (see fogline "
+                "run --help)\n");
   ExpectRefusal({Program("fogline"), "run"},
                 "fogline run: error: SCENARIO is required (see fogline run --help)\n");
 }
@@ -147,7 +147,7 @@ TEST_F(ResumeTest, RefusesARunInRealTime) {
     ASSERT_EQ(run.Wait(), 130);
     EXPECT_EQ(run.Err().find("--resume"), std::string::npos) << run.Err();
   }
-  ExpectRefusal("a run in real time: the road does not wait, only runs in lockstep can go on");
+  ExpectRefusal("a run in real time cannot be resumed; only runs in lockstep can");
 }
 
 TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
@@ -178,7 +178,7 @@ TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   std::size_t at = 0;
   while (reader.Next()->channel != "STATUS") at = reader.good_bytes();
   ExpectRefusal("an event on channel STATUS (byte " + std::to_string(at) +
-                ") does not continue step 16: this is not how fogline run leaves a log");
+                ") does not continue step 16: fogline run does not leave a log like this");
 }
 
 TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {

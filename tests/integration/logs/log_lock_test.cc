@@ -153,7 +153,7 @@ TEST_F(LogLockTest, ARunRefusesALogThatIsNotItsOwn) {
   const Background driver(StartADriver());
   // THEN the run fails and reports no result
   EXPECT_EQ(run.Wait(), 3);
-  EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: " + log_ + ": the log is that of run "));
+  EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: " + log_ + ": the log is of run "));
   EXPECT_EQ(run.Out(), "");
 }
 

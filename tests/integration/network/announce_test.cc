@@ -278,8 +278,8 @@ TEST(AnnounceTest, ARunSaysThatTheRoleItWaitsForIsInARunWhoseRunnerIsSilent) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["digest"], DirectDigest());
   EXPECT_THAT(run.err, HasSubstr("driver (pid " + std::to_string(driver.pid()) + " on "));
-  EXPECT_THAT(run.err, HasSubstr(" is not free: it comes when that run is over, or when its runner "
-                                 "has been silent for 2 s\n"));
+  EXPECT_THAT(run.err, HasSubstr(" is not free: it joins this run when that run is over, or when "
+                                 "its runner has been silent for 2 s\n"));
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
   EXPECT_THAT(driver.Err(), HasSubstr(" waits for the driver\n"));
 }
@@ -340,8 +340,9 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
     bus.Wait(milliseconds(10));
   }
   doctor.Wait();
-  EXPECT_THAT(doctor.Out(), HasSubstr(" announcements that no run of this machine can have made "
-                                      "were refused"));
+  EXPECT_THAT(
+      doctor.Out(),
+      HasSubstr(" announcements were refused, because no run of this machine can have made them"));
 }
 
 TEST(AnnounceTest, ABeaconIsNeitherInTheLogNorInTheDigest) {

@@ -64,8 +64,8 @@ TEST(DefaultUrlTest, IsNamedWhereItIsWrong) {
     const Outcome outcome =
         RunCommand({"env", "LCM_DEFAULT_URL=memq://", "DISPLAY=:0", Program("fogline"), verb});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err,
-                HasSubstr("error: LCM_DEFAULT_URL memq://: the memory of one process"));
+    EXPECT_THAT(outcome.err, HasSubstr("error: LCM_DEFAULT_URL memq://: other processes cannot "
+                                       "look into the memory of a process"));
   }
   const Outcome run = RunCommand(
       {"env", "LCM_DEFAULT_URL=direct", Program("fogline"), "run", "scenario/paper.json"});
@@ -107,8 +107,8 @@ TEST(WaitTest, OfATableHasALimitToo) {
       RunCommand({Program("fogline"), "table", "scenario/paper.json", "--external", "driver",
                   "--lcm-url", meeting.url(), "--wait", "0.5"});
   EXPECT_EQ(table.code, 3);
-  EXPECT_THAT(table.err, HasSubstr("each of 4 runs waits for the driver (0.5 s): start it for each "
-                                   "with: fogline-driver --lcm-url '" +
+  EXPECT_THAT(table.err, HasSubstr("each of 4 runs waits for the driver (0.5 s); start it for each "
+                                   "run with: fogline-driver --lcm-url '" +
                                    meeting.url()));
   EXPECT_THAT(table.err, HasSubstr("fogline table: error: waited 0.5 s for the driver in vain"));
 }

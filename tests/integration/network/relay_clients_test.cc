@@ -104,7 +104,7 @@ TEST(HostileRelayClientTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTh
   // THEN the other client gets all messages, and the relay names the client that does not read
   ASSERT_TRUE(RoundTrip(bus));
   EXPECT_EQ(heard, kMessages);
-  EXPECT_TRUE(relay.process().WaitForErr("disconnected: does not read: "));
+  EXPECT_TRUE(relay.process().WaitForErr("disconnected: does not read; "));
   EXPECT_THAT(relay.process().Err(), HasSubstr(sleeper.Name() + " disconnected"));
 }
 
@@ -118,7 +118,7 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   while (sent < 1000 && publisher.Send(message)) ++sent;
   // THEN the relay disconnects it before the end
   EXPECT_LT(sent, 1000);
-  EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read: "));
+  EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read; "));
 }
 
 TEST(HostileRelayClientTest, DisconnectsAClientThatSendsGarbageAndNamesTheReason) {

@@ -162,7 +162,7 @@ TEST_F(CompareTest, ReplacesNoFile) {
   const auto size = std::filesystem::file_size(recording);
   const Outcome outcome = Compare({recording, "--out", recording});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("--out: the file exists and stays as it is"), std::string::npos);
+  EXPECT_NE(outcome.err.find("--out: the file exists and is not replaced"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(recording), size);
 }
 
@@ -241,7 +241,7 @@ TEST_F(CompareTest, SaysWhatIsWrongWithARecording) {
   EXPECT_THAT(refusal("Time,Speed2,IVS1\n0,1,-1\n9,1,1\n", {}),
               HasSubstr(":2: error: IVS1 is -1, not between 0 and 10000"));
   EXPECT_THAT(refusal("Time,Speed1,Speed2,IVS1\n0,20,1,1\n9,5,1,1\n", {}),
-              HasSubstr("error: another leader than that of the run: Speed1 is "));
+              HasSubstr("error: its leader is not that of the run: Speed1 is "));
   EXPECT_THAT(refusal("Time,Speed1,Speed2,IVS1\n0,20,1,1\n9,,1,1\n", {}), HasSubstr(":3: error: "));
 }
 

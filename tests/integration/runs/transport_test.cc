@@ -77,8 +77,8 @@ TEST(VerifyTest, IsRefusedForARunThatHasNothingToCompare) {
     const Outcome outcome = RunCommand(command);
     EXPECT_EQ(outcome.code, 2) << outcome.out;
     EXPECT_EQ(outcome.err, "fogline " + verb.front() +
-                               ": error: --verify: a run with --transport direct is one process, "
-                               "in which no message can be altered on its way\n");
+                               ": error: --verify: a run with --transport direct is one process "
+                               "and has no messages that could be altered\n");
   }
 }
 

@@ -211,10 +211,10 @@ TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {
   EXPECT_EQ(with({"/fog/bias_m=0:1", "--out", folder_.path().string(), "--force"}),
             folder_.path().string() + ": error: --out: cannot write: it is a folder\n");
   EXPECT_THAT(with({"/fog/bias_m=0:1", "--set", "/arbitrator/policy=oracle"}),
-              testing::StartsWith(scenario_ + ": error: /arbitrator/policy is oracle: no threshold "
-                                              "matters; one does with traded, "));
+              testing::StartsWith(scenario_ + ": error: /arbitrator/policy is oracle, which uses "
+                                              "no threshold; these policies do: traded, "));
   EXPECT_EQ(ErrorOf({"--free", "/fog/bias_m=0:1"}),
-            scenario_ + ": error: /published: no rows to meet; give a --target\n");
+            scenario_ + ": error: /published: no rows, so there is no target; give a --target\n");
   EXPECT_THAT(ErrorOf({}), testing::HasSubstr("--free is required"));
   EXPECT_THAT(with({"/fog/bias_m=0:1", "--evaluations", "0"}),
               testing::HasSubstr("--evaluations: Value 0 not in range"));

@@ -61,7 +61,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
-                                    " is left of a run whose runner is gone  -> kill " +
+                                    " is left over from a run whose runner has ended  -> kill " +
                                     std::to_string(role.pid()) + "\n"));
   EXPECT_TRUE(IsAlive(role.pid()));
 }

@@ -274,8 +274,9 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
     const Outcome outcome = Call(words, {"/dev/stdout", "--json"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: stdout is taken by " +
-                               words.back() + " /dev/stdout; give " + words.back() + " a file\n");
+    EXPECT_EQ(outcome.err, "fogline " + words.front() + ": error: --json: " + words.back() +
+                               " /dev/stdout uses stdout already; give " + words.back() +
+                               " a file\n");
   }
   // /dev/null may get both texts, because nothing reads it.
   EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);

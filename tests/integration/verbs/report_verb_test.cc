@@ -147,7 +147,7 @@ TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {
     const Outcome report = Report({log, "-o", other});
     EXPECT_EQ(report.code, 2);
     EXPECT_EQ(report.err,
-              other + ": error: --output: the file is no HTML page and stays as it is\n");
+              other + ": error: --output: the file is no HTML page and is not replaced\n");
     EXPECT_EQ(Read(other), before);
   }
 }
@@ -164,7 +164,7 @@ TEST(ReportVerbTest, RefusesWhatGivesNoReport) {
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--seeds", "9:1"}),
               StartsWith("fogline report: error: --seeds 9:1: neither A:B"));
   EXPECT_THAT(error_of({"--curves", "scenario/paper.json", "--set", "/arbitrator/policy=none"}),
-              HasSubstr("/arbitrator/policy is none: no threshold matters"));
+              HasSubstr("/arbitrator/policy is none, which uses no threshold"));
 }
 
 TEST(ReportVerbTest, TriesItsOutputsBeforeItComputes) {

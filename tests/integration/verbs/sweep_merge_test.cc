@@ -26,8 +26,8 @@ TEST_F(SweepMergeTest, NoticesADigitThatAShardHasNotWritten) {
   std::ofstream(File(shards[1])) << text;
   const Outcome merge = Merge(shards, "merged.csv");
   EXPECT_EQ(merge.code, 2);
-  EXPECT_EQ(merge.err,
-            File(shards[1]) + ":3: error: not the line that its sweep has written there\n");
+  EXPECT_EQ(merge.err, File(shards[1]) +
+                           ":3: error: the line differs from the one that its sweep wrote there\n");
   EXPECT_FALSE(std::filesystem::exists(File("merged.csv")));
 }
 
@@ -65,7 +65,7 @@ TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
   EXPECT_EQ(error({shards[0], shards[2]}),
             "fogline sweep: error: --merge: shard 2 of 3 is missing\n");
   EXPECT_EQ(error({shards[0], shards[1], shards[1], shards[2]}),
-            File(shards[1]) + ": error: shard 2 of 3, as " + File(shards[1]) + "\n");
+            File(shards[1]) + ": error: shard 2 of 3, the same as " + File(shards[1]) + "\n");
   EXPECT_EQ(error({shards[0], shards[1], "torn.csv"}),
             File("torn.csv") + ": error: has 2 of 3 rows; run its sweep again to finish it\n");
   EXPECT_EQ(error({shards[0], shards[1], "long.csv"}),
@@ -74,7 +74,7 @@ TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
             File("other.csv") + ": error: not of the same sweep as " + File(shards[0]) + "\n");
   EXPECT_EQ(
       error({shards[0], shards[1], "quarter.csv"}),
-      File("quarter.csv") + ": error: shard 3 of 4, but " + File(shards[0]) + " is one of 3\n");
+      File("quarter.csv") + ": error: shard 3 of 4, but " + File(shards[0]) + " is a shard of 3\n");
   EXPECT_EQ(error({shards[0], "plain.csv"}),
             File("plain.csv") + ": error: no sweep: " + File("plain.csv.json") + " is missing\n");
   EXPECT_EQ(error({shards[0], "damaged.csv"}), File("damaged.csv") + ": error: no sweep: " +
@@ -118,9 +118,10 @@ TEST_F(SweepMergeTest, DoesNotBelieveARowWithoutAChecksum) {
   std::ofstream(File(shards[1])) << text;
   const Outcome merge = Merge(shards, "merged.csv");
   EXPECT_EQ(merge.code, 2);
-  EXPECT_EQ(merge.err, File(shards[1]) +
-                           ":5: error: the row has no checksum; run its sweep again to have it "
-                           "computed again\n");
+  EXPECT_EQ(
+      merge.err,
+      File(shards[1]) +
+          ":5: error: the row has no checksum; run its sweep again to compute the row again\n");
   EXPECT_FALSE(std::filesystem::exists(File("merged.csv")));
   // WHEN the sweep is run again, as the error text says
   EXPECT_EQ(Made(shards[1], sweep + Words{"--shard", "2/2"}), whole);

@@ -111,9 +111,10 @@ TEST_F(SweepTest, DoesNotReplaceTheFileOfAnotherSweepUnlessForced) {
                              kShort + Words{"--seeds", "1:4", "--shard", "1/2"}}) {
     const Outcome refused = Sweep("file.csv", other);
     EXPECT_EQ(refused.code, 2);
-    EXPECT_EQ(refused.err, File("file.csv") +
-                               ": error: --out: the file is there and is not of this sweep; "
-                               "--force replaces it\n");
+    EXPECT_EQ(
+        refused.err,
+        File("file.csv") +
+            ": error: --out: the file exists and is not of this sweep; --force replaces it\n");
     EXPECT_EQ(Content(File("file.csv")), first);
   }
   const Words other = kShort + Words{"--seeds", "1:5"};
@@ -152,8 +153,8 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
   const Outcome refused = Sweep("file.csv", sweep);
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.err, File("file.csv") +
-                             ":4: error: --out: not the line that this sweep writes there; "
-                             "--force starts over\n");
+                             ":4: error: --out: the line differs from the one that this sweep "
+                             "writes there; --force starts over\n");
   EXPECT_EQ(Content(File("file.csv")), text);
 }
 
@@ -170,8 +171,8 @@ TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   const Outcome refused = Sweep("file.csv", sweep);
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.err, File("file.csv") + ":" + std::to_string(line) +
-                             ": error: --out: not the line that this sweep has written there; "
-                             "--force starts over\n");
+                             ": error: --out: the line differs from the one that this sweep has "
+                             "written there; --force starts over\n");
   EXPECT_EQ(Content(File("file.csv")), text);
   // AND without the checksum file the sweep accepts the rows as they are, and checks them from then
   // on
@@ -325,9 +326,10 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));
   EXPECT_EQ(full.code, 3);
-  EXPECT_EQ(full.err, "fogline sweep: error: " + File("full.csv") +
-                          ": cannot write: File too large; call it again to go on where the file "
-                          "ends\n");
+  EXPECT_EQ(
+      full.err,
+      "fogline sweep: error: " + File("full.csv") +
+          ": cannot write: File too large; call it again to continue at the end of the file\n");
   EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));
   // WHEN there is room again THEN the sweep continues
   EXPECT_EQ(Made("full.csv", sweep), whole);

@@ -32,7 +32,7 @@ TEST(TableTextTest, SaysOnceThatThereIsNoSafetyToImproveWithoutFog) {
 
 TEST(TableTextTest, SaysInItsHelpForWhatItObeysTheEnvironment) {
   EXPECT_THAT(RunCommand({Program("fogline"), "table", "--help"}).out,
-              testing::ContainsRegex("processes for[ \n]+--external go to"));
+              testing::ContainsRegex("processes for[ \n]+--external use"));
   EXPECT_THAT(RunCommand({Program("fogline"), "run", "--help"}).out,
               testing::Not(testing::ContainsRegex("processes for[ \n]+--external")));
 }
@@ -115,12 +115,11 @@ std::string ErrorOf(const std::vector<std::string>& more) {
 }
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
-  EXPECT_EQ(
-      ErrorOf({"--set", "/arbitrator/policy=none"}),
-      "scenario/paper.json: error: /arbitrator/policy is none: no threshold matters; one does "
-      "with traded, adaptive, availability\n");
+  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
+            "scenario/paper.json: error: /arbitrator/policy is none, which uses no threshold; "
+            "these policies do: traded, adaptive, availability\n");
   EXPECT_THAT(ErrorOf({"--set", "/arbitrator/policy=isolate"}),
-              HasSubstr("/arbitrator/policy is isolate: no threshold matters"));
+              HasSubstr("/arbitrator/policy is isolate, which uses no threshold"));
   const ScratchFolder folder;
   EXPECT_EQ(ErrorOf({"--logs", folder.File("slip/logs")}),
             folder.File("slip/logs") + ": error: --logs: there is no folder " +

@@ -215,7 +215,7 @@ TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
   for (const char* verb : {"top", "spy", "doctor"}) {
     const Outcome memory = RunCommand({Program("fogline"), verb, "--lcm-url", "memq://"});
     EXPECT_EQ(memory.code, 2);
-    EXPECT_THAT(memory.err, HasSubstr("the memory of one process"));
+    EXPECT_THAT(memory.err, HasSubstr("other processes cannot look into the memory of a process"));
     EXPECT_EQ(memory.out, "");
     const Outcome file = RunCommand({Program("fogline"), verb, "--lcm-url", "file://run.lcm"});
     EXPECT_EQ(file.code, 2);

@@ -121,8 +121,8 @@ TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "scenario: error: /arbitrator/policy is none: no threshold matters; one does with "
-                 "traded, adaptive, availability");
+                 "scenario: error: /arbitrator/policy is none, which uses no threshold; these "
+                 "policies do: traded, adaptive, availability");
   }
 }
 
