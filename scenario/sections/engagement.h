@@ -13,10 +13,11 @@ enum class TransferProfile { kStep, kLinear, kSigmoid, kJerkLimited };
 constexpr auto ChoicesOf(TransferProfile) {
   return std::to_array<Choice>(
       {{"step", "the paper's: from one step to the next"},
-       {"linear", "authorities go linearly over duration_s"},
-       {"sigmoid", "authorities go along a logistic curve over duration_s"},
+       {"linear", "authorities change linearly over duration_s"},
+       {"sigmoid", "authorities change along a logistic curve over duration_s"},
        {"jerk_limited",
-        "at once, but the command changes by no more than jerk_mps3 until it has caught up"}});
+        "authorities change at once; the command changes no faster than jerk_mps3 until it has "
+        "caught up"}});
 }
 
 enum class Hysteresis { kNone, kBand, kSprt };
@@ -24,7 +25,8 @@ constexpr auto ChoicesOf(Hysteresis) {
   return std::to_array<Choice>(
       {{"none", "the paper's: one threshold for both directions"},
        {"band",
-        "the automation returns below threshold - band, but no lower than half of the threshold"},
+        "the automation returns below threshold - band, or below half of the threshold if that is "
+        "higher"},
        {"sprt", "Wald's test: each direction waits for enough evidence (sprt_alpha, sprt_beta)"}});
 }
 
@@ -32,34 +34,36 @@ constexpr auto ChoicesOf(Hysteresis) {
 struct TransferSection {
   FOGLINE_FIELD(TransferProfile, profile, TransferProfile::kStep,
                 "How authorities and command change at a transfer.");
-  FOGLINE_FIELD(double, duration_s, 0.25, {0.01, 60, "s"}, "For linear and sigmoid.",
+  FOGLINE_FIELD(double, duration_s, 0.25, {0.01, 60, "s"},
+                "For linear and sigmoid: length of a transfer.",
                 "our choice, because it costs less than 3 points of SI in paper.json; 1 to 2 s, "
                 "usual in shared control, cost 9 to 23");
   FOGLINE_FIELD(double, jerk_mps3, 2.0, {0.05, 100, "m/s3"},
-                "For jerk_limited: how fast the command may change after a transfer.",
+                "For jerk_limited: fastest change of the command after a transfer.",
                 "our choice, because it is below 2.5, the limit of ISO 15622 above 20 m/s");
   FOGLINE_FIELD(double, yield_mps2, 3.5, {0, 20, "m/s2"},
-                "For jerk_limited and gate: a command of the driving side that brakes harder than "
-                "this takes effect at once, even if the change is not smooth.",
+                "For jerk_limited and gate: if a command of the driving side brakes harder than "
+                "this, it takes effect at once, even if the change is not smooth.",
                 "ISO 15622: an ACC never brakes harder above 20 m/s");
-  FOGLINE_FIELD(Hysteresis, hysteresis, Hysteresis::kNone,
-                "What keeps authority from going to and fro.");
+  FOGLINE_FIELD(Hysteresis, hysteresis, Hysteresis::kNone, "Hysteresis of transfers.");
   FOGLINE_FIELD(double, band, 0.2, {0, 1},
-                "For hysteresis band. More than half of the threshold in force counts as that "
-                "half, or the wheel would never come back.",
-                "our choice, because at threshold 0.5 it is 8 cm of z, more than a noise of 1 to 2 "
-                "cm moves it");
+                "For hysteresis band. At most half of the threshold in force counts; otherwise the "
+                "automation would never get authority back.",
+                "our choice, because at threshold 0.5 it is 8 cm of z, more than the effect of a "
+                "noise of 1 to 2 cm");
   FOGLINE_FIELD(double, sprt_alpha, 0.01, {1e-6, 0.49},
-                "For hysteresis sprt: probability of a transfer to the human for nothing.",
+                "For hysteresis sprt: probability of a transfer to the human without a conflict.",
                 "our choice, because 1 % is a usual error level of tests");
   FOGLINE_FIELD(double, sprt_beta, 0.01, {1e-6, 0.49},
-                "For hysteresis sprt: probability of a conflict that is missed.",
+                "For hysteresis sprt: probability of missing a conflict.",
                 "our choice, because 1 % is a usual error level of tests");
   FOGLINE_FIELD(double, min_dwell_s, 0.0, {0, 600, "s"}, "Least time between two transfers.",
-                "Sourav & Cheng 2024: none; 3 to 5 s avoid flapping");
-  FOGLINE_FIELD(bool, gate, false, "Limit the command itself for gate_s after a transfer.");
+                "Sourav & Cheng 2024: none; 3 to 5 s avoid rapid transfers to and from the human");
+  FOGLINE_FIELD(bool, gate, false,
+                "Whether the command itself is limited for gate_s after a transfer.");
   FOGLINE_FIELD(
-      double, gate_s, 2.0, {0.01, 60, "s"}, "For gate: how long after a transfer.",
+      double, gate_s, 2.0, {0.01, 60, "s"},
+      "For gate: time after a transfer in which the command is limited.",
       "our choice, because it is as long as the longer ramps of shared control, 1 to 2 s");
   FOGLINE_FIELD(double, gate_acceleration_mps2, 1.0, {0.1, 10, "m/s2"},
                 "For gate: strongest acceleration and braking.",
@@ -74,21 +78,21 @@ struct TransferSection {
 /// of the follower) - braking_gain_s2pm max(0, host's braking), least, most).
 struct AdaptiveSection {
   FOGLINE_FIELD(double, readiness_gain, 0.4, {0, 10},
-                "How much higher for a driver without readiness.",
+                "Increase of the threshold for a driver without readiness.",
                 "our choice, because without readiness the threshold then goes from 0.5 to most");
   FOGLINE_FIELD(double, visibility_gain_m, 5.0, {0, 1000, "m"},
-                "How much lower in fog, per 1/m of the inverse visibility.",
+                "Decrease of the threshold in fog, per 1/m of the inverse visibility.",
                 "our choice, because it is 0.1 at 50 m");
   FOGLINE_FIELD(double, closing_gain_s, 0.5, {0, 100, "s"},
-                "How much lower, per 1/s of the follower's inverse time to collision.",
+                "Decrease of the threshold, per 1/s of the follower's inverse time to collision.",
                 "our choice, because it is 0.1 at a time to collision of 5 s");
   FOGLINE_FIELD(double, braking_gain_s2pm, 0.1, {0, 10, "s2/m"},
-                "How much lower, per m/s2 of the host's braking.",
+                "Decrease of the threshold, per m/s2 of the host's braking.",
                 "our choice, because it is 0.1 for each 1 m/s2");
-  FOGLINE_FIELD(double, least, 0.3, {0, 0.5}, "Never below.",
-                "our choice, because with a threshold near 0 the human would never be relieved");
-  FOGLINE_FIELD(double, most, 0.9, {0.5, 1}, "Never above.",
-                "our choice, because with a threshold near 1 the human would never be asked");
+  FOGLINE_FIELD(double, least, 0.3, {0, 0.5}, "Smallest threshold.",
+                "our choice, because with a threshold near 0 the automation would never drive");
+  FOGLINE_FIELD(double, most, 0.9, {0.5, 1}, "Largest threshold.",
+                "our choice, because with a threshold near 1 the human would never drive");
 };
 
 /// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a), with the expected costs
@@ -97,18 +101,22 @@ struct AdaptiveSection {
 /// that uses a wrong distance. P is the DoC: steep with the paper's slope; a posterior probability
 /// with measure lidar_modes and measure_scale probability.
 struct BayesSection {
-  FOGLINE_FIELD(double, human_cost, 1.0, {1e-6, 1e6}, "Of any human engagement.",
-                "our choice, because it is the unit of the other costs: only their ratios count");
-  FOGLINE_FIELD(double, unready_cost, 3.0, {0, 1e6}, "On top, of a driver without readiness.",
+  FOGLINE_FIELD(
+      double, human_cost, 1.0, {1e-6, 1e6}, "Cost of any human engagement.",
+      "our choice, because it is the unit of the other costs, of which only the ratios count");
+  FOGLINE_FIELD(double, unready_cost, 3.0, {0, 1e6},
+                "Additional cost of a driver without readiness.",
                 "our choice, because the threshold then goes from 1/2 to 4/5");
   FOGLINE_FIELD(double, blind_cost, 1.0, {0, 1e6},
-                "On top, of one who sees no further than near_m.",
+                "Additional cost of a driver that sees no further than near_m.",
                 "our choice, because the threshold then goes from 1/2 to 2/3");
-  FOGLINE_FIELD(double, automation_cost, 1.0, {1e-6, 1e6}, "Of an automation that is deceived.",
+  FOGLINE_FIELD(double, automation_cost, 1.0, {1e-6, 1e6},
+                "Cost of an automation that is deceived.",
                 "our choice, because with human_cost it makes the threshold 1/2");
-  FOGLINE_FIELD(double, follower_cost, 3.0, {0, 1e6},
-                "On top, with a follower as close as near_ttc_s.",
-                "our choice, because the threshold then goes from 1/2 to 1/5");
+  FOGLINE_FIELD(
+      double, follower_cost, 3.0, {0, 1e6},
+      "Additional cost of a deceived automation if the follower is as close as near_ttc_s.",
+      "our choice, because the threshold then goes from 1/2 to 1/5");
   FOGLINE_FIELD(double, near_m, 40.0, {1, 1000, "m"},
                 "Visibility at which blind_cost counts in full.",
                 "Hogema & van der Horst 1994: 40 to 100 m are most critical");
@@ -125,12 +133,14 @@ struct BayesSection {
 struct AvailabilitySection {
   FOGLINE_FIELD(double, comfort_mps2, 3.0, {0.5, 10, "m/s2"},
                 "Braking that a follower must not exceed (DRAC).",
-                "our choice, because surrogate safety studies take 3.0 to 3.4 for critical");
+                "our choice, because surrogate safety studies call 3.0 to 3.4 critical");
   FOGLINE_FIELD(
-      double, unready_s, 2.0, {0, 60, "s"}, "How much later a driver without readiness is.",
-      "our choice, because nothing measured is at hand; it is less than a whole take-over, 2.7 s");
-  FOGLINE_FIELD(double, horizon_s, 20.0, {1, 600, "s"}, "What lies beyond does not count.",
-                "our choice, because a take-over by default ends far sooner: 95 % within 5.5 s");
+      double, unready_s, 2.0, {0, 60, "s"},
+      "Additional take-over time of a driver without readiness.",
+      "our choice, because no measurement is known; it is less than a whole take-over, 2.7 s");
+  FOGLINE_FIELD(double, horizon_s, 20.0, {1, 600, "s"},
+                "Look-ahead time. Later events do not count.",
+                "our choice, because a take-over by default ends much earlier: 95 % within 5.5 s");
 };
 
 /// Policy blend: both drive, the human in proportion to the conflict:
@@ -138,7 +148,9 @@ struct AvailabilitySection {
 struct BlendSection {
   FOGLINE_FIELD(double, from, 0.2, {0, 1}, "DoC up to which the automation drives alone.",
                 "Sourav & Cheng 2024: 0.2 is the lowest threshold");
-  FOGLINE_FIELD(double, width, 0.6, {0.001, 1}, "DoC from there until the human drives alone.",
+  FOGLINE_FIELD(double, width, 0.6, {0.001, 1},
+                "Width of the DoC range that begins at from. In it both drive; above it the human "
+                "drives alone.",
                 "Sourav & Cheng 2024: 0.8 is the highest threshold");
 };
 

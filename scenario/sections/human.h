@@ -20,8 +20,10 @@ constexpr auto ChoicesOf(FollowingModel) {
 enum class Sight { kPerfect, kFog };
 constexpr auto ChoicesOf(Sight) {
   return std::to_array<Choice>(
-      {{"perfect", "the paper's: the true gap and speed in fog as in clear air"},
-       {"fog", "what fog leaves of outline and lamps (services/models/driver/fog_sight.h)"}});
+      {{"perfect", "the paper's: the true gap and speed, in fog as in clear air"},
+       {"fog",
+        "outline and lamps, as far as they are visible in fog "
+        "(services/models/driver/fog_sight.h)"}});
 }
 
 /// Sight of a human in fog.
@@ -30,32 +32,32 @@ struct FogSightParameters {
                 "C_0, contrast of the car ahead against the fog from nearby; 1 is black.",
                 "our choice, because a grey car has about half the contrast of a black one");
   FOGLINE_FIELD(double, contrast_threshold, 0.05, {0.001, 0.19},
-                "eps, the least contrast that is seen.",
-                "WMO-No. 8, definition of visibility: 0.05");
+                "eps, the smallest visible contrast.", "WMO-No. 8, definition of visibility: 0.05");
   FOGLINE_FIELD(double, clear_share, 0.5, {0, 1},
-                "Share of the outline's range up to which distances are judged rightly.",
-                "our choice, because a clear outline wants a contrast of 0.1 to 0.2");
+                "Share of the outline's range up to which the driver judges distances correctly.",
+                "our choice, because a clear outline needs a contrast of 0.1 to 0.2");
   FOGLINE_FIELD(double, lamp_distance_factor, 1.45, {1, 3},
-                "kappa, perceived over true distance where only lamps are seen.",
-                "Cavallo et al. 2001: 30 to 60 % too far; the middle");
+                "kappa, ratio of perceived to true distance if only the lamps are visible.",
+                "Cavallo et al. 2001: 30 to 60 % too far; here the middle");
   FOGLINE_FIELD(double, lamp_intensity_cd, 5.0, {0.1, 1000, "cd"}, "Intensity of the lamps ahead.",
                 "tail lamp 5, rear fog lamp 150 to 300 (UN R7, R38)");
   FOGLINE_FIELD(double, illuminance_threshold_lx, 1e-4, {1e-8, 1, "lx"},
-                "E_t, least illuminance at the eye that is seen.",
-                "our choice, because 1e-4 to 1e-3 are seen at dusk and by day, 1e-6 by night");
+                "E_t, the smallest visible illuminance at the eye.",
+                "our choice, because 1e-4 to 1e-3 are visible at dusk and by day, 1e-6 by night");
   FOGLINE_FIELD(double, angular_rate_threshold_radps, 0.003, {0, 0.1, "rad/s"},
-                "Least angular rate that is seen as closing in or falling back.",
+                "Smallest angular rate that the driver sees as closing in or falling back.",
                 "Hoffmann & Mortimer 1996: 0.003");
   FOGLINE_FIELD(double, body_width_m, 1.8, {0.5, 5, "m"}, "Width of the car ahead.",
-                "our choice, because usual cars are about so wide");
-  FOGLINE_FIELD(double, lamp_separation_m, 1.3, {0.3, 5, "m"}, "Distance between its lamps.",
+                "our choice, because usual cars are about 1.8 m wide");
+  FOGLINE_FIELD(double, lamp_separation_m, 1.3, {0.3, 5, "m"},
+                "Distance between the lamps of the car ahead.",
                 "our choice, because the lamps of usual cars are 1.2 to 1.4 m apart");
 };
 
 /// Human Driver Model: errors with a memory, reaction time, anticipation.
 struct HumanParameters {
-  FOGLINE_FIELD(double, reaction_time_s, 0.8, {0, 3, "s"}, "T_r; at most 254 steps.",
-                "Treiber, Kesting & Helbing 2006 look at 0.5 to 1.1; the middle");
+  FOGLINE_FIELD(double, reaction_time_s, 0.8, {0, 3, "s"}, "Reaction time T_r, at most 254 steps.",
+                "Treiber, Kesting & Helbing 2006 study 0.5 to 1.1; here the middle");
   FOGLINE_FIELD(double, gap_error, 0.05, {0, 1}, "V_s, relative standard deviation of the gap.",
                 "Treiber, Kesting & Helbing 2006: 0.05");
   FOGLINE_FIELD(double, approach_error_ps, 0.01, {0, 1, "1/s"},
@@ -63,40 +65,46 @@ struct HumanParameters {
                 "Treiber, Kesting & Helbing 2006: 0.01");
   FOGLINE_FIELD(double, error_time_s, 20.0, {0.01, 1000, "s"}, "Correlation time of both errors.",
                 "Treiber, Kesting & Helbing 2006: 20");
-  FOGLINE_FIELD(bool, anticipates, true, "He makes up for his reaction time.");
+  FOGLINE_FIELD(bool, anticipates, true,
+                "The driver anticipates the traffic, and so makes up for its reaction time.");
 };
 
 /// How much of the road a driver is aware of, and how his awareness fades and returns.
 struct AwarenessParameters {
   FOGLINE_FIELD(double, monitoring, 0.5, {0, 1},
-                "A_mon, where awareness ends up while he only monitors.",
-                "SUMO's ToC device: 0.5; 0.3 to 0.7 by what else the driver does");
-  FOGLINE_FIELD(double, fading_s, 60.0, {0.1, 1e4, "s"}, "Time constant of the way there.",
-                "our choice, because 30 to 120 s are plausible; nothing measured is at hand");
+                "A_mon, which awareness approaches while the driver only monitors.",
+                "SUMO's ToC device: 0.5; 0.3 to 0.7, depending on what else the driver does");
+  FOGLINE_FIELD(double, fading_s, 60.0, {0.1, 1e4, "s"},
+                "Time constant with which awareness approaches A_mon.",
+                "our choice, because 30 to 120 s are plausible; no measurement is known");
   FOGLINE_FIELD(double, recovery_ps, 0.1, {0.001, 100, "1/s"},
-                "Growth while he drives or is asked to.", "SUMO's ToC device: 0.1");
+                "Growth of awareness while the driver drives or is asked to.",
+                "SUMO's ToC device: 0.1");
   FOGLINE_FIELD(double, reaction_time_s, 0.8, {0, 3, "s"}, "Reaction time of an aware driver.",
-                "Treiber, Kesting & Helbing 2006 look at 0.5 to 1.1; the middle");
-  FOGLINE_FIELD(
-      double, slow_reaction_time_s, 0.7, {0, 3, "s"}, "What a driver without awareness needs more.",
-      "our choice, because it nearly doubles the reaction time; nothing measured is at hand");
+                "Treiber, Kesting & Helbing 2006 study 0.5 to 1.1; here the middle");
+  FOGLINE_FIELD(double, slow_reaction_time_s, 0.7, {0, 3, "s"},
+                "Additional reaction time of a driver without awareness.",
+                "our choice, because it nearly doubles the reaction time; no measurement is known");
 };
 
 /// Parameters of the human driver in addition to the IDM parameters of section driver. The defaults
 /// give the paper's driver.
 struct HumanSection {
-  FOGLINE_FIELD(FollowingModel, following, FollowingModel::kIdm, "How he follows the car ahead.");
-  FOGLINE_FIELD(double, coolness, 0.99, {0, 1}, "For acc_idm: 0 is the IIDM.",
+  FOGLINE_FIELD(FollowingModel, following, FollowingModel::kIdm,
+                "The driver's car-following model.");
+  FOGLINE_FIELD(double, coolness, 0.99, {0, 1},
+                "For acc_idm: the coolness factor; 0 gives the IIDM.",
                 "Kesting, Treiber & Helbing 2010: 0.99");
-  FOGLINE_FIELD(Sight, sight, Sight::kPerfect, "What he sees.");
-  FOGLINE_FIELD(bool, misjudges, false,
-                "He errs, is late and anticipates: the Human Driver Model of section errors.");
+  FOGLINE_FIELD(Sight, sight, Sight::kPerfect, "What the driver sees.");
+  FOGLINE_FIELD(
+      bool, misjudges, false,
+      "The driver errs, reacts late and anticipates: the Human Driver Model of section errors.");
   FOGLINE_FIELD(bool, loses_awareness, false,
-                "His awareness fades while the automation drives (section awareness): it is the "
-                "readiness that he reports, and makes his errors larger.");
-  FOGLINE_FIELD(FogSightParameters, fog_sight, {}, "For sight fog.");
-  FOGLINE_FIELD(HumanParameters, errors, {}, "For misjudges.");
-  FOGLINE_FIELD(AwarenessParameters, awareness, {}, "For loses_awareness.");
+                "Awareness falls while the automation drives (section awareness). The driver "
+                "reports it as readiness. Less awareness makes the driver's errors larger.");
+  FOGLINE_FIELD(FogSightParameters, fog_sight, {}, "Parameters of sight fog.");
+  FOGLINE_FIELD(HumanParameters, errors, {}, "Parameters of misjudges.");
+  FOGLINE_FIELD(AwarenessParameters, awareness, {}, "Parameters of loses_awareness.");
 };
 
 }  // namespace fogline

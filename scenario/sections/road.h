@@ -16,7 +16,8 @@ struct WorldSection {
                 "Integration steps within one simulation step.",
                 "our choice, because one is exact: accelerations are constant within a step");
   FOGLINE_FIELD(bool, end_on_collision, true,
-                "End the run at the step in which cars collide; otherwise it is only recorded.");
+                "Whether the run ends at the step in which cars collide. Otherwise a collision is "
+                "only recorded.");
   FOGLINE_FIELD(double, vehicle_length_m, 4.5, {1, 30, "m"}, "Length of every car.",
                 "CommonRoad vehicle 2 (BMW 320i): 4.508 m");
   FOGLINE_FIELD(double, host_speed_mps, 20.0, {0, 70, "m/s"}, "Host's speed at step 0.",
@@ -39,7 +40,7 @@ constexpr auto ChoicesOf(LeadProfile) {
   return std::to_array<Choice>(
       {{"constant", "speed_mps throughout"},
        {"breakpoints", "from speed_mps linearly to each breakpoint's speed in turn"},
-       {"sinusoid", "speed_mps and a sine on top"},
+       {"sinusoid", "speed_mps plus a sine"},
        {"emergency_brake", "speed_mps, then hard braking"},
        {"recorded", "a recorded speed from a CSV file"}});
 }
@@ -61,13 +62,13 @@ struct SinusoidSection {
   FOGLINE_FIELD(double, period_s, 20.0, {0.5, 1e4, "s"}, "Period of the sine.",
                 "our choice, because with amplitude_mps it asks for at most 0.63 m/s2, within the "
                 "ACC's limits");
-  FOGLINE_FIELD(double, start_s, 0.0, {0, 1e5, "s"}, "Time at which the sine sets in.",
+  FOGLINE_FIELD(double, start_s, 0.0, {0, 1e5, "s"}, "Time at which the sine begins.",
                 "our choice, because a sine begins without a jump and needs no lead-in");
 };
 
 struct EmergencyBrakeSection {
-  FOGLINE_FIELD(double, start_s, 10.0, {0, 1e5, "s"}, "Time at which the braking sets in.",
-                "our choice, because 10 s leave the gaps time to settle");
+  FOGLINE_FIELD(double, start_s, 10.0, {0, 1e5, "s"}, "Time at which the braking begins.",
+                "our choice, because within 10 s the gaps settle");
   FOGLINE_FIELD(double, deceleration_mps2, 6.0, {0.1, 12, "m/s2"}, "Deceleration of the leader.",
                 "ASAM OSC-ALKS scenario 4.3_2: 6.0 m/s2");
   FOGLINE_FIELD(double, final_speed_mps, 0.0, {0, 70, "m/s"}, "Speed at which the braking ends.",
@@ -82,15 +83,15 @@ inline constexpr std::int64_t kMaxRecordedSpeeds = 1'000'000;
 /// states the origin and is not read.
 struct RecordedSection {
   FOGLINE_FIELD(std::string, file, {},
-                "CSV file with a header line, relative to the scenario's folder; only a note where "
+                "CSV file with a header line, relative to the scenario's folder; without effect if "
                 "speeds_mps is given.");
   FOGLINE_FIELD(std::string, time_column, "Time", "Name of the column with the time in s.");
   FOGLINE_FIELD(std::string, speed_column, "Speed1", "Name of the column with the speed in m/s.");
-  FOGLINE_FIELD(double, start_s, 0.0, {-1e9, 1e9, "s"}, "Time in the file at which step 0 lies.",
+  FOGLINE_FIELD(double, start_s, 0.0, {-1e9, 1e9, "s"}, "Time in the file that belongs to step 0.",
                 "our choice, because most recordings count from 0; that of recorded_lead.json "
                 "begins at 200 s");
   FOGLINE_FIELD(std::vector<double>, speeds_mps, {}, {0, kMaxRecordedSpeeds}, {0, 70, "m/s"},
-                "Speed at steps 0, 1, 2 ..., instead of a file; the last one holds on.",
+                "Speed at steps 0, 1, 2 ..., instead of a file; the last one stays.",
                 "the recording that file names, or the scenario's own list");
 };
 
@@ -98,14 +99,15 @@ struct RecordedSection {
 struct LeadSection {
   FOGLINE_FIELD(LeadProfile, profile, LeadProfile::kConstant, "Kind of speed profile.");
   FOGLINE_FIELD(double, speed_mps, 20.0, {0, 70, "m/s"},
-                "Speed at step 0 (of every profile but the recorded one).",
+                "Speed at step 0, for every profile except recorded.",
                 "our choice, because the paper prints none; from 20 m/s on the limits of ISO 15622 "
                 "are the tightest");
   FOGLINE_FIELD(std::vector<SpeedBreakpoint>, breakpoints, {}, {0, 10'000},
-                "For profile breakpoints.");
-  FOGLINE_FIELD(SinusoidSection, sinusoid, {}, "For profile sinusoid.");
-  FOGLINE_FIELD(EmergencyBrakeSection, emergency_brake, {}, "For profile emergency_brake.");
-  FOGLINE_FIELD(RecordedSection, recorded, {}, "For profile recorded.",
+                "For profile breakpoints: the speeds, in the order of time.");
+  FOGLINE_FIELD(SinusoidSection, sinusoid, {}, "Parameters of profile sinusoid.");
+  FOGLINE_FIELD(EmergencyBrakeSection, emergency_brake, {},
+                "Parameters of profile emergency_brake.");
+  FOGLINE_FIELD(RecordedSection, recorded, {}, "Parameters of profile recorded.",
                 {.choice = "profile", .value = "recorded", .fields = {"file", "speeds_mps"}});
 };
 
@@ -113,9 +115,10 @@ enum class FogModel { kNone, kBias, kBeam };
 constexpr auto ChoicesOf(FogModel) {
   return std::to_array<Choice>(
       {{"none", "no fog"},
-       {"bias", "the paper's: the LiDAR's range is short by a bias that follows the profile"},
+       {"bias", "the paper's: the LiDAR's range is too short by a bias that follows the profile"},
        {"beam",
-        "the physical one: attenuation, backscatter that can win over the target, dropouts"}});
+        "the physical one: attenuation, dropouts, and backscatter that can be stronger than the "
+        "target's echo"}});
 }
 
 enum class FogProfile { kBox, kHalfSine, kRaisedCosine, kTriangle };
@@ -132,24 +135,25 @@ struct FogSection {
   FOGLINE_FIELD(FogModel, model, FogModel::kNone, "How fog acts on the sensors.");
   FOGLINE_FIELD(FogProfile, profile, FogProfile::kRaisedCosine,
                 "Level over the fog window; x runs from 0 to 1 within it.");
-  FOGLINE_FIELD(double, start_s, 19.0, {0, 1e5, "s"}, "Begin of the fog window.",
+  FOGLINE_FIELD(double, start_s, 19.0, {0, 1e5, "s"}, "Beginning of the fog window.",
                 "Sourav & Cheng 2024: step 190");
   FOGLINE_FIELD(double, duration_s, 11.0, {0, 1e5, "s"},
-                "Length of the fog window; its end does not belong to it.",
+                "Length of the fog window, which excludes its end.",
                 "Sourav & Cheng 2024: steps 190 to 300");
   FOGLINE_FIELD(double, bias_m, 0.34, {0, 100, "m"},
                 "Model bias: how much too short the LiDAR's range is at level 1.",
                 "our choice, because the paper prints none, and 0.2 to 0.4 m meet its table; "
-                "paper.json has one that is calibrated");
-  FOGLINE_FIELD(double, visibility_m, 60.0, {5, 1e5, "m"},
-                "Model beam: meteorological optical range (5 % contrast) at level 1.",
-                "our choice, because at 60 m the fog's echo wins over a car 33 m ahead: the "
-                "crossover is at 23 m for a visibility of 50 m, at 31 m for 75 m (services/lidar)");
+                "paper.json has a calibrated value");
+  FOGLINE_FIELD(
+      double, visibility_m, 60.0, {5, 1e5, "m"},
+      "Model beam: meteorological optical range (5 % contrast) at level 1.",
+      "our choice, because at 60 m the fog's echo is stronger than that of a car 33 m ahead: they "
+      "are equal at 23 m for a visibility of 50 m, at 31 m for 75 m (services/lidar)");
   FOGLINE_FIELD(double, clear_visibility_m, 20000.0, {5, 1e5, "m"},
                 "Meteorological optical range at level 0.", "WMO: 20 km is very clear air");
   FOGLINE_FIELD(double, rain_mmph, 0.0, {0, 200, "mm/h"},
-                "Rain rate throughout; attenuates the radar (ITU-R P.838-3).",
-                "our choice, because the paper's weather is fog alone");
+                "Rain rate during the whole run. Rain attenuates the radar (ITU-R P.838-3).",
+                "our choice, because the paper's weather is only fog");
 };
 
 }  // namespace fogline

@@ -32,10 +32,10 @@ struct PublishedRow {
 struct MeasuresSection {
   FOGLINE_FIELD(
       double, safety_floor_m, 0.001, {0, 10, "m"},
-      "SI looks at fog steps whose compromised safety without traded control is above this.",
+      "SI counts only fog steps whose compromised safety without traded control is above this.",
       "our choice, because it keeps the ratio away from 0/0");
   FOGLINE_FIELD(double, critical_ttc_s, 2.0, {0.1, 60, "s"},
-                "TTC*: TET and TIT look at steps whose time to collision is at most this.",
+                "TTC*: TET and TIT count only steps whose time to collision is at most this.",
                 "CommonRoad-CriMe: 2 s; 1.5 to 4 s are in use");
   FOGLINE_FIELD(double, picud_braking_mps2, 3.3, {0.5, 12, "m/s2"},
                 "Braking of both cars in PICUD.", "3.3 in the literature on PICUD");
@@ -46,27 +46,31 @@ struct MeasuresSection {
                 "m/s, this one 22 m");
   FOGLINE_FIELD(double, rss_acceleration_mps2, 2.0, {0, 10, "m/s2"},
                 "RSS: acceleration of the car behind until it responds.",
-                "our choice, because of what rss_response_s says");
+                "our choice, because it belongs to the set of values that rss_response_s explains");
   FOGLINE_FIELD(double, rss_least_braking_mps2, 6.0, {0.5, 12, "m/s2"},
-                "RSS: braking that the car behind answers with at least.",
-                "our choice, because of what rss_response_s says");
+                "RSS: smallest braking of the car behind after its response time.",
+                "our choice, because it belongs to the set of values that rss_response_s explains");
   FOGLINE_FIELD(double, rss_most_braking_mps2, 8.0, {0.5, 12, "m/s2"},
                 "RSS: strongest braking of the car ahead.", "ad-rss-lib: 8");
   FOGLINE_FIELD(double, madr_mean_mps2, 8.45, {0.1, 20, "m/s2"},
-                "CPI: mean of a car's maximum available deceleration.",
+                "CPI: mean of the maximum available deceleration of cars.",
                 "Cunto & Saccomanno 2008, as CommonRoad-CriMe has it");
-  FOGLINE_FIELD(double, madr_std_mps2, 1.40, {0.01, 10, "m/s2"}, "CPI: its standard deviation.",
+  FOGLINE_FIELD(double, madr_std_mps2, 1.40, {0.01, 10, "m/s2"},
+                "CPI: standard deviation of this deceleration.",
                 "Cunto & Saccomanno 2008, as CommonRoad-CriMe has it");
-  FOGLINE_FIELD(double, madr_least_mps2, 4.23, {0, 10, "m/s2"}, "CPI: no car has less.",
+  FOGLINE_FIELD(double, madr_least_mps2, 4.23, {0, 10, "m/s2"},
+                "CPI: smallest value of this deceleration.",
                 "Cunto & Saccomanno 2008, as CommonRoad-CriMe has it");
-  FOGLINE_FIELD(double, madr_most_mps2, 12.68, {10, 30, "m/s2"}, "CPI: no car has more.",
+  FOGLINE_FIELD(double, madr_most_mps2, 12.68, {10, 30, "m/s2"},
+                "CPI: largest value of this deceleration.",
                 "Cunto & Saccomanno 2008, as CommonRoad-CriMe has it");
   FOGLINE_FIELD(
       double, handover_s, 3.0, {0.01, 60, "s"},
-      "How long after a change of the authorities jerk counts as that of the hand-over.",
-      "our choice, because the longest ramp or gate by default is 2 s, and a car has a lag");
+      "Time after a change of the authorities in which jerk counts as that of the hand-over.",
+      "our choice, because by default the longest ramp or gate is 2 s, and a car responds with a "
+      "lag");
   FOGLINE_FIELD(double, lidar_tolerance_m, 0.1, {1e-3, 100, "m"},
-                "Error of a distance from which on it counts as wrong.",
+                "Error from which on a distance counts as wrong.",
                 "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
 };
 
@@ -74,7 +78,8 @@ struct Scenario {
   FOGLINE_FIELD(std::int64_t, version, 1, {1, 1}, "Version of this file format.",
                 "our choice, because formats count from 1");
   FOGLINE_FIELD(std::string, title, {}, "One line that names the experiment.");
-  FOGLINE_FIELD(std::string, description, {}, "What it is for, and where its numbers come from.");
+  FOGLINE_FIELD(std::string, description, {},
+                "Purpose of the experiment, and the sources of its numbers.");
   FOGLINE_FIELD(std::int64_t, seed, 1, {0, 9'007'199'254'740'991},
                 "Seed of every random number of the run.",
                 "our choice, because seeds count from 1; the paper names none");
@@ -83,9 +88,10 @@ struct Scenario {
   FOGLINE_FIELD(double, step_s, 0.1, {0.001, 1, "s"}, "Length of a step.",
                 "Sourav & Cheng 2024: 0.1 s");
   FOGLINE_FIELD(WorldSection, world, {}, "The cars at step 0, and their integration.");
-  FOGLINE_FIELD(RoadSection, road, {}, "What the cars drive on.");
-  FOGLINE_FIELD(VehicleSection, host_vehicle, {}, "How the host obeys its driver.");
-  FOGLINE_FIELD(VehicleSection, follower_vehicle, {}, "How following cars obey theirs.");
+  FOGLINE_FIELD(RoadSection, road, {}, "Surface and slope of the road.");
+  FOGLINE_FIELD(VehicleSection, host_vehicle, {}, "How the host carries out an acceleration.");
+  FOGLINE_FIELD(VehicleSection, follower_vehicle, {},
+                "How following cars carry out an acceleration.");
   FOGLINE_FIELD(LeadSection, lead, {}, "Speed of the preceding car.");
   FOGLINE_FIELD(FogSection, fog, {}, "Fog and rain over time.");
   FOGLINE_FIELD(RadarSection, radar, {}, "The host's radar.");
@@ -93,14 +99,15 @@ struct Scenario {
   FOGLINE_FIELD(FusionSection, fusion, {}, "Extended Kalman filter over both.");
   FOGLINE_FIELD(AccSection, acc, {}, "The host's automation agent.");
   FOGLINE_FIELD(DriverSection, driver, {}, "The human driver of the host.");
-  FOGLINE_FIELD(HumanSection, human, {}, "What makes him more human than the paper's.");
+  FOGLINE_FIELD(HumanSection, human, {},
+                "Human weaknesses of the driver, which the paper's driver lacks.");
   FOGLINE_FIELD(ArbitratorSection, arbitrator, {}, "Who drives the host.");
   FOGLINE_FIELD(AccSection, follower, {}, "ACC of the following car.");
   FOGLINE_FIELD(FollowersSection, followers, {}, "The cars behind the host, and who drives them.");
   FOGLINE_FIELD(HealthSection, health, {}, "Real time: when an input counts as stale or lost.");
   FOGLINE_FIELD(MinimalRiskSection, minimal_risk, {},
                 "Real time: how a car stops when neither automation nor human drives it.");
-  FOGLINE_FIELD(MeasuresSection, measures, {}, "How runs are judged.");
+  FOGLINE_FIELD(MeasuresSection, measures, {}, "Parameters of the measures.");
   FOGLINE_FIELD(std::vector<PublishedRow>, published, {}, {0, 100},
                 "A published table; `fogline table` prints it beside its own.");
 };

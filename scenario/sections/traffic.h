@@ -15,8 +15,8 @@ enum class FollowerDriver { kAcc, kHuman, kDrawn };
 constexpr auto ChoicesOf(FollowerDriver) {
   return std::to_array<Choice>(
       {{"acc", "the paper's: the ACC of section follower, with perfect sensors"},
-       {"human", "a person of some style (services/models/follower)"},
-       {"drawn", "one of the two, drawn by seed; acc_share says how often which"}});
+       {"human", "a human driver of some style (services/models/follower)"},
+       {"drawn", "one of the two, drawn by seed; acc_share is the probability of acc"}});
 }
 
 enum class FollowerStyle { kAggressive, kNormal, kCautious, kDrawn };
@@ -40,33 +40,37 @@ inline constexpr std::int64_t kMaxFollowers = 32;
 
 /// One following car that differs from the other following cars.
 struct FollowerCar {
-  FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Who drives it.");
-  FOGLINE_FIELD(FollowerStyle, style, FollowerStyle::kNormal, "For a person: of which temper.");
+  FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Driver of the car.");
+  FOGLINE_FIELD(FollowerStyle, style, FollowerStyle::kNormal,
+                "For a human driver: style of driving.");
 };
 
 /// The cars behind the host. Each starts with the speed and the gap of world.follower_*.
 struct FollowersSection {
   FOGLINE_FIELD(std::int64_t, count, 1, {1, kMaxFollowers}, "How many cars follow the host.",
-                "Sourav & Cheng 2024: 1; at most what a datagram of TRUTH holds");
-  FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Who drives them.");
+                "Sourav & Cheng 2024: 1; the upper limit is what a datagram of TRUTH holds");
+  FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Drivers of the following cars.");
   FOGLINE_FIELD(double, acc_share, 0.5, {0, 1},
                 "For driver drawn: probability that a car has the ACC.",
-                "our choice, because half and half favours neither");
-  FOGLINE_FIELD(FollowerStyle, style, FollowerStyle::kNormal, "For a person: of which temper.");
-  FOGLINE_FIELD(double, aggressive_share, 1.0, {0.001, 1000},
-                "For style drawn: how common it is, beside the other two shares.",
-                "our choice, because all three are to be alike");
+                "our choice, because equal shares favour neither");
+  FOGLINE_FIELD(FollowerStyle, style, FollowerStyle::kNormal,
+                "For a human driver: style of driving.");
+  FOGLINE_FIELD(
+      double, aggressive_share, 1.0, {0.001, 1000},
+      "For style drawn: how common style aggressive is, relative to the other two shares.",
+      "our choice, because all three should be equally common");
   FOGLINE_FIELD(double, normal_share, 1.0, {0.001, 1000}, "For style drawn, as aggressive_share.",
-                "our choice, because all three are to be alike");
+                "our choice, because all three should be equally common");
   FOGLINE_FIELD(double, cautious_share, 1.0, {0.001, 1000}, "For style drawn, as aggressive_share.",
-                "our choice, because all three are to be alike");
-  FOGLINE_FIELD(Sight, sight, Sight::kPerfect,
-                "For people: what they see; with fog, by section human.fog_sight.");
+                "our choice, because all three should be equally common");
+  FOGLINE_FIELD(
+      Sight, sight, Sight::kPerfect,
+      "For human drivers: what they see. Sight fog has the parameters of human.fog_sight.");
   FOGLINE_FIELD(SafetyModelChoice, safety_model, SafetyModelChoice::kNone,
-                "What a following person does in danger, on top of following.");
+                "For human drivers: how they react to danger, in addition to following.");
   FOGLINE_FIELD(std::vector<FollowerCar>, cars, {}, {0, kMaxFollowers},
-                "The first so many cars one by one, nearest to the host first; the others are as "
-                "above. What is beyond count is not there.");
+                "Drivers of single cars, nearest to the host first. The other cars follow the "
+                "fields above. Entries beyond count have no effect.");
 };
 
 }  // namespace fogline

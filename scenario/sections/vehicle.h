@@ -13,7 +13,7 @@ namespace fogline {
 enum class VehicleModel { kPointMass, kLongitudinal };
 constexpr auto ChoicesOf(VehicleModel) {
   return std::to_array<Choice>(
-      {{"point_mass", "the paper's: it does what it is told"},
+      {{"point_mass", "the paper's: it follows its commands exactly"},
        {"longitudinal", "engine, brakes, tyres, drag and hills (services/models/vehicle)"}});
 }
 
@@ -42,9 +42,10 @@ struct GradePoint {
 
 /// The road under all cars. It has no effect on a point mass.
 struct RoadSection {
-  FOGLINE_FIELD(Surface, surface, Surface::kDry, "How well tyres hold.");
+  FOGLINE_FIELD(Surface, surface, Surface::kDry,
+                "Surface of the road, which sets the friction of the tyres.");
   FOGLINE_FIELD(std::vector<GradePoint>, grade, {}, {0, 10'000},
-                "Slope, linear between places; no places are a level road.");
+                "Slope, linear between places. Without places the road is level.");
 };
 
 /// One car, or all cars of a kind.
