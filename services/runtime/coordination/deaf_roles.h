@@ -23,7 +23,7 @@ struct Deafness {
   Duration missed;      // for how long; time counts only while its producer is known to publish it
 };
 
-/// "has heard no TRUTH for 2.1 s, which the world has published all the while".
+/// "has heard no TRUTH for 2.1 s, although the world has published it".
 std::string Text(const Deafness& deaf);
 
 class DeafRoles {
