@@ -35,15 +35,15 @@ std::string LineOf(const Comparison& comparison, std::size_t c, std::size_t vari
   const std::int64_t cut_short = comparison.PairsCutShort({c, variant}, {c, 0});
   if (cut_short > 0) {
     return fmt::format(
-        "{}: collisions {} instead of {}; the runs of {} of {} seeds end early, so that neither SI "
-        "nor "
-        "compromised safety is compared.",
+        "{}: collisions {} instead of {}; the runs of {} of {} seeds end early, so SI and "
+        "compromised safety are not compared.",
         label, Text(with), Text(without), cut_short, comparison.seeds());
   }
   const Estimate si = comparison.Mean({c, variant}, "si_pct");
   std::string line = fmt::format("{}: ", label);
   line += si.n == 0
-              ? std::string("no run has an SI, for none compromises safety without traded control")
+              ? std::string(
+                    "no run has an SI, because no run compromises safety without traded control")
               : fmt::format("SI {} % (n = {})", Text(si, 1), si.n);
   line += fmt::format(", mean compromised safety in fog {} m instead of {} m",
                       Text(comparison.Mean({c, variant}, kShortfall), 3),
@@ -152,22 +152,21 @@ std::string VerdictFinding(const Comparison& comparison, std::size_t variant, st
   const std::size_t counted = comparison.cases().size() - same.size() - same_runs.size() -
                               by_verdict[CaseVerdict::kNothing].size();
   std::string text = fmt::format(
-      "{} against {}, in {} cases that count: it collides more often in {}, and of those in which "
-      "every run lasts it reduces the compromised safety in fog in {}.",
+      "{} against {}, in {} counted cases. It collides more often in {} of them. It reduces the "
+      "compromised safety in fog in {} of those in which every run lasts.",
       Capital(name), than, counted, by_verdict[CaseVerdict::kCollidesMore].size(),
       by_verdict[CaseVerdict::kReduces].size());
   text += part(CaseVerdict::kCollidesMore, "It collides more in");
   text += part(CaseVerdict::kCollidesLess, "It collides less in");
   text += part(CaseVerdict::kCutShort,
-               "Runs end in collisions, about as often with either, so that safety is not compared "
-               "in");
-  text += part(CaseVerdict::kReduces, "It reduces it in");
-  text += part(CaseVerdict::kIncreases, "It increases it in");
-  text += part(CaseVerdict::kUndecided, "It makes no difference that can be told in");
+               "Runs end in collisions about as often with both, so safety is not compared in");
+  text += part(CaseVerdict::kReduces, "It reduces compromised safety in");
+  text += part(CaseVerdict::kIncreases, "It increases compromised safety in");
+  text += part(CaseVerdict::kUndecided, "It makes no significant difference in");
   text += part(CaseVerdict::kTooFew, "Too few runs for an interval in");
-  text += part(CaseVerdict::kNothing, "Not counted, for neither compromises safety in any run");
-  text += list(fmt::format("Not counted, for the runs are those of {}", than), same_runs);
-  text += list("Not counted, for they have the runs of another case (in brackets)", same);
+  text += part(CaseVerdict::kNothing, "Not counted, because neither compromises safety in any run");
+  text += list(fmt::format("Not counted, because the runs are those of {}", than), same_runs);
+  text += list("Not counted, because they have the runs of another case (in brackets)", same);
   return text;
 }
 

@@ -119,12 +119,13 @@ std::string FindingOfDensity(const Comparison& comparison) {
     return names.empty() ? std::string("at no visibility") : fmt::format("at {}", ListText(names));
   };
   return fmt::format(
-      "Over the density of the fog, a human who sees and misjudges it leaves more compromised "
-      "safety than the paper's driver {}, and more than no traded control at all {}.{}",
+      "Over the density of the fog, a human with imperfect sight and judgement leaves more "
+      "compromised safety than the paper's driver {}. It leaves more than runs without traded "
+      "control {}.{}",
       list(worse_than_paper), list(worse_than_none),
       cut_short.empty()
           ? ""
-          : fmt::format(" Runs end early, so that it is not compared, {}.", list(cut_short)));
+          : fmt::format(" Runs end early, so they are not compared, {}.", list(cut_short)));
 }
 
 }  // namespace
@@ -148,15 +149,15 @@ StudyResult RunDriverStudy(const StudyContext& context) {
       OverVisibility(comparison, "collided", "driver-collisions-visibility",
                      "Collisions over the density of the fog"),
       OverVisibility(comparison, "min_host_ttc_s", "driver-ttc-visibility",
-                     "The host's least time to collision over the density of the fog (s)"),
+                     "The host's smallest time to collision over the density of the fog (s)"),
       OverVisibility(comparison, "max_abs_jerk_mps3", "driver-jerk-visibility",
                      "Largest jerk over the density of the fog (m/s3)")};
   section.tables = {comparison.TableOfVariant(0, kTableMeasures),
                     comparison.TableOfVariant(1, kTableMeasures)};
   section.method = fmt::format(
       "{} seeds of dense_fog.json with other human drivers of the host, without and with traded "
-      "control; sight, errors and awareness with their defaults. The run without traded control "
-      "does not see the driver and is the same for all of them at equal visibility.",
+      "control; sight, errors and awareness with their defaults. Without traded control the driver "
+      "has no effect, so at equal visibility this run is the same for all drivers.",
       comparison.seeds());
   result.files = {{"driver.csv", comparison.Csv(0)}};
   return result;

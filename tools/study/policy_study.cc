@@ -74,7 +74,7 @@ std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case
   if (!win.empty()) {
     text += fmt::format("{} {} isolate. ", Capital(ListText(win)), verb(win, "beats", "beat"));
   }
-  if (lose.empty() && win.empty()) text += "No hand-over can be told apart from isolate. ";
+  if (lose.empty() && win.empty()) text += "No hand-over differs significantly from isolate. ";
   return text + fmt::format("Mean compromised safety in fog against isolate: {}.",
                             AgainstText(comparison, test_case, handovers, isolate,
                                         "mean_compromised_safety_fog_m", "m", 4));
@@ -111,14 +111,14 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
       comparison.FigureOf("rhe_pct", "policy-rhe", "Redundant human engagement by policy"),
       comparison.FigureOf("max_abs_jerk_mps3", "policy-jerk", "Comfort by policy: largest jerk"),
       comparison.FigureOf("wrong_automation_s", "policy-wrong",
-                          "Time of an automation that is deceived, by policy")};
+                          "Driving time of a deceived automation, by policy")};
   section.method = fmt::format(
-      "{} seeds of paper.json, of the same with a radar whose mounting offset is calibrated out "
-      "(and taken off the centre of the DoC), and of dense_fog.json, each with every policy as it "
-      "is by default. SI is the paper's, against the run without traded control of the same seed; "
-      "it ends where one of the two runs does (a collision), and is a mean of ratios of small "
-      "numbers: mean compromised safety is beside it. The paper's radar is 0.946 m off, so "
-      "whoever drops the LiDAR for it drives with that error.",
+      "{} seeds of paper.json, of paper.json with a calibrated radar (without its mounting offset, "
+      "which is subtracted from the centre of the DoC), and of dense_fog.json, each with every "
+      "policy at its defaults. SI is the paper's, against the run without traded control of the "
+      "same seed. It is computed until one of the two runs ends (a collision). SI is a mean of "
+      "ratios of small numbers, so mean compromised safety is beside it. The paper's radar has an "
+      "offset of 0.946 m, so a policy that uses only the radar drives with this error.",
       comparison.seeds());
   result.files = {{"policy.csv", comparison.Csv(comparison.VariantNamed("traded"))}};
   return result;

@@ -102,7 +102,7 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
       fmt::format("{} {} {}{}", Text(size, decimals), unit, less ? "less" : "more", than);
   const Verdict verdict = VerdictOf(difference);
   if (verdict == Verdict::kUndecided) {
-    text += fmt::format(", which is no difference that {} pairs of runs can tell", difference.n);
+    text += fmt::format(", which is not significant in {} pairs of runs", difference.n);
   }
   if (verdict == Verdict::kTooFew) text += ", with too few runs for an interval";
   return text;
@@ -149,7 +149,7 @@ std::string AgainstText(const Comparison& comparison, std::size_t test_case,
   if (!less.empty()) parts.push_back(fmt::format("less for {}", ListText(less)));
   if (!more.empty()) parts.push_back(fmt::format("more for {}", ListText(more)));
   if (!undecided.empty())
-    parts.push_back(fmt::format("not to be told apart for {}", ListText(undecided)));
+    parts.push_back(fmt::format("no significant difference for {}", ListText(undecided)));
   if (!too_few.empty()) {
     parts.push_back(fmt::format("too few runs for an interval for {}", ListText(too_few)));
   }

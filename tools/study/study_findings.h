@@ -34,7 +34,7 @@ std::string RankingText(const Comparison& comparison, std::size_t test_case,
                         std::string_view measure, int decimals, Better better);
 
 /// "12.3 [11.0, 13.6] points more than before", "0.1 [-0.2, 0.4] points more than before, which is
-/// no difference that 300 pairs of runs can tell", "..., with too few runs for an interval".
+/// not significant in 300 pairs of runs", "..., with too few runs for an interval".
 /// @param than such as " than before", or ""
 std::string DifferenceText(const Estimate& difference, std::string_view unit, int decimals,
                            std::string_view than = "");
@@ -46,8 +46,8 @@ std::string Capital(std::string text);
 std::string ListText(const std::vector<std::string>& names);
 
 /// Groups `variants` by the difference of a measure from variant `reference`: "less for a (by ...);
-/// more for b (by ...); not to be told apart for c; too few runs for an interval for d". Variants
-/// with the same runs as the reference are left out.
+/// more for b (by ...); no significant difference for c; too few runs for an interval for d".
+/// Variants with the same runs as the reference are left out.
 std::string AgainstText(const Comparison& comparison, std::size_t test_case,
                         const std::vector<std::size_t>& variants, std::size_t reference,
                         std::string_view measure, std::string_view unit, int decimals);

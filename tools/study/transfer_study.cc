@@ -51,7 +51,7 @@ std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::s
   const metrics::EventShare comfortable =
       comparison.AtMost({c, v}, "max_handover_jerk_mps3", kComfortableJerk_mps3);
   const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
-  return fmt::format("{} has {} m/s3 (at most {:g} in {} of {} runs, worst {}) and an SI of {}",
+  return fmt::format("{} has {} m/s3 (at most {:g} in {} of {} runs, worst {}), and its SI is {}",
                      comparison.variants()[v].name, Text(jerk, 2), kComfortableJerk_mps3,
                      comfortable.events, comfortable.runs,
                      Text(Greatest(comparison.Values({c, v}, "max_handover_jerk_mps3")), 2),
@@ -83,13 +83,12 @@ std::string FindingOfStep(const Comparison& comparison) {
   }
   std::string text = "Where does a smooth transfer matter? The plain step";
   if (!enough.empty()) {
-    text += fmt::format(" stays within {:g} m/s3 in every run of {} already", kComfortableJerk_mps3,
+    text += fmt::format(" already stays within {:g} m/s3 in every run of {}", kComfortableJerk_mps3,
                         ListText(enough));
   }
   if (!enough.empty() && !matters.empty()) text += "; it";
   if (!matters.empty()) {
-    text +=
-        fmt::format(" does not in {}, which is where there is jerk to spare", ListText(matters));
+    text += fmt::format(" does not in {}, so jerk can be reduced there", ListText(matters));
   }
   return text + ".";
 }
@@ -104,10 +103,9 @@ std::string VerdictText(const Comparison& comparison, std::size_t c) {
     const bool met = IsComfortable(comparison, {c, v}) && si.mean >= -kTolerableLoss;
     (met ? meet : fail).push_back(comparison.variants()[v].name);
   }
-  std::string text = fmt::format(
-      "At most {:g} m/s3 in every run at a mean loss of SI of at most "
-      "{:g} points: ",
-      kComfortableJerk_mps3, kTolerableLoss);
+  std::string text =
+      fmt::format("At most {:g} m/s3 in every run, and a mean loss of SI of at most {:g} points: ",
+                  kComfortableJerk_mps3, kTolerableLoss);
   text += meet.empty() ? "none" : ListText(meet);
   return text + (fail.empty() ? "." : fmt::format("; not {}.", ListText(fail)));
 }
@@ -141,13 +139,13 @@ StudyResult RunTransferStudy(const StudyContext& context) {
   }
   section.figures = {
       comparison.FigureOf("max_handover_jerk_mps3", "transfer-jerk", "Jerk at hand-overs"),
-      comparison.FigureOf("si_pct", "transfer-si", "What it costs in safety"),
+      comparison.FigureOf("si_pct", "transfer-si", "Cost in safety"),
       comparison.FigureOf("max_handover_jump_mps2", "transfer-jump",
                           "Jump of the command at hand-overs"),
       comparison.FigureOf("rms_jerk_mps3", "transfer-rms", "Comfort of the whole run")};
   section.method = fmt::format(
       "{} seeds of each scenario at threshold 0.5, profiles and gate with their defaults. The jerk "
-      "of a hand-over is the largest of the host's applied acceleration while the authorities "
+      "of a hand-over is the largest jerk of the host's applied acceleration while the authorities "
       "change and for measures.handover_s after that (3 s by default). Differences are paired by "
       "seed.",
       comparison.seeds());

@@ -109,18 +109,16 @@ std::string MethodOf(const Comparison& comparison) {
   const double hardest = HardestOf(comparison);
   const double wet = models::FrictionOf(Surface::kWet) * kGravity_mps2;
   return fmt::format(
-      "{} seeds of paper.json, of dense_fog.json, and of the latter with a leader who brakes with "
-      "6 m/s2 from 20 to 7 m/s in the middle of the fog; host and follower as cars of that kind, "
-      "without traded control, with the paper's step, and with a jerk-limited transfer. ACC and "
-      "driver are those that were tuned for the point mass. Cases were chosen for what they are "
-      "called after to bind: delay and lag in every car, the little power that a truck has left on "
-      "a slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
-      "sedan, so that it is asked for under hard braking only. A wet road is not among them: it "
-      "holds "
-      "{:.1f} m/s2, and the hardest acceleration or braking of a host in any of these runs is "
-      "{:.1f} m/s2{}.",
+      "{} seeds of paper.json, of dense_fog.json, and of dense_fog.json with a leader that brakes "
+      "with 6 m/s2 from 20 to 7 m/s in the middle of the fog. Host and follower are cars of that "
+      "kind, without traded control, with the paper's step, and with a jerk-limited transfer. ACC "
+      "and driver are tuned for the point mass. In each case the limit takes effect after which "
+      "the case is named: delay and lag in every car, the little power that a truck has left on a "
+      "slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
+      "sedan, so it appears only under hard braking. No case has a wet road: it holds {:.1f} m/s2, "
+      "and the hardest acceleration or braking of a host in any of these runs is {:.1f} m/s2{}.",
       comparison.seeds(), wet, hardest,
-      hardest < wet ? ", so that it would be the dry road again" : "");
+      hardest < wet ? ", so a wet road would give the results of the dry road" : "");
 }
 
 }  // namespace

@@ -81,15 +81,15 @@ std::string UnrankedText(const ConflictSet& set) {
   std::string text;
   if (!never.empty()) {
     text += fmt::format(
-        " Not ranked, for they never alarm in clear air at the least threshold that is quiet "
-        "enough, and with a lower one too often: {}.",
+        " Not ranked: {}. At their smallest quiet threshold they never alarm in clear air, and "
+        "below it they alarm too often.",
         ListText(never));
   }
   if (!seldom.empty()) {
     text += fmt::format(
-        " Not ranked, for the alarms of their least threshold that is quiet enough are more than "
-        "{:g} times as rare as asked for: {}.",
-        kLoosest, ListText(seldom));
+        " Not ranked: {}. At their smallest quiet threshold, alarms are more than {:g} times as "
+        "rare as required.",
+        ListText(seldom), kLoosest);
   }
   return text;
 }
@@ -129,14 +129,17 @@ std::string AgainstDoc(const ConflictSet& set, std::span<const std::size_t> rank
     }
   }
   std::string text;
-  const auto add = [&](const std::vector<std::string>& names, std::string_view what) {
+  const auto add = [&](const std::vector<std::string>& names, std::string_view one,
+                       std::string_view many) {
     if (names.empty()) return;
-    text += fmt::format(" {} of the others {}: {}.", names.size(), what, Listed(names));
+    text += fmt::format(" {} other {}: {}.", names.size(), names.size() == 1 ? one : many,
+                        Listed(names));
   };
-  add(sooner, "sooner than it");
-  add(later, "later");
-  add(undecided, "not to be told apart from it");
-  add(too_few, "with too few runs for an interval");
+  add(sooner, "measure is sooner", "measures are sooner");
+  add(later, "measure is later", "measures are later");
+  add(undecided, "measure does not differ significantly", "measures do not differ significantly");
+  add(too_few, "measure has too few runs for an interval",
+      "measures have too few runs for an interval");
   return text;
 }
 
@@ -189,7 +192,7 @@ std::string FindingOfArlZero(const ConflictSet& set, std::span<const std::size_t
     }
     as_calibrated += AlarmsAsCalibrated(threshold) ? 1 : 0;
   }
-  return fmt::format("{}: {} of {}{}{} ({} differ from their calibration by no more than chance)",
+  return fmt::format("{}: {} of {}{}{} ({} agree with their calibration, up to chance)",
                      NameOfSet(set), ranked.size() - others.size(), ranked.size(),
                      others.empty() ? "" : ", but not ", ListText(others), as_calibrated);
 }
@@ -203,7 +206,7 @@ std::string PercentText(const Estimate& share) {
 report::StudyTable TableOf(const ConflictSet& set, std::span<const std::size_t> ranked) {
   report::StudyTable table{
       .caption = fmt::format("Fog model {}: mean over visibilities, soonest first", NameOfSet(set)),
-      .columns = {"measure", "fog to alarm (s)", "less or more than DoC (s)", "AUC",
+      .columns = {"measure", "fog to alarm (s)", "difference from DoC (s)", "AUC",
                   "ARL0 in other clear runs (s)"}};
   for (const double visibility_m : kVisibilities_m) {
     table.columns.push_back(fmt::format("detected at {:g} m (%)", visibility_m));
@@ -348,31 +351,30 @@ report::StudyFigure RocOf(const ConflictOutcome& outcome, std::span<const std::s
 
 std::string MethodOf(const StudyContext& context) {
   return fmt::format(
-      "scenario/paper.json with the human at the wheel throughout (threshold 0), so that no "
-      "measure changes what the next one sees; {0} seeds of fog for each condition. Fog model bias "
-      "has the bias of the scenario at {1:g} m of visibility and in proportion to the extinction "
-      "else (our choice: the model itself knows no visibility); model beam is the physics of the "
-      "LiDAR's beam. Every measure is told the true mounting offset and takes a missing value for "
-      "a conflict; bins are as wide as the larger standard deviation of the two sensors, and the "
-      "SPRT looks for a shift of one standard deviation of their difference, as the CUSUM does. "
-      "With that SPRT and CUSUM are one test in two scales: they differ where a bound of the one "
-      "cuts off what the other still tells, if at all, and count as one. "
-      "Thresholds: the least with a mean time to the first alarm of {2:g} s ({3:g} false alarms an "
-      "hour) in {0} runs of {4:g} s in clear air with other seeds; a measure whose least threshold "
-      "has none or more than {5:g} times that is not ranked. ARL0 is counted again in as many "
-      "runs, of other seeds. Delay from fog to alarm: from the begin of the fog to the first alarm "
-      "within it; a fog that is never noticed counts with its whole length of {6:g} s, so that no "
-      "measure gains by missing what is hard to see. It is not deception_to_alarm_s of a run, "
-      "which counts from the first step with a LiDAR that is off by more than its tolerance, has "
-      "the scenario's own threshold, and is 0 where the alarm is there by then. Intervals of this "
-      "delay and of detection: {7} resamples of the runs in "
-      "clear air, with a threshold found anew in each, and of the seeds of the fog, the same for "
-      "all measures and visibilities; so the uncertainty of the threshold is in them, and "
-      "differences are paired. Detection is given by visibility, with the interval of Clopper and "
-      "Pearson where that is wider. AUC (Mann and Whitney): steps in fog of level at least 1/2 "
-      "against every {8}th step in clear air; AUC and ROC are means over {9} batches of runs in "
-      "fog, each against runs in clear air of its own. Intervals hold one by one, not for all "
-      "comparisons at once.",
+      "scenario/paper.json, in which the human always drives (threshold 0), so that no measure "
+      "affects the inputs of the others; {0} seeds of fog for each condition. Fog model bias has "
+      "the bias of the scenario at {1:g} m of visibility. At other visibilities the bias is "
+      "proportional to the extinction (our choice, because the model has no visibility). Fog model "
+      "beam is the physics of the LiDAR's beam. Every measure knows the true mounting offset and "
+      "counts a missing value as a conflict. Bins are as wide as the larger standard deviation of "
+      "the two sensors. SPRT and CUSUM look for a shift of one standard deviation of the sensors' "
+      "difference. So they are one test in two scales, and count as one. They can differ only if a "
+      "bound cuts off the score of one of them. Threshold: the smallest one with a mean time to "
+      "the first alarm of {2:g} s ({3:g} false alarms an hour) in {0} runs of {4:g} s in clear air "
+      "with other seeds. A measure is not ranked if at this threshold it has no alarm, or a mean "
+      "time more than {5:g} times as long. ARL0 is counted again in as many runs with other seeds. "
+      "Delay from fog to alarm: time from the beginning of the fog to the first alarm in it. A fog "
+      "without an alarm counts with its whole length of {6:g} s, so that no measure gains by "
+      "missing a fog. It is not deception_to_alarm_s of a run. That time begins at the first step "
+      "with a LiDAR error above its tolerance, is taken at the scenario's own threshold, and is 0 "
+      "if there is already an alarm. Intervals of this delay and of detection: {7} resamples of "
+      "the runs in clear air, each with its own threshold, and of the seeds of the fog. The "
+      "resamples are the same for all measures and visibilities. So the intervals contain the "
+      "uncertainty of the threshold, and differences are paired. Detection is given by visibility, "
+      "with the interval of Clopper and Pearson if that is wider. AUC (Mann and Whitney): steps in "
+      "fog of level at least 1/2 against every {8}th step in clear air. AUC and ROC are means over "
+      "{9} batches of runs in fog, each against its own runs in clear air. Each interval holds by "
+      "itself, not for all comparisons together.",
       context.seeds.count(), kReferenceVisibility_m, kArlZero_s, kHour_s / kArlZero_s, kClearRun_s,
       kLoosest, kFog_s, kReplicates, kClearStride, std::min(kBatches, context.seeds.count()));
 }
@@ -403,12 +405,12 @@ StudyResult RunConflictStudy(const StudyContext& context) {
     section.figures.push_back(RocOf(set.outcomes[set.outcomes.size() / 2], ranked,
                                     fmt::format("conflict-roc-{}", set.fog)));
   }
-  section.findings.push_back(fmt::format(
-      "Do thresholds keep their promise of an ARL0 of {:g} s in clear air that they "
-      "were not found in? The 95 % interval of the ARL0 there has it for so many of those with "
-      "a threshold: {}. A threshold is an estimate too, from as many runs, and without "
-      "any flaw more than one in twenty of these intervals would miss.",
-      kArlZero_s, fmt::join(arl_zero, "; ")));
+  section.findings.push_back(
+      fmt::format("Do thresholds keep an ARL0 of {:g} s in other runs in clear air? Number of "
+                  "measures with a threshold whose 95 % interval of the ARL0 contains it: {}. A "
+                  "threshold is an estimate, too, from as many runs. So even without any flaw, "
+                  "more than one in twenty of these intervals would not contain it.",
+                  kArlZero_s, fmt::join(arl_zero, "; ")));
   section.method = MethodOf(context);
   result.files = {{"conflict.csv", CsvOf(sets)}, {"conflict-roc.csv", RocCsvOf(sets)}};
   return result;

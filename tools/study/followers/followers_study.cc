@@ -100,10 +100,10 @@ std::string FindingOf(const StringOutcome& string) {
       verdict = "the disturbance grows along the string";
       break;
     case Verdict::kLess:
-      verdict = "it dies down along the string";
+      verdict = "the disturbance decreases along the string";
       break;
     case Verdict::kUndecided:
-      verdict = "it neither grows nor dies down by more than chance";
+      verdict = "the disturbance does not change significantly along the string";
       break;
     case Verdict::kTooFew:
       verdict = "too few runs for an interval";
@@ -111,8 +111,8 @@ std::string FindingOf(const StringOutcome& string) {
   }
   return fmt::format(
       "String of {}, {}: the host brakes with at most {} m/s2, follower 1 with {}, follower {} "
-      "with {}: {} (last less first {} m/s2). Ratio to the car ahead, place by place: {}. Least "
-      "time to collision: follower 1 {} s, follower {} {} s.",
+      "with {}: {} (last minus first {} m/s2). Ratio to the car ahead, place by place: {}. "
+      "Smallest time to collision: follower 1 {} s, follower {} {} s.",
       string.kind, string.variant, Text(EstimateOf(string.cars[0].max_deceleration_mps2), 2),
       Text(EstimateOf(first.max_deceleration_mps2), 2), kStringCars,
       Text(EstimateOf(last.max_deceleration_mps2), 2), verdict, Text(growth, 2),
@@ -216,8 +216,8 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
                 &CarInString::max_deceleration_mps2));
     section.figures.push_back(ByPlace(strings, variant.name,
                                       fmt::format("followers-string-ttc-{}", variant.name),
-                                      "Least time to collision along a string",
-                                      "Least time to collision (s)", &CarInString::min_ttc_s));
+                                      "Smallest time to collision along a string",
+                                      "Smallest time to collision (s)", &CarInString::min_ttc_s));
   }
   result.files.push_back({"followers-string.csv", CsvOf(strings)});
 }
@@ -251,19 +251,19 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
                      comparison.FigureOf("max_follower_drac_mps2", "followers-drac",
                                          "How hard the follower has to brake", true),
                      comparison.FigureOf("min_follower_ttc_s", "followers-ttc",
-                                         "Least time to collision of the follower", true),
+                                         "Smallest time to collision of the follower", true),
                      comparison.FigureOf("collided", "followers-collisions", "Collisions", true)};
   section.tables = {comparison.TableOfVariant(0, kTableMeasures),
                     comparison.TableOfVariant(1, kTableMeasures)};
   section.method = fmt::format(
       "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
-      "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC: "
-      "another driver has until the fog begins to find his own. Measures are those of the first "
-      "car behind the host; collisions are those of any car. A person is the IDM of his style "
-      "behind the Human Driver Model's errors and reaction time. Strings: {} cars of a kind behind "
-      "the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled; "
-      "measures are those from a second before the fog on. Braking of less than 0.01 m/s2 has no "
-      "ratio behind it.",
+      "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC. Other "
+      "drivers reach their own gap before the fog begins. Measures are those of the first car "
+      "behind the host; collisions are those of any car. A human driver is the IDM of its style, "
+      "with the errors and the reaction time of the Human Driver Model. Strings: {} cars of a kind "
+      "behind the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled. "
+      "Their measures begin a second before the fog. Braking of less than 0.01 m/s2 gives no "
+      "ratio.",
       comparison.seeds(), kStringCars);
   result.files = {{"followers.csv", comparison.Csv(0)}};
   AddStrings(context, strings, result);

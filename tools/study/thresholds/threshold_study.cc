@@ -124,21 +124,21 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
   if (compared > 0) {
     answer = fmt::format(
         " So at equal RHE its SI is at least that of the best fixed threshold for {} of {} values "
-        "of its parameter, less for {}, and for {} neither situations nor curve tell.",
+        "of its parameter. It is less for {}. For {} the difference is not decided.",
         above.size() + equal.size(), compared, below.size(), undecided.size());
     if (!above.empty()) {
       answer += fmt::format(
-          " Of the {} with more, {} are dominated by a fixed threshold that engages no more and "
-          "has more SI{}{}.",
+          " Of the {} values with more SI, {} are dominated: a fixed threshold engages the human "
+          "no more and has more SI{}{}.",
           above.size(), dominated.size(), dominated.empty() ? "" : ": ", ListText(dominated));
     }
   }
   return fmt::format(
       "{} against the best fixed threshold of the same RHE, by SI.{}{}{}{}{}{}{}",
       Capital(mixed.families[family].name), part("More", above), part("Equal", equal),
-      part("Less", below), part("Not to be told apart", undecided),
+      part("Less", below), part("Not decided", undecided),
       part("Too few runs for an interval", too_few),
-      part("Beyond the RHE of every fixed threshold, so without one to compare with", beyond),
+      part("Not compared, because their RHE is beyond that of every fixed threshold", beyond),
       answer);
 }
 
@@ -176,12 +176,13 @@ std::string FrontText(const MixedRuns& mixed) {
                                  front.size() == 1 ? "a single point: " : "", ListText(names));
   if (front.size() == 1) {
     text +=
-        " Of these rules one that engages least in clear air is safest too: between the two there "
-        "is nothing to trade.";
+        " A rule that engages the human least in clear air is also the safest, so there is no "
+        "trade-off between the two.";
   }
   if (!like.empty()) {
-    text += fmt::format(" Not to be told apart from it in both, by paired differences: {}.",
-                        ListText(like));
+    text += fmt::format(
+        " Without a significant difference from it in both RHE and SI, by paired differences: {}.",
+        ListText(like));
   }
   return text;
 }
@@ -231,7 +232,7 @@ report::StudyFigure DifferenceFigure(const MixedRuns& mixed, const Beside& besid
       .title = "Rules against the best fixed threshold of the same RHE",
       .caption = "Difference of SI, with 95 % bootstrap bands. Above 0: more.",
       .x_label = std::string(kRheAxis),
-      .y_label = "SI of the rule less SI of the fixed threshold (points)"};
+      .y_label = "SI of the rule minus SI of the fixed threshold (points)"};
   for (std::size_t f = 1; f < mixed.families.size(); ++f) {
     report::StudySeries& series = figure.series.emplace_back();
     series.name = mixed.families[f].name;
@@ -278,7 +279,7 @@ report::StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
   report::StudyTable table{
       .caption = "Every rule: means over the situations [95 % confidence intervals]",
       .columns = {"rule", "RHE (%)", "SI (%)", "fixed threshold of equal RHE",
-                  "SI less that one's (points)", "compromised safety in fog (m)", "collisions"}};
+                  "difference of SI (points)", "compromised safety in fog (m)", "collisions"}};
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {
     const RuleMember& member = mixed.members[i];
     const std::optional<CurvePlace>& place = beside.si[i].place;
@@ -298,20 +299,20 @@ std::string MethodOf(const MixedRuns& mixed, const Beside& beside) {
     widest = std::max(widest, std::abs(beside.curve[i].rhe_pct - beside.curve[i + 1].rhe_pct));
   }
   return fmt::format(
-      "{} situations, one for each seed, {}. SI has a value in situations with fog and compromised "
-      "safety only; RHE in all with clear air. Equal RHE: the {} fixed thresholds make a curve of "
-      "mean SI over mean RHE, straight between neighbours, which are at most {:.1f} points of RHE "
-      "apart; a rule is compared with the place of the curve that has its RHE, the best one where "
-      "several thresholds have it (those above all conflict in clear air have an RHE of 0). "
-      "After the sign ± is what the curve may be wrong by at that place: how far the thresholds on "
-      "either side are from the curve of the others, less the nearer the place is to one of them. "
-      "A difference whose interval is no farther from 0 than that is not decided. Where the curve "
-      "jumps, at an RHE of almost 0, a rule is compared with the best fixed threshold of at most "
-      "its RHE too, and called dominated if that has more SI by its interval. Intervals: {} "
-      "resamples of the situations, the curve "
-      "made anew of each, so that the noise of equal situations, the RHE of both sides and the "
-      "choice of the best are in them. SI is a mean of ratios of small numbers: compromised safety "
-      "in metres is beside it.",
+      "{} situations, one for each seed, {}. SI has a value only in situations with fog and "
+      "compromised safety, RHE in all with clear air. Equal RHE: the {} fixed thresholds make a "
+      "curve of mean SI over mean RHE. The curve is straight between neighbours, which are at most "
+      "{:.1f} points of RHE apart. A rule is compared with the point of the curve that has its "
+      "RHE. If several thresholds have this RHE, the best of them counts (those above all conflict "
+      "in clear air have an RHE of 0). The number after ± is the possible error of the curve at "
+      "that point: the distance of the thresholds on either side from the curve of the others, "
+      "weighted less the nearer the point is to one of them. A difference is not decided if its "
+      "interval is not farther from 0 than this error. At an RHE of almost 0 the curve jumps. So a "
+      "rule is also compared with the best fixed threshold of at most its RHE. The rule is called "
+      "dominated if that threshold has more SI by its interval. Intervals: {} resamples of the "
+      "situations, each with its own curve. So they contain the noise of equal situations, the RHE "
+      "of both sides and the choice of the best. SI is a mean of ratios of small numbers, so "
+      "compromised safety in metres is beside it.",
       mixed.situations, MixText(), beside.fixed, widest, kReplicates);
 }
 

@@ -75,7 +75,7 @@ TEST(CaseFindingsTest, DoNotCallARunSafeThatCrashesBeforeItsSafetyIsCompromised)
   const std::vector<std::string> findings = study::CaseFindings(comparison, 1);
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_THAT(findings[0], HasSubstr("It collides more in: ice (20 of 20 runs instead of 0)."));
-  EXPECT_THAT(findings[0], Not(HasSubstr("It reduces it in")));
+  EXPECT_THAT(findings[0], Not(HasSubstr("It reduces compromised safety in")));
   EXPECT_THAT(findings[1], HasSubstr("the runs of 20 of 20 seeds end early"));
   EXPECT_THAT(findings[1], Not(HasSubstr("SI 0")));
 }
@@ -113,8 +113,8 @@ TEST(CaseFindingsTest, CountACaseOnceThatIsThereTwice) {
     });
   }
   const std::vector<std::string> findings = study::CaseFindings(runs.Result(), 1);
-  EXPECT_THAT(findings[0], HasSubstr("in 2 cases that count"));
-  EXPECT_THAT(findings[0], HasSubstr("It reduces it in: a and c."));
+  EXPECT_THAT(findings[0], HasSubstr("in 2 counted cases"));
+  EXPECT_THAT(findings[0], HasSubstr("It reduces compromised safety in: a and c."));
   EXPECT_THAT(findings[0], HasSubstr("(in brackets): b (a)."));
   EXPECT_EQ(findings[2], "b: the same runs as a.");
 }

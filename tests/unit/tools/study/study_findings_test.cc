@@ -16,7 +16,7 @@ TEST(DifferenceTextTest, SaysMoreLessOrUndecided) {
       "1.5 [1.0, 2.0] m less");
   EXPECT_EQ(study::DifferenceText({.n = 9, .mean = -0.5, .deviation = 1, .low = -1.5, .high = 0.5},
                                   "m", 1),
-            "0.5 [−0.5, 1.5] m less, which is no difference that 9 pairs of runs can tell");
+            "0.5 [−0.5, 1.5] m less, which is not significant in 9 pairs of runs");
 }
 
 TEST(DifferenceTextTest, SaysWhenThereAreTooFewRuns) {
