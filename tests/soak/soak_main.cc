@@ -217,23 +217,24 @@ int Main(int argc, char** argv) {
   Options options;
   CLI::App app{
       "Runs Fogline's processes under random faults, one run after another, and compares every\n"
-      "digest with that of the run that nothing happens to. Each run has machines (network\n"
-      "namespaces) of its own. Needs root and nftables.",
+      "digest with that of a run without faults. Each run has machines (network namespaces)\n"
+      "of its own. Needs root and nftables.",
       "soak"};
-  app.add_option("--minutes", options.minutes, "Start runs for so long")
+  app.add_option("--minutes", options.minutes, "Time in which runs are started, in minutes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  auto* runs = app.add_option("--runs", options.runs, "This many runs, however long they take")
+  auto* runs = app.add_option("--runs", options.runs, "Number of runs, instead of a time")
                    ->check(CLI::PositiveNumber);
-  app.add_option("--each", options.each, "This many runs of each kind, however long they take")
+  app.add_option("--each", options.each, "Number of runs of each kind, instead of a time")
       ->check(CLI::PositiveNumber)
       ->excludes(runs);
-  app.add_option("--first", options.first, "Number of the first run: what it draws")
+  app.add_option("--first", options.first,
+                 "Number of the first run, from which it draws its faults")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--seed", options.seed, "What all runs draw")->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of the faults of all runs")->capture_default_str();
   std::vector<std::string> names;
   for (const FaultKind& kind : FaultKinds()) names.emplace_back(kind.name);
-  app.add_option("--only", options.only, "Runs of this kind alone")->check(CLI::IsMember(names));
+  app.add_option("--only", options.only, "Only runs of this kind")->check(CLI::IsMember(names));
   app.add_option("--jobs", options.jobs, "Runs at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

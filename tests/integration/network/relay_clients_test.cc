@@ -168,7 +168,7 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
   runtime::Bus bus(relay.url());
   const RawSocket second(relay.port());
   EXPECT_TRUE(second.WaitForClose());
-  EXPECT_TRUE(relay.process().WaitForErr(second.Name() + " disconnected: 1 clients are here"));
+  EXPECT_TRUE(relay.process().WaitForErr(second.Name() + " disconnected: 1 clients are connected"));
   EXPECT_TRUE(RoundTrip(bus));
 }
 

@@ -111,10 +111,9 @@ TEST_F(SweepTest, DoesNotReplaceTheFileOfAnotherSweepUnlessForced) {
                              kShort + Words{"--seeds", "1:4", "--shard", "1/2"}}) {
     const Outcome refused = Sweep("file.csv", other);
     EXPECT_EQ(refused.code, 2);
-    EXPECT_EQ(
-        refused.err,
-        File("file.csv") +
-            ": error: --out: the file exists and is not of this sweep; --force replaces it\n");
+    EXPECT_EQ(refused.err, File("file.csv") +
+                               ": error: --out: the file exists and is not of this sweep; "
+                               "--force replaces it\n");
     EXPECT_EQ(Content(File("file.csv")), first);
   }
   const Words other = kShort + Words{"--seeds", "1:5"};
@@ -128,9 +127,9 @@ TEST_F(SweepTest, ReplacesNoFileThatIsNoSweepWhateverIsForced) {
   for (const Words& force : {Words{}, Words{"--force"}}) {
     const Outcome refused = Sweep("scenario.json", kShort + force);
     EXPECT_EQ(refused.code, 2);
-    EXPECT_EQ(refused.err, File("scenario.json") +
-                               ": error: --out: the file is no sweep and stays as "
-                               "it is, --force or not\n");
+    EXPECT_EQ(refused.err,
+              File("scenario.json") +
+                  ": error: --out: the file is no sweep and is not replaced, even with --force\n");
     EXPECT_EQ(Content(File("scenario.json")), "{}");
   }
 }
@@ -326,10 +325,9 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));
   EXPECT_EQ(full.code, 3);
-  EXPECT_EQ(
-      full.err,
-      "fogline sweep: error: " + File("full.csv") +
-          ": cannot write: File too large; call it again to continue at the end of the file\n");
+  EXPECT_EQ(full.err, "fogline sweep: error: " + File("full.csv") +
+                          ": cannot write: File too large; call it again to continue at the end "
+                          "of the file\n");
   EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));
   // WHEN there is room again THEN the sweep continues
   EXPECT_EQ(Made("full.csv", sweep), whole);
