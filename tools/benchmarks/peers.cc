@@ -45,8 +45,8 @@ double ClosedLoopRunsPerSecond(double duration_s) {
 double OctaveRunsPerSecond(int runs) {
   const std::filesystem::path scenario = ScratchFolder() / "paper.json";
   std::ofstream(scenario) << PrintScenario(LoadScenario("scenario/paper.json"));
-  const ProgramResult result =
-      RunProgram({"octave-cli", "--norc", "tests/campaign/peers/paper.m", scenario, std::to_string(runs)});
+  const ProgramResult result = RunProgram(
+      {"octave-cli", "--norc", "tests/campaign/peers/paper.m", scenario, std::to_string(runs)});
   const auto json = nlohmann::json::parse(result.out);
   return json["runs"].get<double>() / json["wall_s"].get<double>();
 }

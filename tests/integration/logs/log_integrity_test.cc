@@ -15,8 +15,8 @@
 #include "services/log/log_seal.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/message_signer.h"
-#include "tests/integration/network/relay_fixture.h"
 #include "tests/support/command.h"
+#include "tests/support/relay_fixture.h"
 
 namespace fogline::test {
 namespace {

@@ -12,7 +12,7 @@
 namespace fogline::test {
 namespace {
 
-constexpr std::int64_t kSteps = 200;  // some of them in fog
+constexpr std::int64_t kSteps = 500;  // some of them in fog
 
 class PairingTest : public testing::Test {
  protected:

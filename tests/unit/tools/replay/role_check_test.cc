@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,14 +36,17 @@ class RoleCheckTest : public testing::Test {
  protected:
   RoleCheckTest() { runner::RunExperiment(Paper(kSteps), Direct(log_)); }
 
-  /// @param change gets the message of type M of step kAltered
+  /// Alters the message of type M of a step in the copy.
   template <class M, class Change>
-  void Alter(const Change& change) {
-    Copy(log_, altered_,
+  void Alter(const Change& change, std::int64_t step = kAltered) {
+    const std::string before = folder_.File("before.lcm");
+    std::filesystem::copy_file(std::filesystem::exists(altered_) ? altered_ : log_, before,
+                               std::filesystem::copy_options::overwrite_existing);
+    Copy(before, altered_,
          [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
            M message{};
            if (event.channel == ChannelOf<M>().name && runtime::Decode(data, message) &&
-               message.header.step == kAltered) {
+               message.header.step == step) {
              change(message);
              runtime::Encode(message, data);
            }
@@ -133,14 +137,16 @@ TEST_F(RoleCheckTest, AVerificationHoldsForALogAsItWasMade) {
 }
 
 TEST_F(RoleCheckTest, AVerificationNamesTheEarliestDifference) {
-  Alter<accel_command_t>([](accel_command_t& command) { command.acceleration_mps2 = 9; });
+  Alter<accel_command_t>([](accel_command_t& command) { command.acceleration_mps2 = 9; },
+                         kAltered + 5);
+  Alter<driver_command_t>([](driver_command_t& command) { command.acceleration_mps2 = 8; });
   const Verification verification = Verify(altered_);
   EXPECT_FALSE(verification.Holds());
   ASSERT_TRUE(verification.failure);
-  EXPECT_EQ(verification.failure->role, Role::kAcc);
+  EXPECT_EQ(verification.failure->role, Role::kDriver);
   EXPECT_EQ(verification.failure->first.step, kAltered);
   EXPECT_EQ(verification.Trouble(),
-            "step 23: ACC_COMMAND of acc: acceleration_mps2 is 9 in the log, and " +
+            "step 23: DRIVER_COMMAND of driver: acceleration_mps2 is 8 in the log, and " +
                 verification.failure->first.b +
                 " when it is computed again: was it altered on its way?");
 }

@@ -31,9 +31,10 @@ class ResumedLogTest : public testing::Test {
   /// A copy of the log that ends behind step kCut - 1, as a killed recorder leaves it.
   std::string CutOff() const {
     std::string part = folder_.File("part.lcm");
-    Copy(log_, part, [](log::EventLogWriter&, const log::Event&, std::vector<std::uint8_t>& data) {
-      return runtime::ReadInt64(data, runtime::kStepOffset) < kCut;
-    });
+    Copy(log_, part,
+         [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+           return event.channel == "RUN" || runtime::ReadInt64(data, runtime::kStepOffset) < kCut;
+         });
     return part;
   }
   /// Why a log cannot be resumed; "" if it can.
@@ -112,11 +113,13 @@ TEST_F(ResumedLogTest, IsSealedWithTheSameKey) {
 
 TEST_F(ResumedLogTest, HasNothingBehindItsStepsThatNoRunLeaves) {
   const std::string odd = folder_.File("odd.lcm");
-  Copy(log_, odd, [](log::EventLogWriter& log, const log::Event&, std::vector<std::uint8_t>& data) {
-    if (runtime::ReadInt64(data, runtime::kStepOffset) < kCut) return true;
-    log.Write("OTHER", 0, data);
-    return false;
-  });
+  Copy(log_, odd,
+       [](log::EventLogWriter& log, const log::Event& event, std::vector<std::uint8_t>& data) {
+         if (event.channel == "RUN") return true;
+         if (runtime::ReadInt64(data, runtime::kStepOffset) < kCut) return true;
+         log.Write("OTHER", 0, data);
+         return false;
+       });
   EXPECT_THAT(Refusal(odd), HasSubstr(": this is not how fogline run leaves a log"));
 }
 
