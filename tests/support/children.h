@@ -1,8 +1,10 @@
 // The processes that a process has started.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/types.h>
 
+#include <csignal>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -21,6 +23,12 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
     if (IsAlive(child)) children.push_back(child);
   }
   return children;
+}
+
+/// Sends a signal to one process that must be there: kill(2) takes 0 for the whole process group.
+inline void SignalOne(pid_t pid, int signal) {
+  ASSERT_GT(pid, 0);
+  kill(pid, signal);
 }
 
 }  // namespace fogline::test

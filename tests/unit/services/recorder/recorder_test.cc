@@ -201,7 +201,8 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
   // The world has begun step 400, so step 368 must be on disk.
   const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, 400);
-  EXPECT_THAT(ErrorOf(*recorder), HasSubstr("the log has 150 steps, but the recorder had written 369"));
+  EXPECT_THAT(ErrorOf(*recorder),
+              HasSubstr("the log has 150 steps, but the recorder had written 369"));
 }
 
 TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
@@ -285,9 +286,10 @@ TEST_F(RecorderTest, RefusesAnOutputThatIsNotTheOneInItsLog) {
   auto command = Script::Of<driver_command_t>(kSteps - 2);
   command.acceleration_mps2 = 1;
   script_.Say(command);
-  EXPECT_EQ(ErrorOf(*recorder),
-            "step 148: DRIVER_COMMAND differs from the log: driver is not the program or version that "
-            "was recorded");
+  EXPECT_EQ(
+      ErrorOf(*recorder),
+      "step 148: DRIVER_COMMAND differs from the log: driver is not the program or version that "
+      "was recorded");
 }
 
 TEST_F(RecorderTest, SaysOnceThatTheDiskIsFull) {

@@ -76,7 +76,12 @@ TEST(ProcessGroupTest, EndsWithItsProcesses) {
   pid_t pid = 0;
   {
     ProcessGroup group;
-    pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; sleep 60");
+    // Signals that a shell ignores are ignored by the program that takes its place, too.
+    pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; exec sleep 60");
+    const TimePoint end = Clock::now() + std::chrono::seconds(20);
+    while (Content("/proc/" + std::to_string(pid) + "/comm") != "sleep\n" && Clock::now() < end) {
+      std::this_thread::sleep_for(milliseconds(5));  // exec has no event
+    }
     ASSERT_TRUE(IsAlive(pid));
   }
   EXPECT_FALSE(IsAlive(pid));

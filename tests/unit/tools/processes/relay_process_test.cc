@@ -80,7 +80,7 @@ TEST_F(RelayProcessTest, IsStartedAgainAtTheSameAddressUntilItsRestartsAreUsedUp
   RelayProcess relay(1);
   const std::string url = relay.url();
   const std::string first = std::to_string(PidOfRelay());
-  kill(PidOfRelay(), SIGKILL);
+  SignalOne(PidOfRelay(), SIGKILL);
   EXPECT_THAT(News(relay), MatchesRegex("relay \\(pid " + first +
                                         "\\) was killed by signal 9 \\(Killed\\) before step 0; "
                                         "started again as pid [0-9]+ \\(1 of 1\\)"));
@@ -90,7 +90,7 @@ TEST_F(RelayProcessTest, IsStartedAgainAtTheSameAddressUntilItsRestartsAreUsedUp
   EXPECT_TRUE(Carries(url));
 
   const std::string second = std::to_string(PidOfRelay());
-  kill(PidOfRelay(), SIGKILL);
+  SignalOne(PidOfRelay(), SIGKILL);
   try {
     News(relay);
     FAIL() << "it was started again";

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/children.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -99,7 +100,7 @@ TEST_F(SupervisorTest, StartsAKilledRoleAgainAndSaysSo) {
   Begin(kManySteps, {.restarts = 1});
   ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
   const pid_t first = PidOfRole(Role::kFusion);
-  kill(first, SIGKILL);
+  SignalOne(first, SIGKILL);
   ASSERT_TRUE(PlayUntil([&] { return !said_.empty(); }));
   EXPECT_THAT(said_.front(), testing::MatchesRegex(
                                  "fusion \\(pid " + std::to_string(first) +
@@ -114,7 +115,7 @@ TEST_F(SupervisorTest, StartsAKilledRoleAgainAndSaysSo) {
   EXPECT_THAT(restarts[0].last, HasSubstr("was killed by signal 9 (Killed) at step "));
 
   // WHEN its restarts are used up, THEN the run ends
-  kill(PidOfRole(Role::kFusion), SIGKILL);
+  SignalOne(PidOfRole(Role::kFusion), SIGKILL);
   ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
   EXPECT_THAT(coordinator_->error(), HasSubstr(", after 1 restarts (--restarts)"));
 }
@@ -123,7 +124,7 @@ TEST_F(SupervisorTest, EndsTheRunAtAnyDeathIfNothingMayBeStartedAgain) {
   Begin(kManySteps, {.restarts = 0});
   ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
   const pid_t pid = PidOfRole(Role::kAcc);
-  kill(pid, SIGKILL);
+  SignalOne(pid, SIGKILL);
   ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
   EXPECT_THAT(coordinator_->error(),
               ContainsRegex("^acc \\(pid " + std::to_string(pid) +
@@ -143,7 +144,7 @@ TEST_F(SupervisorTest, KillsAProcessThatHangsAndStartsItAgain) {
   Begin(kManySteps, {.restarts = 100, .silence = milliseconds(2000)});
   ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
   const pid_t pid = PidOfRole(Role::kLidar);
-  kill(pid, SIGSTOP);
+  SignalOne(pid, SIGSTOP);
   const auto expected = testing::Contains(
       ContainsRegex("^lidar \\(pid " + std::to_string(pid) +
                     "\\) was silent for [0-9.]+ s and was killed at step [0-9]+; started again as "
