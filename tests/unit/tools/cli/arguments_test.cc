@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/errors.h"
+#include "tests/support/environment_url.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -203,6 +204,7 @@ class NetworkArgumentsTest : public testing::Test {
     app_.parse(std::vector(words.rbegin(), words.rend()));
     return arguments_.Url();
   }
+  const EnvironmentUrl environment_;
   CLI::App app_;
   const cli::NetworkArguments arguments_{app_, "to observe"};
 };
@@ -210,11 +212,10 @@ class NetworkArgumentsTest : public testing::Test {
 TEST_F(NetworkArgumentsTest, AreTheNetworkOfTheCommandLineOrTheEnvironmentOrLcm) {
   EXPECT_EQ(Url({}), "udpm://239.255.76.67:7667?ttl=0");
   EXPECT_TRUE(arguments_.Follows());
-  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7700", 1);
+  environment_.Set("udpm://239.255.76.67:7700");
   EXPECT_EQ(Url({}), "udpm://239.255.76.67:7700");
   EXPECT_EQ(Url({"--lcm-url", "tcpq://lab1"}), "tcpq://lab1");
   EXPECT_FALSE(arguments_.Follows());
-  unsetenv("LCM_DEFAULT_URL");
 }
 
 TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
@@ -226,11 +227,10 @@ TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
                 Url({"--lcm-url", "pigeon"});
               }),
               StartsWith("error: --lcm-url pigeon: not an LCM network such as "));
-  setenv("LCM_DEFAULT_URL", "memq://", 1);
+  environment_.Set("memq://");
   CLI::App app;
   const cli::NetworkArguments unsaid(app, "to observe");
   EXPECT_THAT(ErrorOf([&] { unsaid.Url(); }), StartsWith("error: LCM_DEFAULT_URL memq://: "));
-  unsetenv("LCM_DEFAULT_URL");
 }
 
 // ---- measures

@@ -10,6 +10,7 @@
 #include "common/errors.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/support/command.h"
+#include "tests/support/environment_url.h"
 
 namespace fogline::test {
 namespace {
@@ -39,6 +40,7 @@ std::string Refusal(const std::vector<std::string>& words) {
 const std::string kUrl = "udpm://239.255.76.67:7700?ttl=0";
 
 TEST(TransportArgumentsTest, TakeTheTransportOfTheVerbUnlessAnotherIsNamed) {
+  const EnvironmentUrl environment;
   EXPECT_EQ(Read({}).transport, "udpm");
   EXPECT_EQ(Read({}, "direct").transport, "direct");
   EXPECT_EQ(Read({"--transport", "memq"}).transport, "memq");
@@ -47,19 +49,20 @@ TEST(TransportArgumentsTest, TakeTheTransportOfTheVerbUnlessAnotherIsNamed) {
 }
 
 TEST(TransportArgumentsTest, TakeTheNetworkOfTheEnvironmentForARunOfProcesses) {
-  setenv("LCM_DEFAULT_URL", kUrl.c_str(), 1);
+  const EnvironmentUrl environment;
+  environment.Set(kUrl);
   EXPECT_EQ(Read({}).transport, kUrl);
   EXPECT_EQ(Read({}, "direct").transport, "direct");
   EXPECT_EQ(Read({"--external", "driver"}, "direct").transport, kUrl);
   EXPECT_EQ(Read({"--transport", "udpm"}).transport, "udpm");
-  setenv("LCM_DEFAULT_URL", "pigeon", 1);
+  environment.Set("pigeon");
   EXPECT_EQ(Refusal({}),
             "error: LCM_DEFAULT_URL is pigeon, which is no LCM URL such as "
             "\"udpm://239.255.76.67:7667?ttl=0\"");
-  unsetenv("LCM_DEFAULT_URL");
 }
 
 TEST(TransportArgumentsTest, SetWhatTheRunDoes) {
+  const EnvironmentUrl environment;
   const ExperimentOptions usual = Read({});
   EXPECT_TRUE(usual.external.empty());
   EXPECT_EQ(usual.wait, milliseconds(60'000));

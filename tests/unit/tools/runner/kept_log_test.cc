@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/environment_url.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -22,7 +23,12 @@ ExperimentOptions OnlyLog() {
   return options;
 }
 
-TEST(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
+class CommandToGoOnTest : public testing::Test {
+ protected:
+  const EnvironmentUrl environment_;
+};
+
+TEST_F(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
   EXPECT_EQ(CommandToGoOn(OnlyLog()), "fogline run --resume run.lcm");
   ExperimentOptions options = OnlyLog();
   options.transport = "memq";
@@ -43,7 +49,7 @@ TEST(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
   EXPECT_EQ(CommandToGoOn(options), "fogline run --resume run.lcm --verify");
 }
 
-TEST(CommandToGoOnTest, QuotesWordsForAShell) {
+TEST_F(CommandToGoOnTest, QuotesWordsForAShell) {
   ExperimentOptions options = OnlyLog();
   options.log = "my run's log.lcm";
   options.transport = "udpm://239.255.76.67:7700?ttl=0";
@@ -51,13 +57,12 @@ TEST(CommandToGoOnTest, QuotesWordsForAShell) {
                                     R"('udpm://239.255.76.67:7700?ttl=0')");
 }
 
-TEST(CommandToGoOnTest, NamesTheTransportIfTheEnvironmentNamesAnother) {
-  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7701?ttl=0", 1);
+TEST_F(CommandToGoOnTest, NamesTheTransportIfTheEnvironmentNamesAnother) {
+  environment_.Set("udpm://239.255.76.67:7701?ttl=0");
   EXPECT_EQ(CommandToGoOn(OnlyLog()), "fogline run --resume run.lcm --transport udpm");
-  unsetenv("LCM_DEFAULT_URL");
 }
 
-TEST(CommandToGoOnTest, IsNoneWithoutALogOrInRealTime) {
+TEST_F(CommandToGoOnTest, IsNoneWithoutALogOrInRealTime) {
   EXPECT_EQ(CommandToGoOn({}), "");
   ExperimentOptions options = OnlyLog();
   options.realtime = true;

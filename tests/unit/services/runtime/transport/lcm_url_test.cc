@@ -10,33 +10,13 @@
 
 #include "services/graph.h"
 #include "services/runtime/wire/wire.h"
+#include "tests/support/environment_url.h"
 
 namespace fogline {
 namespace {
 
-/// Sets LCM_DEFAULT_URL for a test. The destructor restores its old value.
-class EnvironmentUrl {
- public:
-  EnvironmentUrl() {
-    if (const char* url = std::getenv(kName)) before_ = url;
-  }
-  ~EnvironmentUrl() {
-    if (before_) Set(*before_);
-    if (!before_) unsetenv(kName);
-  }
-  EnvironmentUrl(const EnvironmentUrl&) = delete;
-  EnvironmentUrl& operator=(const EnvironmentUrl&) = delete;
-
-  void Set(const std::string& url) const { setenv(kName, url.c_str(), 1); }
-  void Unset() const { unsetenv(kName); }
-
- private:
-  static constexpr const char* kName = "LCM_DEFAULT_URL";
-  std::optional<std::string> before_;
-};
-
 TEST(LcmUrlTest, IsTheOneGivenThenThatOfTheEnvironmentThenLcmsOwn) {
-  const EnvironmentUrl environment;
+  const test::EnvironmentUrl environment;
   environment.Set("udpm://239.1.2.3:4000");
   EXPECT_EQ(runtime::NetworkUrl("tcpq://127.0.0.1"), "tcpq://127.0.0.1");
   EXPECT_EQ(runtime::NetworkUrl(""), "udpm://239.1.2.3:4000");
