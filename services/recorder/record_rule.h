@@ -54,8 +54,8 @@ class RecordRule final : public runtime::FireRule {
   TimePoint Fire(TimePoint now);
   /// Counts a late message that is not in the log.
   void CountRefused(std::size_t input, std::int64_t step);
-  /// Steps up to this one are under way. From now on a message of them that has not come counts as
-  /// late.
+  /// Steps up to this one are under way. From now on a message of them that has not come is
+  /// overdue.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;

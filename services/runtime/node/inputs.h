@@ -36,12 +36,15 @@ struct Input {
 
 class Inputs {
  public:
+  Inputs(const Inputs&) = delete;  // the bus refers to it
+  Inputs& operator=(const Inputs&) = delete;
   /// Reads the role's inputs except those on demand. The recorder reads every channel of steps.
   /// @param rule the role's rule, null until the role has joined
   Inputs(Bus& bus, Role role, const RunNews& run, OwnStatus& own,
          const std::unique_ptr<FireRule>& rule);
 
-  /// In the order of kChannels; the inputs on demand stand behind them.
+  /// In the order of kChannels; the inputs on demand stand behind them. References are valid until
+  /// the next ReadOnDemand().
   std::span<Input> all() { return inputs_; }
   std::span<const Input> all() const { return inputs_; }
   /// The input of a channel (its place in kChannels). @pre the role reads it
@@ -49,8 +52,8 @@ class Inputs {
   /// Reads this channel, too. Call it in Work::Join().
   Input& ReadOnDemand(std::size_t channel);
 
-  /// Does with a message of an input what the rule has decided, and counts what it refuses. A
-  /// second message of a step with other bytes ends the role's part in the run.
+  /// Does with a message of an input what the rule has decided, and counts what it refuses. In
+  /// lockstep, a second message of a step with other bytes ends the role's part in the run.
   /// @return whether it is new and sound: the input now has it
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
   /// An input's message of a step is known from the log of a predecessor.

@@ -1,5 +1,5 @@
-// The outputs of a role: it publishes each step of them once, keeps the last steps, and answers
-// requests for them.
+// The outputs of a role: it publishes each step of them once (unless the recorder answers for the
+// step), keeps the last steps, and answers requests for them.
 #pragma once
 
 #include <array>
@@ -20,6 +20,8 @@ namespace fogline::runtime {
 
 class Outputs {
  public:
+  Outputs(const Outputs&) = delete;  // the bus refers to it
+  Outputs& operator=(const Outputs&) = delete;
   /// @param rule the role's rule, null until the role has joined
   Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
 

@@ -36,7 +36,7 @@ class OwnStatus {
   bool Running() const {
     return !left_ && (message_.state == status_t::READY || message_.state == status_t::RUNNING);
   }
-  /// Whether the runner has said STOP, or the role has failed and said so.
+  /// Whether its part in the run is over: STOP, a signal, or a failure that it has reported.
   bool left() const { return left_; }
   /// Whether it has left its run, so that this process may take part in another run.
   bool released() const { return message_.state == status_t::LEFT; }
@@ -50,7 +50,7 @@ class OwnStatus {
   /// Gives up its place in the run. @param why the reason, which STATUS reports
   void Release(const std::string& why);
 
-  /// Publishes a STATUS now. In no run there is none.
+  /// Publishes a STATUS now. Without a run id it publishes none.
   void Publish();
   /// Publishes a STATUS if one is due. @return when the next one is due
   TimePoint Poll(TimePoint now);

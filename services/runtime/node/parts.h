@@ -1,4 +1,4 @@
-// The parts of a node that its rule and its work use.
+// The parts of a node that its other parts, its rule and its work use.
 #pragma once
 
 #include <memory>

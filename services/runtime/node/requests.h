@@ -1,4 +1,5 @@
-// The requests that a role sends: RESEND asks another process to publish steps again.
+// The requests that a role sends: RESEND asks another process to publish steps, parts of the
+// scenario, or its STATUS again.
 #pragma once
 
 #include <cstdint>

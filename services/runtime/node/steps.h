@@ -1,4 +1,4 @@
-// The steps of a role, in order. Each is computed once.
+// The steps of a role, in order. Each is computed once in lockstep, and at most once in real time.
 #pragma once
 
 #include <cstdint>

@@ -31,11 +31,12 @@ class Work {
   /// there.
   /// @throws std::exception that says what is wrong
   virtual void Compute(std::int64_t step) = 0;
-  /// Does what is due beside the steps. @return the latest time for the next call
+  /// Does what is due beside the steps, before the rule's Poll(), while the role is READY or
+  /// RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
   /// Called before every STATUS, to make sure that its claims are true.
   virtual void BeforeStatus() {}
-  /// Called once when the role leaves its run.
+  /// Called once when the role's part in its run ends (OwnStatus::left()), not at Release().
   virtual void OnLeave() {}
   /// Another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}

@@ -1,8 +1,8 @@
-// What every rule in real time does: it decides which messages are in time, judges every input by
+// What every rule in real time does: it decides which messages are in time, judges inputs by
 // age (input_health.h), computes a step that is due, and keeps the statistics of the role.
 //
 // A message that comes after the end of its step is late: it is counted and never used. A message
-// of a step that cannot be under way is refused (step_horizon.h). An input on demand is not judged.
+// of a step that cannot be under way is refused (step_horizon.h). An input on demand has no state.
 //
 // STATUS reports the state of each input, the culprit, and how well the role keeps its time. A
 // change of a state is reported at once.

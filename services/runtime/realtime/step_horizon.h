@@ -116,7 +116,7 @@ class RunHorizon {
   /// hears nothing itself, which lasts less than a minute in a run that goes on.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
-  /// After this many periods without a newer step, the runner's progress counts, too.
+  /// After this many periods without a newer step, the runner's progress alone limits the steps.
   static constexpr int kUnheard = 3;
 
   Duration period_;
