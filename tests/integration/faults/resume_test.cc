@@ -193,7 +193,7 @@ TEST_F(ResumeTest, NamesTheRoleThatIsNotTheOneWhichWasRecorded) {
   const Outcome direct = Resume({"--transport", "direct"});
   EXPECT_EQ(direct.code, 2);
   EXPECT_EQ(direct.err, log_ +
-                            ": error: --resume: step 190: DRIVER_COMMAND is not what driver "
+                            ": error: --resume: step 190: DRIVER_COMMAND differs from what driver "
                             "computes here: the log was made by another program, or another "
                             "version\n");
   for (const char* transport : {"memq", "udpm"}) {

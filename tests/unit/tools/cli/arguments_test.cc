@@ -112,8 +112,9 @@ TEST_F(LogArgumentsTest, MakeANewLogAndRemoveItIfItStaysEmpty) {
 
 TEST_F(LogArgumentsTest, ReplaceNothingElse) {
   std::ofstream(log_) << "precious";
-  EXPECT_EQ(Refusal(log_, true),
-            log_ + ": error: --log: the file is no event log and stays as it is, --force or not");
+  EXPECT_EQ(
+      Refusal(log_, true),
+      log_ + ": error: --log: the file is no event log and is not replaced, even with --force");
   EXPECT_EQ(Content(log_), "precious");
   EXPECT_EQ(Refusal(folder_.path().string(), true),
             folder_.path().string() + ": error: --log: not a file");
@@ -177,7 +178,7 @@ TEST(JsonArgumentsTest, PrintWhatJsonAndATerminalCanCarry) {
 
 TEST(JsonArgumentsTest, RefuseTwoDocumentsOnStdout) {
   EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("/dev/stdout", "--out", true); }),
-            "error: --json: stdout is taken by --out /dev/stdout; give --out a file");
+            "error: --json: --out /dev/stdout uses stdout already; give --out a file");
   EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("/dev/stdout", "--out", false); }), "");
   EXPECT_EQ(ErrorOf([] { cli::RefuseJsonBeside("out.csv", "--out", true); }), "");
 }
@@ -219,10 +220,12 @@ TEST_F(NetworkArgumentsTest, AreTheNetworkOfTheCommandLineOrTheEnvironmentOrLcm)
 }
 
 TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
-  EXPECT_THAT(ErrorOf([&] {
-                Url({"--lcm-url", "memq://"});
-              }),
-              StartsWith("error: --lcm-url memq://: the memory of one process, "));
+  EXPECT_THAT(
+      ErrorOf([&] {
+        Url({"--lcm-url", "memq://"});
+      }),
+      StartsWith(
+          "error: --lcm-url memq://: other processes cannot look into the memory of a process; "));
   EXPECT_THAT(ErrorOf([&] {
                 Url({"--lcm-url", "pigeon"});
               }),

@@ -62,9 +62,10 @@ TEST(RunOutcomeTest, TellsEveryTrouble) {
                                "acc was started again once: was killed\n"
                                "driver was started again 2 times: hung\n"
                                "another build: driver (pid 8 on lab3) "));
-  EXPECT_THAT(text, HasSubstr("verified: world acc\nnot verified: driver (of an unknown build)\n"
-                              "the end of the log is not checked: what the recorder told of it was "
-                              "lost\ndigest 63a1\n"));
+  EXPECT_THAT(text,
+              HasSubstr("verified: world acc\nnot verified: driver (of an unknown build)\n"
+                        "the end of the log is not checked, because the recorder's last report "
+                        "was lost\ndigest 63a1\n"));
 }
 
 TEST(RunOutcomeTest, TellsNothingOfAComputationThatDidNotTakePlace) {

@@ -85,11 +85,11 @@ TEST(TransportArgumentsTest, RefuseContradictions) {
   EXPECT_EQ(Refusal({"--transport", "direct", "--faults", "loss=0.1"}),
             "error: --faults: a run with --transport direct has no messages");
   EXPECT_EQ(Refusal({"--transport", "direct", "--verify"}),
-            "error: --verify: a run with --transport direct is one process, in which no message "
-            "can be altered on its way");
+            "error: --verify: a run with --transport direct is one process and has no messages "
+            "that could be altered");
   EXPECT_EQ(Refusal({"--transport", "memq", "--external", "acc"}),
-            "error: --external acc: no process can join a run with --transport memq, which is one "
-            "process itself");
+            "error: --external acc: no other process can join a run with --transport memq, which "
+            "is one process");
   EXPECT_EQ(Refusal({"--external", "recorder"}),
             "error: --external recorder: the run's result is read from its own log");
   EXPECT_THROW(Read({"--external", "pilot"}), CLI::ParseError);

@@ -107,7 +107,7 @@ TEST_F(DirectLogTest, RefusesAMessageThatIsNotTheOneItHas) {
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),
               part_ +
-                  ": error: --resume: step 2: TRUTH is not what world computes here: the log "
+                  ": error: --resume: step 2: TRUTH differs from what world computes here: the log "
                   "was made by another program, or another version");
   }
 }

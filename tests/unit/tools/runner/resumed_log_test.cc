@@ -120,7 +120,7 @@ TEST_F(ResumedLogTest, HasNothingBehindItsStepsThatNoRunLeaves) {
          log.Write("OTHER", 0, data);
          return false;
        });
-  EXPECT_THAT(Refusal(odd), HasSubstr(": this is not how fogline run leaves a log"));
+  EXPECT_THAT(Refusal(odd), HasSubstr(": fogline run does not leave a log like this"));
 }
 
 }  // namespace
