@@ -14,8 +14,8 @@ namespace {
 // With a long period it is kDeafPeriods periods, if they last longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
-// Three signs of life. A longer pause between two STATUS messages says nothing about the time in
-// between.
+// Three signs of life. A longer pause between two STATUS messages of a role says nothing about the
+// time in between.
 constexpr Duration kSteady = milliseconds(600);
 // The number of steps by which a role may be ahead of the last known step of its producer. A STATUS
 // is on its way for less than 100 ms, which are five steps at 50 Hz.
@@ -35,6 +35,7 @@ DeafRoles::DeafRoles(Duration period)
 void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
   if (period_ == Duration::zero()) return;
   Speaker& speaker = speakers_[static_cast<std::size_t>(role)];
+  const bool first = speaker.heard == TimePoint{};
   const Duration since = now - speaker.heard;
   for (std::size_t i = 0; i < status.input.size(); ++i) {
     const std::size_t channel = ChannelNamed(status.input[i]);
@@ -42,23 +43,28 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     Ear& ear = speaker.ears[channel];
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
-    // The age of an input grows with time unless a message comes. An input that never came has no
-    // age.
-    const bool aged = status.input_state[i] == status_t::INPUT_AWAITED ||
-                      age >= ear.age + std::min(since, kSteady) / 2;
+    // The age of an input grows on the role's own clock until a message comes, however late its
+    // STATUS is read. An input that never came has no age.
+    const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
+    const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;
     // If this role is ahead of the producer, all messages of the producer come late: the role hears
     // them but cannot use them.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
-    if (!aged || late) {
+    if (late) {
       ear.missed = ear.unsure = {};
     } else if (!Computes(from, now)) {
       ear.unsure = {};
     } else {
-      if (since <= kSteady) ear.unsure += since;
+      if (silent <= kSteady && !first) ear.unsure += silent;
       // Nothing is missing after the last step that the producer has computed.
       const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
       if (computed) ear.missed += std::exchange(ear.unsure, {});
+    }
+    // A message that came has ended the silence before it.
+    if (!awaited) {
+      ear.missed = std::min(ear.missed, age);
+      ear.unsure = std::min(ear.unsure, age - ear.missed);
     }
     ear.age = age;
     ear.late = status.input_late[i];

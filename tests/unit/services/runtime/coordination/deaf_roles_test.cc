@@ -152,6 +152,29 @@ TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {
   EXPECT_FALSE(IsDeaf());
 }
 
+TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
+  // GIVEN a reader that reads three signs of life together, and then none for half a second
+  for (int i = 1; i <= 12; ++i) {
+    now_ += milliseconds(i % 3 == 0 ? 598 : 1);
+    world_step_ += 2;
+    age_ms_ += 200;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_TRUE(IsDeaf());
+  // WHEN a message comes, THEN the reader notices it as well
+  age_ms_ = 0;
+  for (int i = 1; i <= 6; ++i) {
+    now_ += milliseconds(i % 3 == 0 ? 598 : 1);
+    world_step_ += 2;
+    age_ms_ += 100;
+    SayWorld();
+    SayRadar({.age_ms = age_ms_});
+  }
+  EXPECT_FALSE(IsDeaf());
+  EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
+}
+
 TEST_F(DeafRolesTest, ItsSuccessorIsNot) {
   Pass(20);
   EXPECT_TRUE(IsDeaf());
