@@ -7,11 +7,11 @@
 namespace fogline::test {
 namespace {
 
-TEST_F(ResumeCampaignTest, RunnersKilledAtRandomStepsChangeNoResult) {
+TEST_F(ResumeAfterKillTest, RunnersKilledAtRandomStepsChangeNoResult) {
   ExpectKilledRunnersChangeNoResult(100);
 }
 
-TEST_F(ResumeCampaignTest, RunsInOneProcessGoOnToTheSameResult) {
+TEST_F(ResumeAfterKillTest, RunsInOneProcessGoOnToTheSameResult) {
   ExpectKilledProcessesGoOnToTheSameResult(100);
 }
 

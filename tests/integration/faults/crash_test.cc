@@ -219,7 +219,7 @@ TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgai
   }
 }
 
-TEST(CrashCampaignTest, KillsAtRandomStepsChangeNoResult) {
+TEST(CrashTest, AtRandomStepsChangesNoResult) {
   ExpectKillsAtRandomStepsChangeNoResult(6);
 }
 

@@ -127,7 +127,7 @@ class SeenRun {
 };
 
 /// Runners that are killed at random steps, and runs that go on from their logs.
-class ResumeCampaignTest : public ResumeTest {
+class ResumeAfterKillTest : public ResumeTest {
  protected:
   void ExpectKilledRunnersChangeNoResult(int kills) const {
     std::mt19937 random(2025);

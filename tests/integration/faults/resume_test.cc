@@ -19,11 +19,11 @@ using testing::HasSubstr;
 
 constexpr int kSteps = kResumeSteps;
 
-TEST_F(ResumeCampaignTest, RunnersKilledAtRandomStepsChangeNoResult) {
+TEST_F(ResumeAfterKillTest, RunnersKilledAtRandomStepsChangeNoResult) {
   ExpectKilledRunnersChangeNoResult(3);
 }
 
-TEST_F(ResumeCampaignTest, RunsInOneProcessGoOnToTheSameResult) {
+TEST_F(ResumeAfterKillTest, RunsInOneProcessGoOnToTheSameResult) {
   ExpectKilledProcessesGoOnToTheSameResult(3);
 }
 
