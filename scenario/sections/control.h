@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "scenario/sections/decision.h"
+#include "scenario/sections/decision_types.h"
 #include "scenario/sections/engagement.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/take_over.h"

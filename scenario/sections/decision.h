@@ -5,16 +5,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
+#include "scenario/sections/decision_types.h"
 #include "scenario/sections/field.h"
 
 namespace fogline {
 
-/// Policy for the authority over the host: an index of the list below, and of the table in
-/// services/decision/policies/policies.cc. Only the two that other code refers to have an
-/// enumerator.
-enum class Policy : std::uint8_t { kNone, kTraded };
 constexpr auto ChoicesOf(Policy) {
   return std::to_array<Choice>({
       {"none", "lambda_A = 1 throughout: no traded control"},
@@ -30,9 +26,6 @@ constexpr auto ChoicesOf(Policy) {
 static_assert(ChoiceNames<Policy>::kNames[static_cast<std::size_t>(Policy::kNone)] == "none");
 static_assert(ChoiceNames<Policy>::kNames[static_cast<std::size_t>(Policy::kTraded)] == "traded");
 
-/// A measure of conflict: an index of the list below, and of the first table in
-/// services/decision/conflict/conflict_measures.cc.
-enum class MeasureChoice : std::uint8_t { kDoc };
 constexpr auto ChoicesOf(MeasureChoice) {
   return std::to_array<Choice>({
       {"doc", "1/(1 + exp(-10 (z - 1 m))), z the windowed |radar - LiDAR|"},
@@ -64,9 +57,6 @@ constexpr auto ChoicesOf(MeasureChoice) {
 static_assert(ChoiceNames<MeasureChoice>::kNames[static_cast<std::size_t>(MeasureChoice::kDoc)] ==
               "doc");
 
-/// A measure of which sensor is wrong: an index of the list below, and of the second table in that
-/// file.
-enum class BlameChoice : std::uint8_t { kNis };
 constexpr auto ChoicesOf(BlameChoice) {
   return std::to_array<Choice>({
       {"nis", "erf(|T|/sqrt(2)), T the residual against the prediction"},

@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "scenario/sections/decision.h"
+
 namespace fogline {
 namespace {
 

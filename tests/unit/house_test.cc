@@ -178,6 +178,21 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
               IsEmpty());
 }
 
+TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoices) {
+  // In a program with a longer list (tests/integration/extension) any other file of a library would
+  // bring a second definition of the list.
+  std::vector<std::string> files;
+  for (const auto& file : Sources()) {
+    const std::string text = Read(SourceDirectory() / file);
+    if (text.find("#include \"scenario/sections/decision.h\"") == std::string::npos) continue;
+    files.push_back(file.string());
+  }
+  EXPECT_THAT(files,
+              ElementsAre("scenario/sections/field_view.cc",
+                          "services/decision/conflict/conflict_measures.cc",
+                          "services/decision/policies/policies.cc", "tools/fogline/report.cc"));
+}
+
 /// The place of a library in the order: that of the first room in its folder. A library whose
 /// folder has no room stands behind all.
 std::size_t PlaceOf(const std::string& folder) {

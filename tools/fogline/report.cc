@@ -23,6 +23,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "scenario/sections/decision.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/pairing.h"

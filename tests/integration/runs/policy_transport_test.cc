@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenario/sections/decision.h"
 #include "scenario/sections/scenario.h"
 #include "tests/integration/runs/transports.h"
 

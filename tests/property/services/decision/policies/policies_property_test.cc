@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/random.h"
+#include "scenario/sections/decision.h"
 #include "services/arbitrator/arbitrator.h"
 #include "services/decision/policies/policies.h"
 #include "services/fusion/fusion.h"

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "scenario/sections/decision.h"
 #include "services/acc/acc_controller.h"
 #include "services/decision/policies/policies.h"
 #include "services/metrics/follower_metrics.h"

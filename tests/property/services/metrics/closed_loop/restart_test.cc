@@ -2,6 +2,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include "scenario/sections/decision.h"
 #include "tests/property/services/acc/draw.h"
 #include "tests/property/services/metrics/closed_loop/shipped.h"
 

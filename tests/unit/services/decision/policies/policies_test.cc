@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
+#include "scenario/sections/decision.h"
 #include "services/decision/policies/availability.h"
 #include "tests/unit/services/decision/policies/example_policy.h"
 

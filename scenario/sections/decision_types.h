@@ -1,0 +1,23 @@
+// The types of the choices of a scenario among policies and measures of conflict. decision.h has
+// the lists of their values. An extension replaces these lists, so only the few files that need a
+// list include it; all others see the types alone.
+#pragma once
+
+#include <cstdint>
+
+namespace fogline {
+
+/// Policy for the authority over the host: an index of the list in decision.h, and of the table in
+/// services/decision/policies/policies.cc. Only the two that other code refers to have an
+/// enumerator.
+enum class Policy : std::uint8_t { kNone, kTraded };
+
+/// A measure of conflict: an index of the list in decision.h, and of the first table in
+/// services/decision/conflict/conflict_measures.cc.
+enum class MeasureChoice : std::uint8_t { kDoc };
+
+/// A measure of which sensor is wrong: an index of the list in decision.h, and of the second table
+/// in that file.
+enum class BlameChoice : std::uint8_t { kNis };
+
+}  // namespace fogline
