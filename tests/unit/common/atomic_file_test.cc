@@ -15,11 +15,13 @@
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
+
+using test::ErrorOf;
 
 class AtomicFileTest : public testing::Test {
  protected:
@@ -28,17 +30,6 @@ class AtomicFileTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
   bool IsEmpty() const { return std::filesystem::is_empty(folder_.path()); }
-
-  /// The error text for a file that cannot be written.
-  template <class Call>
-  static std::string ErrorOf(const Call& call) {
-    try {
-      call();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
 
   const test::ScratchFolder folder_;
   const std::string file_ = folder_.File("result.csv");

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -21,12 +21,7 @@ class FileLockTest : public testing::Test {
  protected:
   /// The error text of an attempt to take a lock, which is given back at once. "" if there is none.
   static std::string ErrorOf(const std::string& path, Kind kind) {
-    try {
-      const FileLock lock(path, kind, "--log", "run");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::ErrorOf([&] { const FileLock lock(path, kind, "--log", "run"); });
   }
   static std::string Refusal(const std::string& path) {
     return path + ": error: --log: is being written by another run (pid " +

@@ -11,6 +11,8 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/input_errors.h"
+
 namespace fogline {
 namespace {
 
@@ -180,13 +182,8 @@ TEST(ExplainTest, TakesAnyIndexOfAList) {
 }
 
 TEST(ExplainTest, SuggestsAFieldForAWrongPointer) {
-  try {
-    ExplainField("/fog/visibility");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "error: /fog/visibility: no such field; did you mean \"/fog/visibility_m\"?");
-  }
+  EXPECT_EQ(test::ErrorOf([] { ExplainField("/fog/visibility"); }),
+            "error: /fog/visibility: no such field; did you mean \"/fog/visibility_m\"?");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/services/acc/two_cars.h"
 
 namespace fogline {
@@ -274,12 +274,8 @@ TEST(AccControllerTest, RefusesWeightsThatMakeAnIllConditionedProblem) {
   section.weight_acceleration = 0;
   section.weight_control = 1e-6;
   section.weight_control_change = 0;
-  try {
-    acc::AccController acc(section, 1.0);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("raise weight_control"));
-  }
+  EXPECT_THAT(test::ErrorOf([&] { acc::AccController acc(section, 1.0); }),
+              testing::HasSubstr("raise weight_control"));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/conflict/over_time/lidar_modes.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -118,15 +118,10 @@ TEST(ConflictMeterTest, RefusesToTakeAnyOtherScoreForAProbability) {
       EXPECT_NO_THROW(arbitrator::ConflictMeter{scenario});
       continue;
     }
-    try {
-      const arbitrator::ConflictMeter meter(scenario);
-      ADD_FAILURE() << row.name;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.what(),
-                "/arbitrator/measure_scale: \"probability\" needs a measure whose score is a "
-                "probability, such as \"lidar_modes\"; /arbitrator/measure is \"" +
-                    std::string(row.name) + "\"");
-    }
+    EXPECT_EQ(test::ErrorOf([&] { const arbitrator::ConflictMeter meter(scenario); }),
+              "/arbitrator/measure_scale: \"probability\" needs a measure whose score is a "
+              "probability, such as \"lidar_modes\"; /arbitrator/measure is \"" +
+                  std::string(row.name) + "\"");
   }
 }
 

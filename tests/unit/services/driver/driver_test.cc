@@ -8,7 +8,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -161,24 +161,17 @@ TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
   scenario.step_s = 0.003;  // 0.8 s are 266 steps
   EXPECT_NO_THROW(driver::Driver{scenario}) << "he has none";
   scenario.human.misjudges = true;
-  const auto error = [&] {
-    try {
-      const driver::Driver driver(scenario);
-    } catch (const InputError& refused) {
-      return std::string(refused.what());
-    }
-    return std::string("none");
-  };
+  const auto error = [&] { return test::ErrorOf([&] { const driver::Driver driver(scenario); }); };
   EXPECT_EQ(error(),
             "/step_s: 0.003 s is too short for the driver: human driver: the reaction time is "
             "longer than 254 steps");
   scenario.step_s = 0.005;
-  EXPECT_EQ(error(), "none");
+  EXPECT_EQ(error(), "");
   // A driver who can lose awareness may react later: 0.8 s + 0.5 x 0.7 s are 288 steps of 4 ms.
   scenario.step_s = 0.004;
-  EXPECT_EQ(error(), "none");
+  EXPECT_EQ(error(), "");
   scenario.human.loses_awareness = true;
-  EXPECT_NE(error(), "none");
+  EXPECT_NE(error(), "");
 }
 
 // ---- awareness ---------------------------------------------------------------------------------

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "services/follower/driver_assignment.h"
 #include "services/follower/follower.h"
 #include "services/follower/person.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -129,14 +129,9 @@ TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
   scenario.followers.cars = {{}, {FollowerDriver::kHuman, FollowerStyle::kCautious}};
   scenario.step_s = 0.004;  // 1.1 s are 275 steps
   scenario.follower.horizon_steps = 5;
-  try {
-    follower::Follower follower(scenario);
-    FAIL() << "was taken";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(),
-              std::string("/step_s: 0.004 s is too short for a person in following car 1: human "
-                          "driver: the reaction time is longer than 254 steps"));
-  }
+  EXPECT_EQ(test::ErrorOf([&] { follower::Follower follower(scenario); }),
+            "/step_s: 0.004 s is too short for a person in following car 1: human driver: the "
+            "reaction time is longer than 254 steps");
 }
 
 TEST(DriverAssignmentTest, IsThePapersWithoutASection) {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "services/runtime/wire/wire.h"
 #include "services/world/world.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/services/world/commands.h"
 
 namespace fogline {
@@ -182,12 +182,7 @@ TEST(WorldVehicleTest, ResumesAsIfItHadKeptItsAccelerationForLong) {
 }
 
 std::string RefusalOf(const Scenario& scenario) {
-  try {
-    world::World world(scenario);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::ErrorOf([&scenario] { world::World world(scenario); });
 }
 
 TEST(WorldVehicleTest, RefusesARoadWhosePlacesDoNotIncrease) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
+#include "tests/support/input_errors.h"
 #include "tools/calibrate/calibrate.h"
 
 namespace fogline {
@@ -116,14 +117,9 @@ TEST(ObjectiveTest, StopsWhenAsked) {
 TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
   calibrate::CalibrationProblem problem = ShortProblem();
   problem.scenario.arbitrator.policy = Policy::kNone;
-  try {
-    const calibrate::Objective objective(problem);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "scenario: error: /arbitrator/policy is none, which uses no threshold; these "
-                 "policies do: traded, adaptive, availability");
-  }
+  EXPECT_EQ(test::ErrorOf([&] { const calibrate::Objective objective(problem); }),
+            "scenario: error: /arbitrator/policy is none, which uses no threshold; these policies "
+            "do: traded, adaptive, availability");
 }
 
 TEST(CalibrateTest, IsNeverWorseThanTheStart) {

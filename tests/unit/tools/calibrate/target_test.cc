@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -20,16 +20,11 @@ class TargetTest : public testing::Test {
   }
   // The error text for a file, without the file's name at its beginning.
   std::string ErrorOf(const std::string& text) const {
-    try {
-      Read(text);
-      return "";
-    } catch (const InputError& error) {
-      std::string what = error.what();
-      for (std::size_t at = 0; (at = what.find(file_)) != std::string::npos;) {
-        what.erase(at, file_.size());
-      }
-      return what;
+    std::string what = test::ErrorOf([&] { Read(text); });
+    for (std::size_t at = 0; (at = what.find(file_)) != std::string::npos;) {
+      what.erase(at, file_.size());
     }
+    return what;
   }
 
  private:
@@ -75,13 +70,8 @@ TEST_F(TargetTest, NeedsRows) {
 }
 
 TEST_F(TargetTest, NeedsAFile) {
-  try {
-    calibrate::ReadTarget("/nowhere/table.json");
-    FAIL() << "read";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "/nowhere/table.json: error: --target: cannot be read: No such file or directory");
-  }
+  EXPECT_EQ(test::ErrorOf([] { calibrate::ReadTarget("/nowhere/table.json"); }),
+            "/nowhere/table.json: error: --target: cannot be read: No such file or directory");
 }
 
 TEST_F(TargetTest, CanBeThePublishedRows) {

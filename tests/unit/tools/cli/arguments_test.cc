@@ -13,6 +13,7 @@
 
 #include "common/errors.h"
 #include "tests/support/environment_url.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -21,16 +22,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-/// The error text of a call; "" if it has none.
-std::string ErrorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 struct Printed {
   std::string out;

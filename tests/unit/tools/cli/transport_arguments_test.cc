@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "common/errors.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/support/command.h"
 #include "tests/support/environment_url.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline::test {
 namespace {
@@ -29,12 +29,7 @@ ExperimentOptions Read(std::vector<std::string> words, const std::string& usual 
 
 /// Why a command line is refused; "" if it is not.
 std::string Refusal(const std::vector<std::string>& words) {
-  try {
-    Read(words);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return ErrorOf([&words] { Read(words); });
 }
 
 const std::string kUrl = "udpm://239.255.76.67:7700?ttl=0";

@@ -9,6 +9,7 @@
 #include "common/errors.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/copied_log.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/tools/short_run.h"
 #include "tools/runner/resumed_log.h"
 
@@ -101,15 +102,10 @@ TEST_F(DirectLogTest, RefusesAMessageThatIsNotTheOneItHas) {
   truth_t truth{};
   truth.header.step = 2;
   runtime::Encode(truth, other);
-  try {
-    log.Add(2, ChannelOf<truth_t>(), 0, other);
-    FAIL() << "it was taken";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(),
-              part_ +
-                  ": error: --resume: step 2: TRUTH differs from what world computes here: the log "
-                  "was made by another program, or another version");
-  }
+  EXPECT_EQ(ErrorOf([&] { log.Add(2, ChannelOf<truth_t>(), 0, other); }),
+            part_ +
+                ": error: --resume: step 2: TRUTH differs from what world computes here: the log "
+                "was made by another program, or another version");
 }
 
 TEST_F(DirectLogTest, CannotBeWrittenWhereThereIsNoFolder) {

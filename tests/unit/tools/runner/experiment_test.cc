@@ -11,6 +11,7 @@
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/copied_log.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/tools/short_run.h"
 #include "tools/runner/bus_run.h"
 
@@ -96,12 +97,8 @@ TEST_F(RunTest, ComputesTheStepsAgainOnRequest) {
 }
 
 TEST_F(RunTest, RefusesATransportThatIsNone) {
-  try {
-    Run("pigeon");
-    FAIL() << "it ran";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), StartsWith("error: --transport pigeon: neither direct, memq, "));
-  }
+  EXPECT_THAT(ErrorOf([&] { Run("pigeon"); }),
+              StartsWith("error: --transport pigeon: neither direct, memq, "));
 }
 
 TEST_F(RunTest, ReadFromItsLogIsTheSame) {

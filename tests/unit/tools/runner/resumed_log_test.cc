@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "common/errors.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/copied_log.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -39,12 +39,7 @@ class ResumedLogTest : public testing::Test {
   }
   /// Why a log cannot be resumed; "" if it can.
   static std::string Refusal(const std::string& log, const runtime::SigningKey* key = nullptr) {
-    try {
-      const ResumedLog resumed(log, key);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return ErrorOf([&] { const ResumedLog resumed(log, key); });
   }
 
   const ScratchFolder folder_;

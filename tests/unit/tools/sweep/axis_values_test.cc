@@ -3,25 +3,16 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
+#include "tests/support/input_errors.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline {
 namespace {
 
+using test::ErrorOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-template <class Parse>
-std::string ErrorOf(Parse parse) {
-  try {
-    parse();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(AxisValuesTest, AreAListAsItStands) {
   EXPECT_THAT(sweep::ParseAxis("/fog/bias_m=0.2,0.30").values, ElementsAre("0.2", "0.30"));

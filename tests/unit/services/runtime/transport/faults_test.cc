@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "common/errors.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline {
 namespace {
@@ -143,13 +143,8 @@ TEST(FaultsTest, AreReadFromText) {
 }
 
 TEST(FaultsTest, AreRefusedWithAReason) {
-  const auto why = [](std::string_view text) -> std::string {
-    try {
-      runtime::ParseFaults(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "taken";
+  const auto why = [](std::string_view text) {
+    return test::ErrorOf([text] { runtime::ParseFaults(text); });
   };
   EXPECT_THAT(why("los=0.1"), HasSubstr("--faults: \"los\" is no kind of fault; any of loss="));
   EXPECT_THAT(why("loss"), HasSubstr("\"loss\" has no value"));

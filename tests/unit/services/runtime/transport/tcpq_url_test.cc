@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline::runtime::tcpq {
 namespace {
 
 std::string ErrorOf(const std::string& url) {
-  try {
-    return "none: " + runtime::tcpq::ResolveUrl(url).Url();
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::ErrorOf([&url] { runtime::tcpq::ResolveUrl(url); });
 }
 
 TEST(TcpqUrlTest, HasLcmsDefaults) {

@@ -11,6 +11,7 @@
 
 #include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/machine.h"
 
 namespace fogline {
@@ -198,12 +199,7 @@ TEST(SigningKeyTest, IsNotReadFromAPipeWhichMayHaveNoWriter) {
 
 /// The error text for a key file, "" if it is accepted.
 std::string Complaint(const std::string& file) {
-  try {
-    runtime::SigningKey::Load(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::ErrorOf([&file] { runtime::SigningKey::Load(file); });
 }
 
 TEST(SigningKeyTest, IsRefusedIfGroupOrOthersCanReadOrChangeItsFile) {
