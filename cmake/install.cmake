@@ -11,7 +11,7 @@ install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
 
-foreach(part IN ITEMS common lcmtypes scenario runtime)
+foreach(part IN ITEMS common lcmtypes scenario wire runtime)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
   install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib)
 endforeach()

@@ -220,7 +220,8 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
 TEST(SwapTest, ARoleFromElsewhereLinksOnlyTheRuntimeAndWhatTheRuntimeUses) {
   const Elsewhere elsewhere;
   EXPECT_THAT(elsewhere.LibrariesOfMyDriver(),
-              ElementsAre("libfogline_common.a", "libfogline_runtime.a", "libfogline_scenario.a"));
+              ElementsAre("libfogline_common.a", "libfogline_runtime.a", "libfogline_scenario.a",
+                          "libfogline_wire.a"));
 }
 
 TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
