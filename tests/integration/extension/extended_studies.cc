@@ -10,6 +10,7 @@
 #include "scenario/io/loader.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/policies/policies.h"
+#include "tests/support/input_errors.h"
 #include "tools/study/study.h"
 
 namespace fogline {
@@ -71,6 +72,15 @@ TEST(ExtensionTest, AnotherMeasureOfTheTableIsInTheScenarioAndInTheConflictStudy
   EXPECT_EQ(measures.size(), conflict::ConflictMeasures().size());
   ASSERT_TRUE(measures.contains("relative"));
   EXPECT_EQ(measures.at("relative"), measures.at("doc")) << "in every condition";
+}
+
+TEST(ExtensionTest, AnotherMeasureOfConflictIsRefusedAsAMeasureOfBlame) {
+  const auto error = [](const std::string& choice) {
+    return test::ErrorOf([&] { ParseScenario(R"({"version": 1})", "f", {choice}); });
+  };
+  EXPECT_EQ(error("/arbitrator/measure=relative"), "");
+  EXPECT_THAT(error("/arbitrator/blame=relative"),
+              HasSubstr("error: /arbitrator/blame: \"relative\" is not one of \"nis\", "));
 }
 
 }  // namespace
