@@ -125,6 +125,33 @@ TEST_F(SetupTest, SaysWhyNpmFailed) {
   }
 }
 
+TEST_F(SetupTest, RefusesAnNpmThatCannotReadTheLockFileBeforeItInstallsAnything) {
+  const std::string npm = Content(File("bin/npm"));
+  const auto write_npm = [&](const std::string& version) {
+    Write("npm", "[ $1 = --version ] && { echo " + version + "; exit; }\n" + npm);
+  };
+  // GIVEN a machine without Debian packages
+  Write("dpkg-query", "true");
+  write_npm("6.14.18");
+  const Outcome old = Setup();
+  EXPECT_EQ(old.code, 3);
+  EXPECT_EQ(old.out, "");
+  EXPECT_EQ(old.err,
+            "tools/setup: error: npm 6.14.18 cannot read package-lock.json, which needs npm 7 or a "
+            "later one\n");
+  EXPECT_EQ(Content(File("calls")), "");
+  // WHEN it is replaced
+  Write("dpkg-query", "echo installed");
+  for (const char* version : {"7.0.0", "10.9.2"}) {
+    write_npm(version);
+    std::filesystem::remove_all(File("node_modules"));
+    EXPECT_THAT(Calls(), HasSubstr("npm ci")) << version;
+  }
+  // An old one does no harm where nothing has to be installed.
+  write_npm("6.14.18");
+  EXPECT_EQ(Calls(), "");
+}
+
 TEST_F(SetupTest, InstallsDebiansNpmOnlyIfItNeedsOneAndThereIsNone) {
   EXPECT_THAT(Calls(), Not(HasSubstr("apt-get")));
   std::filesystem::rename(File("bin/npm"), File("tmp/npm"));
