@@ -1,9 +1,6 @@
-// The log of a run is changed during the run or later. The run, or the reader of the log, reports
-// the change.
-#include <fcntl.h>
+// The log or a role of a run is not what it should be, and the run reports it.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <csignal>
@@ -11,63 +8,15 @@
 #include <fstream>
 #include <functional>
 
-#include "services/log/event_log.h"
-#include "services/log/log_seal.h"
-#include "services/runtime/transport/bus.h"
-#include "services/runtime/wire/message_signer.h"
+#include "services/runtime/wire/wire.h"
+#include "tests/integration/logs/log_integrity_fixture.h"
 #include "tests/support/command.h"
-#include "tests/support/relay_fixture.h"
 
 namespace fogline::test {
 namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
-using Words = std::vector<std::string>;
-using Payload = std::vector<std::uint8_t>;
-
-Words With(Words command, const Words& more) {
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
-}
-
-/// The offset of the first event of a channel in a log, and the event's size in bytes.
-struct Place {
-  std::size_t at = 0;
-  std::size_t size = 0;
-};
-Place PlaceOf(const std::string& log, std::string_view channel) {
-  log::EventLogReader reader(log);
-  std::size_t at = 0;
-  while (const auto event = reader.Next()) {
-    if (event->channel == channel) return {.at = at, .size = log::SizeInFile(*event)};
-    at = reader.good_bytes();
-  }
-  ADD_FAILURE() << "no " << channel << " in " << log;
-  return {};
-}
-
-void FlipLowestBit(const std::string& file, std::size_t at) {
-  const int fd = open(file.c_str(), O_RDWR);
-  std::uint8_t byte = 0;
-  EXPECT_EQ(pread(fd, &byte, 1, static_cast<off_t>(at)), 1);
-  byte ^= 1;
-  EXPECT_EQ(pwrite(fd, &byte, 1, static_cast<off_t>(at)), 1);
-  close(fd);
-}
-
-/// Copies the events of a log into another file, altered by `change` and without the log's seal.
-void Rewrite(const std::string& from, const std::string& to,
-             const std::function<void(std::string_view channel, Payload&)>& change) {
-  log::EventLogReader reader(from);
-  log::EventLogWriter writer(to);
-  while (const auto event = reader.Next()) {
-    if (event->channel == log::kLogSealChannel) continue;
-    Payload bytes(event->data.begin(), event->data.end());
-    change(event->channel, bytes);
-    writer.Write(event->channel, event->utime, bytes);
-  }
-}
 
 void PutRunId(std::int64_t run_id, Payload& bytes) {
   for (int i = 0; i < 8; ++i) {
@@ -75,39 +24,6 @@ void PutRunId(std::int64_t run_id, Payload& bytes) {
         static_cast<std::uint8_t>(run_id >> (8 * (7 - i)));
   }
 }
-
-class LogIntegrityTest : public testing::Test {
- protected:
-  /// A run with a driver from elsewhere. The run waits until the test starts this driver.
-  Words Run(const Words& more = {}) const {
-    return With({Program("fogline"), "run", "scenario/paper.json", "--json", "--external", "driver",
-                 "--stall-timeout", "60", "--lcm-url", url_, "--log", log_},
-                more);
-  }
-  Words Driver() const { return {Program("fogline-driver"), "--lcm-url", url_}; }
-  std::int64_t RunIdIn(const std::string& err) const {
-    return std::stoll(err.substr(err.find("run ") + 4));
-  }
-  static nlohmann::json Digest(const Words& arguments, int code) {
-    const Outcome outcome = RunCommand(With({Program("fogline"), "digest", "--json"}, arguments));
-    EXPECT_EQ(outcome.code, code) << outcome.out << outcome.err;
-    return nlohmann::json::parse(outcome.out, nullptr, false)[0];
-  }
-  /// Makes a log of a run in one process. @return its path
-  std::string DirectLog(const std::string& name, const Words& more = {}) const {
-    const std::string log = folder_.File(name);
-    const Outcome run =
-        RunCommand(With({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
-                         "--quiet", "--set", "/steps=50", "--log", log},
-                        more));
-    EXPECT_EQ(run.code, 0) << run.err;
-    return log;
-  }
-
-  ScratchFolder folder_;
-  const std::string log_ = folder_.File("run.lcm");
-  const std::string url_ = runtime::Bus(runtime::FreshMulticastUrl()).url();
-};
 
 // ---- the log of a run, while it goes on ---------------------------------------------------------
 
@@ -148,7 +64,7 @@ class FlippedBitTest : public LogIntegrityTest {
 
 TEST_F(FlippedBitTest, InAMessageEndsTheRun) {
   const Outcome outcome = Disturbed([&](Background&) {
-    const Place radar = PlaceOf(log_, "RADAR");
+    const EventPlace radar = FirstEventOf(log_, "RADAR");
     FlipLowestBit(log_, radar.at + radar.size - 17);  // in its range rate
   });
   EXPECT_EQ(outcome.code, 3);
@@ -159,7 +75,7 @@ TEST_F(FlippedBitTest, InAMessageEndsTheRun) {
 
 TEST_F(FlippedBitTest, BeforeTheRecorderIsKilledEndsTheRunToo) {
   const Outcome outcome = Disturbed([&](Background& run) {
-    const Place radar = PlaceOf(log_, "RADAR");
+    const EventPlace radar = FirstEventOf(log_, "RADAR");
     FlipLowestBit(log_, radar.at + radar.size - 17);
     kill(PidOf(run.Err(), "recorder"), SIGKILL);
     EXPECT_TRUE(run.WaitForErr("started again as pid")) << run.Err();
@@ -175,188 +91,6 @@ TEST_F(FlippedBitTest, IsTheOnlyThingThatEndsTheRunWhenItsRecorderIsKilled) {
   });
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(Digest({log_}, 0)["seal"], "holds");
-}
-
-// ---- the seal -----------------------------------------------------------------------------------
-
-TEST_F(LogIntegrityTest, ARunSealsItsLogOnEveryTransport) {
-  for (const char* transport : {"direct", "memq", "udpm"}) {
-    const std::string log = folder_.File(std::string(transport) + ".lcm");
-    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
-                                    transport, "--json", "--log", log});
-    ASSERT_EQ(run.code, 0) << run.err;
-    const auto digest = Digest({log}, 0);
-    EXPECT_EQ(digest["seal"], "holds");
-    EXPECT_EQ(digest["signature"], "none");
-    EXPECT_EQ(digest["digest"], nlohmann::json::parse(run.out)["digest"]);
-    EXPECT_EQ(digest["builds"].size(), kRoles.size());
-    EXPECT_FALSE(digest["builds"]["driver"].is_null());
-  }
-}
-
-TEST_F(LogIntegrityTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
-  const Outcome run =
-      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--speed", "10",
-                  "--set", "/steps=20", "--json", "--verify", "--log", log_});
-  ASSERT_EQ(run.code, 0) << run.err;
-  const auto json = nlohmann::json::parse(run.out);
-  EXPECT_EQ(json["log_checked"], true);
-  EXPECT_THAT(json["verified"]["roles"], IsEmpty());
-  EXPECT_TRUE(json["verified"]["same"].is_null()) << "nothing was compared";
-  EXPECT_EQ(json["verified"]["left_out"][0]["why"], "a run in real time");
-  EXPECT_EQ(Digest({log_}, 0)["seal"], "holds");
-  // WHEN a STATUS is changed (the measures of real time come from STATUS)
-  const Place status = PlaceOf(log_, "STATUS");
-  FlipLowestBit(log_, status.at + status.size - 1);
-  const Outcome metrics = RunCommand({Program("fogline"), "metrics", log_});
-  EXPECT_EQ(metrics.code, 1);
-  EXPECT_THAT(metrics.err, HasSubstr("altered: the bytes differ from the sealed ones"));
-}
-
-TEST_F(LogIntegrityTest, ARunThatIsInterruptedSealsWhatItHas) {
-  Background run(Run({"--pace", "1"}));
-  const Background driver(Driver());
-  ASSERT_TRUE(GrowsTo(30'000, log_)) << run.Err();
-  run.Signal(SIGINT);
-  EXPECT_EQ(run.Wait(), 130);
-  const auto digest = Digest({log_}, 1);
-  EXPECT_EQ(digest["complete"], false);
-  EXPECT_EQ(digest["seal"], "holds");
-}
-
-TEST_F(LogIntegrityTest, EveryReaderNamesALogThatWasChangedSinceItWasSealed) {
-  const std::string log = DirectLog("log.lcm");
-  const Place radar = PlaceOf(log, "RADAR");
-  FlipLowestBit(log, radar.at + radar.size - 17);
-  for (const Words& verb :
-       {Words{"digest"}, Words{"metrics"}, Words{"events"}, Words{"replay", "--role", "world"},
-        Words{"diff", log}, Words{"report", "-o", folder_.File("report.html")},
-        Words{"export", "--out", folder_.File("run.mat")}}) {
-    const Outcome outcome = RunCommand(With(With({Program("fogline")}, verb), {log}));
-    EXPECT_EQ(outcome.code, 1) << verb.front() << ": " << outcome.out;
-    EXPECT_THAT(outcome.err, HasSubstr("altered: the seal names digest ")) << verb.front();
-  }
-}
-
-TEST_F(LogIntegrityTest, TheFileOfASealedLogIsComparedByDigest) {
-  const std::string log = DirectLog("log.lcm");
-  FlipLowestBit(log, 19);  // the time of the first event; no digest covers it
-  EXPECT_EQ(Digest({log}, 1)["seal"], "broken");
-}
-
-TEST_F(LogIntegrityTest, ALogIsSignedWithTheKeyOfItsRun) {
-  const std::string key = folder_.File("key");
-  const std::string other = folder_.File("other_key");
-  runtime::SigningKey::Create(key);
-  runtime::SigningKey::Create(other);
-  for (const char* transport : {"direct", "memq", "udpm"}) {
-    SCOPED_TRACE(transport);
-    const std::string log = folder_.File(std::string(transport) + ".lcm");
-    ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
-                          transport, "--quiet", "--set", "/steps=50", "--key", key, "--log", log})
-                  .code,
-              0);
-    EXPECT_EQ(Digest({log}, 0)["signature"], "not checked");
-    EXPECT_EQ(Digest({log, "--key", key}, 0)["signature"], "holds");
-    EXPECT_EQ(Digest({log, "--key", other}, 1)["signature"], "wrong");
-    // WHEN the log is changed and written again without the key
-    const std::string forged = folder_.File("forged.lcm");
-    Rewrite(log, forged, [](std::string_view channel, Payload& bytes) {
-      if (channel == "RADAR") bytes.back() ^= 1;
-    });
-    EXPECT_EQ(Digest({forged, "--key", key}, 1)["signature"], "none");
-    EXPECT_EQ(Digest({forged}, 0)["seal"], "none") << "as a log of lcm-logger";
-  }
-}
-
-TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
-  const std::string log = DirectLog("log.lcm");
-  const std::string copy = folder_.File("copy.lcm");
-  {
-    // Over TCP, because lcm-logger loses UDP messages when a busy machine holds it up.
-    const Relay relay;
-    runtime::Bus bus(relay.url());
-    Background logger(
-        {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), copy});
-    // Sends until lcm-logger has written a message of this channel, thus all earlier ones too.
-    const auto mark = [&](std::string_view channel) {
-      const auto has = [&] {
-        std::ifstream in(copy, std::ios::binary);
-        const std::string content{std::istreambuf_iterator<char>(in), {}};
-        return content.find(channel) != std::string::npos;
-      };
-      const TimePoint end = Clock::now() + kPatience;
-      while (!has() && IsAlive(logger.pid()) && Clock::now() < end) {
-        bus.Publish(channel, Payload(runtime::kHeaderEnd));
-        bus.Wait(milliseconds(10));
-      }
-      return has();
-    };
-    ASSERT_TRUE(mark("BEGIN"));
-    Background player({"lcm-logplayer", "--speed=5", "--lcm-url=" + relay.url(), log});
-    ASSERT_EQ(player.Wait(), 0) << player.Err();
-    ASSERT_TRUE(mark("END"));
-    logger.Signal(SIGINT);
-    logger.Wait();
-  }
-  const auto ours = Digest({log}, 0);
-  const auto theirs = Digest({copy}, 0);
-  EXPECT_EQ(theirs["digest"], ours["digest"]);
-  EXPECT_EQ(theirs["seal"], "copy");
-  EXPECT_EQ(theirs["builds"], ours["builds"]);
-}
-
-TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInRealTime) {
-  const std::string key = folder_.File("key");
-  runtime::SigningKey::Create(key);
-  const std::string lockstep = DirectLog("lockstep.lcm", {"--key", key});
-  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--speed",
-                        "10", "--quiet", "--set", "/steps=50", "--key", key, "--log", log_})
-                .code,
-            0);
-  EXPECT_EQ(Digest({log_, "--key", key}, 0)["seal"], "holds");
-  constexpr std::size_t kTimeInEvent = 19;  // the last byte of it: sync word, number, time
-  for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
-    FlipLowestBit(log, kTimeInEvent);
-    FlipLowestBit(log, PlaceOf(log, log::kLogSealChannel).at + kTimeInEvent);
-    const auto digest = Digest({log, "--key", key}, code);
-    EXPECT_EQ(digest["seal"], "copy") << log;
-    EXPECT_EQ(digest["signature"], "holds") << log;
-  }
-}
-
-TEST_F(LogIntegrityTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
-  const std::string key = folder_.File("key");
-  const std::string other = folder_.File("other_key");
-  runtime::SigningKey::Create(key);
-  runtime::SigningKey::Create(other);
-  // GIVEN the signed log of a run that was interrupted
-  Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "memq", "--pace",
-                  "10", "--key", key, "--log", log_});
-  ASSERT_TRUE(GrowsTo(200'000, log_)) << run.Err();
-  run.Signal(SIGINT);
-  ASSERT_EQ(run.Wait(), 130) << run.Err();
-  EXPECT_EQ(Digest({log_, "--key", key}, 1)["signature"], "holds");
-  const auto resume = [&](const std::string& with) {
-    return RunCommand({Program("fogline"), "run", "--resume", log_, "--transport", "memq",
-                       "--quiet", "--key", with});
-  };
-  const auto expect_refused = [&](const std::string& with, const std::string& why) {
-    const std::string before = Content(log_);
-    const Outcome refused = resume(with);
-    EXPECT_EQ(refused.code, 2) << refused.err;
-    EXPECT_THAT(refused.err, HasSubstr(log_ + ": error: --resume: " + why));
-    EXPECT_EQ(Content(log_), before);
-  };
-  expect_refused(other, "the seal of the log is not signed with this key");
-  // WHEN one bit of its first step is changed
-  const Place radar = PlaceOf(log_, "RADAR");
-  FlipLowestBit(log_, radar.at + radar.size - 17);
-  expect_refused(key, "the log is not the one that was sealed: ");
-  // THEN the run does not continue this log, but continues the log that was sealed
-  FlipLowestBit(log_, radar.at + radar.size - 17);
-  EXPECT_EQ(resume(key).code, 0);
-  EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");
 }
 
 // ---- builds -------------------------------------------------------------------------------------
