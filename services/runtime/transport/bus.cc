@@ -37,8 +37,11 @@ bool IsTaken(std::uint16_t port) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  // Without SO_REUSEADDR, which LCM sets, this fails beside any other socket.
-  const bool taken = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  // Without SO_REUSEADDR, which LCM sets, bind() fails with EADDRINUSE beside any other socket.
+  // Another error does not say that there is one.
+  const bool taken =
+      bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
+      errno == EADDRINUSE;
   close(probe);
   return taken;
 }
