@@ -7,7 +7,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/decision/conflict/conflict_measure.h"
 #include "services/decision/conflict/one_step/doc.h"
-#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/conflict_inputs.h"
 #include "services/graph.h"
 
 namespace fogline::arbitrator {

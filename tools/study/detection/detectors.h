@@ -14,7 +14,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/conflict/conflict_parameters.h"
-#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/conflict_inputs.h"
 #include "services/metrics/closed_loop/closed_loop.h"
 
 namespace fogline::study {
