@@ -7,10 +7,10 @@
 #include "services/decision/conflict/one_step/binned_belief.h"
 #include "services/decision/conflict/one_step/consonant_belief.h"
 #include "services/decision/conflict/one_step/divergence.h"
-#include "services/decision/conflict/one_step/doc.h"
 #include "services/decision/conflict/one_step/momentary.h"
-#include "services/decision/conflict/one_step/nis.h"
+#include "services/decision/conflict/over_time/doc.h"
 #include "services/decision/conflict/over_time/lidar_modes.h"
+#include "services/decision/conflict/over_time/nis.h"
 #include "services/decision/conflict/over_time/sequential.h"
 #include "services/decision/conflict/over_time/third_witness.h"
 
