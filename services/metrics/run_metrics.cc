@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline::metrics {
 namespace {
@@ -68,15 +68,13 @@ void MeasureAccumulator::AddPairs(const Sample& sample) {
 }
 
 void MeasureAccumulator::AddAuthority(const Sample& sample) {
-  if (!sample.fog_present)
-    human_in_clear_air_.Add(models::HumanIsEngaged(sample.lambda_human) ? 1 : 0);
+  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
-  if (models::HumanIsEngaged(previous_->lambda_human)) {
+  if (HumanIsEngaged(previous_->lambda_human)) {
     measures_.human_time_s += sample.time_s - previous_->time_s;
   }
   if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
-  if (models::HumanDrives(sample.lambda_human) != models::HumanDrives(previous_->lambda_human))
-    AddTransfer(sample);
+  if (HumanDrives(sample.lambda_human) != HumanDrives(previous_->lambda_human)) AddTransfer(sample);
 }
 
 void MeasureAccumulator::AddTransfer(const Sample& sample) {

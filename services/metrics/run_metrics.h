@@ -45,14 +45,14 @@ struct RunMeasures {
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
   /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
-  /// services/models/minimal_risk/modes.h. In traded control he then drives; in shared control he
+  /// services/host_modes.h. In traded control he then drives; in shared control he
   /// may have a small part.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. It ends with the last step, because the command of
   /// that step is never carried out.
   double human_time_s = 0;
   /// Hand-overs in either direction: the human drives in only one of two successive steps, by
-  /// HumanDrives(lambda_H) in services/models/minimal_risk/modes.h. `fogline events` lists the same
+  /// HumanDrives(lambda_H) in services/host_modes.h. `fogline events` lists the same
   /// hand-overs, in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
