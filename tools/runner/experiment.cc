@@ -12,7 +12,7 @@
 #include "common/interrupt.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample_decoder.h"
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/bus_run.h"
@@ -50,7 +50,7 @@ class StepWriter {
  public:
   StepWriter(runtime::Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
 
-  void Add(const metrics::StepView& step) {
+  void Add(const closed_loop::StepView& step) {
     step.ForEachMessage([this](const auto& message) { AddOne(message); });
   }
 
@@ -78,8 +78,8 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   metrics::MeasureAccumulator measures(scenario);
   metrics::FollowerAccumulator followers;
   const TimePoint began = Clock::now();
-  metrics::ClosedLoop loop(scenario);
-  loop.Run(run_id, [&](const metrics::StepView& step) {
+  closed_loop::ClosedLoop loop(scenario);
+  loop.Run(run_id, [&](const closed_loop::StepView& step) {
     writer.Add(step);
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
@@ -218,7 +218,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
-    const metrics::ClosedLoop parts(scenario);
+    const closed_loop::ClosedLoop parts(scenario);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.
     const std::string what = error.what();

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/report/measure_text.h"
 #include "tools/stats/in_order.h"

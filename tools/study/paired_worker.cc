@@ -52,13 +52,13 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
                                              std::int64_t seed) {
   baseline_.clear();
   Run(scenarios.front(), seed,
-      [this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
+      [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
     metrics::MeasureAccumulator measures(scenario);
     metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
     std::size_t i = 0;
-    Run(scenario, seed, [&](const metrics::StepView& step) {
+    Run(scenario, seed, [&](const closed_loop::StepView& step) {
       const metrics::Sample sample = step.ToSample();
       measures.Add(sample);
       // If one run of the pair ended early, SI covers only the steps that both have.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample.h"
 
 namespace fogline::study {
@@ -27,7 +27,7 @@ class PairedWorker {
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit);
 
-  std::optional<metrics::ClosedLoop> loop_;
+  std::optional<closed_loop::ClosedLoop> loop_;
   Scenario scenario_;
   std::vector<metrics::Sample> baseline_;
 };

@@ -43,13 +43,13 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    Run([this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
+    Run([this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
   metrics::MeasureAccumulator measures(scenario_);
   metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
   std::size_t i = 0;
-  Run([&](const metrics::StepView& step) {
+  Run([&](const closed_loop::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     // If one run of the pair ended early, SI covers only the steps that both have.

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/sweep/plan.h"
 
@@ -38,7 +38,7 @@ class SweepWorker {
 
   const SweepPlan& plan_;
   Scenario scenario_;
-  std::optional<metrics::ClosedLoop> loop_;
+  std::optional<closed_loop::ClosedLoop> loop_;
   std::vector<metrics::Sample> baseline_;
 };
 

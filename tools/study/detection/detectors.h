@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/conflict/conflict_parameters.h"
 #include "services/decision/policies/conflict_inputs.h"
-#include "services/metrics/closed_loop/closed_loop.h"
 
 namespace fogline::study {
 
@@ -41,7 +41,7 @@ class DetectorBench {
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
     Prepare(scenario, seed);
-    loop_->Run(0, [&](const metrics::StepView& step) {
+    loop_->Run(0, [&](const closed_loop::StepView& step) {
       const conflict::Evidence evidence{
           .radar = policies::StatedBy(step.radar),
           .lidar = policies::StatedBy(step.lidar),
@@ -55,7 +55,7 @@ class DetectorBench {
   void Prepare(const Scenario& scenario, std::int64_t seed);
 
   Scenario scenario_;
-  std::optional<metrics::ClosedLoop> loop_;
+  std::optional<closed_loop::ClosedLoop> loop_;
   std::optional<policies::Witness> witness_;
   std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;
   std::vector<double> scores_;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/follower_metrics.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
@@ -41,7 +41,7 @@ class StringWorker {
     }
     StringRun run;
     metrics::FollowerAccumulator followers;
-    loop_->Run(0, [&](const metrics::StepView& step) {
+    loop_->Run(0, [&](const closed_loop::StepView& step) {
       const truth_t& truth = step.truth;
       run.collided = truth.collision != truth_t::COLLISION_NONE;
       const double time_s = static_cast<double>(truth.header.utime) * 1e-6;
@@ -60,7 +60,7 @@ class StringWorker {
   }
 
  private:
-  std::optional<metrics::ClosedLoop> loop_;
+  std::optional<closed_loop::ClosedLoop> loop_;
   Scenario scenario_;
 };
 

@@ -15,7 +15,7 @@
 #include "services/radar/radar.h"
 #include "services/world/world.h"
 
-namespace fogline::metrics {
+namespace fogline::closed_loop {
 
 /// The messages of one step; they belong to the algorithms and are valid until the next step.
 struct StepView {
@@ -43,8 +43,8 @@ struct StepView {
     visit(follower);
   }
 
-  Sample ToSample() const {
-    return MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
+  metrics::Sample ToSample() const {
+    return metrics::MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
   }
 };
 
@@ -116,4 +116,4 @@ class ClosedLoop {
   follower::Follower follower_;
 };
 
-}  // namespace fogline::metrics
+}  // namespace fogline::closed_loop

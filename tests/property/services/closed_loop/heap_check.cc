@@ -15,7 +15,7 @@
 #include "services/models/follower/safety_response.h"
 #include "services/models/vehicle/longitudinal_vehicle.h"
 #include "tests/property/services/acc/draw.h"
-#include "tests/property/services/metrics/closed_loop/shipped.h"
+#include "tests/property/services/closed_loop/shipped.h"
 
 // Functions of the C library, which the replacements below call.
 extern "C" void* __libc_malloc(std::size_t size);                       // NOLINT
@@ -102,14 +102,14 @@ bool CheckModels() {
 
 // The number of allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
-  metrics::ClosedLoop loop(scenario);
+  closed_loop::ClosedLoop loop(scenario);
   metrics::MeasureAccumulator measures;
   metrics::FollowerAccumulator followers;
   metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
   long after_first = 0;
   long after_last = 0;
   steps = 0;
-  loop.Run(1, [&](const metrics::StepView& step) {
+  loop.Run(1, [&](const closed_loop::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
