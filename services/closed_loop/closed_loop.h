@@ -3,6 +3,9 @@
 // distributed run.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc.h"
 #include "services/algorithm.h"
@@ -114,6 +117,32 @@ class ClosedLoop {
   driver::Driver driver_;
   arbitrator::Arbitrator arbitrator_;
   follower::Follower follower_;
+};
+
+/// Runs one scenario after the other. For use by one thread.
+class ReusedLoop {
+ public:
+  /// One run; `visit` as of ClosedLoop::Run(). @throws as the constructor of ClosedLoop
+  template <class Visit>
+  void Run(const Scenario& scenario, Visit&& visit) {
+    if (loop_) {
+      loop_->Restart(scenario);
+    } else {
+      loop_.emplace(scenario);
+    }
+    loop_->Run(0, visit);
+  }
+  /// The same with this seed.
+  template <class Visit>
+  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
+    scenario_ = scenario;
+    scenario_.seed = seed;
+    Run(scenario_, visit);
+  }
+
+ private:
+  std::optional<ClosedLoop> loop_;
+  Scenario scenario_;
 };
 
 }  // namespace fogline::closed_loop

@@ -46,6 +46,15 @@ std::string MeasureText(std::string_view name, double value, std::string_view un
   return fmt::format("{:.{}f}", value, decimals);
 }
 
+std::string ListText(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
 std::string CollisionText(const metrics::RunMeasures& measures) {
   if (!measures.collision_time_s) return "";
   return fmt::format("{} at {} s",

@@ -73,16 +73,6 @@ std::string TimeText(double time_s) {
   return text;
 }
 
-/// "a, b and c".
-std::string Listed(const std::vector<std::string>& parts, std::string_view comma) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0) text += i + 1 == parts.size() ? std::string_view(" and ") : comma;
-    text += parts[i];
-  }
-  return text;
-}
-
 /// "In fog from 19 s to 30 s"; "" without fog.
 std::string FogText(std::span<const metrics::Sample> samples) {
   constexpr std::size_t kMostNamed = 3;
@@ -97,7 +87,7 @@ std::string FogText(std::span<const metrics::Sample> samples) {
     spans.push_back(
         fmt::format("from {} s to {} s", TimeText(window.begin_s), TimeText(window.end_s)));
   }
-  return "In fog " + Listed(spans, ", ");
+  return "In fog " + ListText(spans);
 }
 
 /// Errors of the LiDAR in fog, over all runs of a group.
@@ -146,7 +136,7 @@ std::string FogSentence(const Group& group) {
   if (effects.empty()) {
     effects.push_back(fmt::format("was never more than {} wrong", LengthText(tolerance_m)));
   }
-  return fmt::format("{} the LiDAR {}", fog, Listed(effects, ", "));
+  return fmt::format("{} the LiDAR {}", fog, ListText(effects));
 }
 
 /// Safety of a run by itself.

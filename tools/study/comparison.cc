@@ -34,13 +34,10 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
                                   const std::vector<StudyVariant>& variants) {
   std::vector<Scenario> scenarios;
   for (const StudyCase& one : cases) {
-    std::vector<std::string> overrides = one.overrides;
-    overrides.emplace_back(kWithoutTradedControl);
-    scenarios.push_back(context.Load(one.file, overrides));
+    scenarios.push_back(
+        context.Load(one.file, one.overrides, {std::string(kWithoutTradedControl)}));
     for (const StudyVariant& variant : variants) {
-      overrides = one.overrides;
-      overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-      scenarios.push_back(context.Load(one.file, overrides));
+      scenarios.push_back(context.Load(one.file, one.overrides, variant.overrides));
     }
   }
   return scenarios;
@@ -127,6 +124,16 @@ metrics::EventShare Comparison::Collisions(Cell cell) const {
   return metrics::ClopperPearson(events, seeds_);
 }
 
+Estimate Comparison::Point(Cell cell, std::string_view measure) const {
+  Estimate mean = Mean(cell, measure);
+  if (measure == "collided") {
+    const metrics::EventShare share = Collisions(cell);
+    mean.low = share.lower;
+    mean.high = share.upper;
+  }
+  return mean;
+}
+
 metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
   std::int64_t events = 0;
   std::int64_t runs = 0;
@@ -176,19 +183,13 @@ std::string Comparison::Csv(std::size_t reference) const {
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMeasure& measure : ComparedMeasures()) {
-        Estimate mean = Mean({c, v}, measure.name);
-        if (measure.name == "collided") {
-          const metrics::EventShare share = Collisions({c, v});
-          mean.low = share.lower;
-          mean.high = share.upper;
-        }
+        const Estimate mean = Point({c, v}, measure.name);
         const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
                            variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
                            CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
                            CsvText(mean.high), variants_[reference].name, difference.n,
-                           difference.infinite, CsvText(difference.mean), CsvText(difference.low),
-                           CsvText(difference.high));
+                           difference.infinite, CsvText(difference));
       }
     }
   }
@@ -220,16 +221,7 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
     one.name = cases_on_axis ? variants_[s].name : cases_[s].name;
     for (std::size_t p = 0; p < places; ++p) {
       const Cell cell = cases_on_axis ? Cell{p, s} : Cell{s, p};
-      Estimate mean = Mean(cell, measure);
-      if (measure == "collided") {
-        const metrics::EventShare share = Collisions(cell);
-        mean.low = share.lower;
-        mean.high = share.upper;
-      }
-      one.x.push_back(static_cast<double>(p));
-      one.y.push_back(mean.mean);
-      one.low.push_back(mean.low);
-      one.high.push_back(mean.high);
+      AddPoint(one, static_cast<double>(p), Point(cell, measure));
     }
   }
   return figure;
@@ -271,6 +263,13 @@ report::StudyTable Comparison::TableOfVariant(std::size_t variant,
   return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
                              variants_[variant].name, seeds_),
                  rows, true, measures);
+}
+
+void AddPoint(report::StudySeries& series, double x, const Estimate& estimate) {
+  series.x.push_back(x);
+  series.y.push_back(estimate.mean);
+  series.low.push_back(estimate.low);
+  series.high.push_back(estimate.high);
 }
 
 std::string NameForReaders(std::string_view measure) {

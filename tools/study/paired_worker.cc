@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "services/metrics/run_metrics.h"
@@ -36,29 +37,17 @@ RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& s
 
 }  // namespace
 
-template <class Visit>
-void PairedWorker::Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
-  scenario_ = scenario;
-  scenario_.seed = seed;
-  if (loop_) {
-    loop_->Restart(scenario_);
-  } else {
-    loop_.emplace(scenario_);
-  }
-  loop_->Run(0, visit);
-}
-
 std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios,
                                              std::int64_t seed) {
   baseline_.clear();
-  Run(scenarios.front(), seed,
-      [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
+  loop_.Run(scenarios.front(), seed,
+            [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
     metrics::MeasureAccumulator measures(scenario);
     metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
     std::size_t i = 0;
-    Run(scenario, seed, [&](const closed_loop::StepView& step) {
+    loop_.Run(scenario, seed, [&](const closed_loop::StepView& step) {
       const metrics::Sample sample = step.ToSample();
       measures.Add(sample);
       // If one run of the pair ended early, SI covers only the steps that both have.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,11 +23,7 @@ class PairedWorker {
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
 
  private:
-  template <class Visit>
-  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit);
-
-  std::optional<closed_loop::ClosedLoop> loop_;
-  Scenario scenario_;
+  closed_loop::ReusedLoop loop_;
   std::vector<metrics::Sample> baseline_;
 };
 

@@ -12,16 +12,6 @@
 
 namespace fogline::sweep {
 
-template <class Visit>
-void SweepWorker::Run(Visit&& visit) {
-  if (loop_) {
-    loop_->Restart(scenario_);
-  } else {
-    loop_.emplace(scenario_);
-  }
-  loop_->Run(0, visit);
-}
-
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
   baseline_.clear();
@@ -43,13 +33,14 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    Run([this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
+    loop_.Run(scenario_,
+              [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
   metrics::MeasureAccumulator measures(scenario_);
   metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
   std::size_t i = 0;
-  Run([&](const closed_loop::StepView& step) {
+  loop_.Run(scenario_, [&](const closed_loop::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     // If one run of the pair ended early, SI covers only the steps that both have.

@@ -32,13 +32,10 @@ class SweepWorker {
  private:
   /// The row of scenario_. Before the first row of a unit it runs the pair without traded control.
   SweepRow ComputeRow();
-  /// Runs scenario_ to its end.
-  template <class Visit>
-  void Run(Visit&& visit);
 
   const SweepPlan& plan_;
   Scenario scenario_;
-  std::optional<closed_loop::ClosedLoop> loop_;
+  closed_loop::ReusedLoop loop_;
   std::vector<metrics::Sample> baseline_;
 };
 
