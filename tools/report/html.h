@@ -19,6 +19,10 @@ std::string EscapeScript(std::string_view json);
 std::string Fill(std::string_view page,
                  std::initializer_list<std::pair<std::string_view, std::string>> values);
 
+/// A figure that a script draws. The texts are HTML. @param axis name of the y axis
+std::string FigureElement(std::string_view id, std::string_view heading, std::string_view caption,
+                          std::string_view axis);
+
 /// A number with this many decimals and a true minus sign; "–" for NaN and infinity.
 std::string Decimal(double value, int decimals);
 

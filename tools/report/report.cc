@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <ranges>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -85,15 +86,12 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
       OriginElement(run), ShortageElement(run), facts);
 }
 
-std::string FigureElement(const Figure& figure, std::size_t number) {
+std::string NumberedFigure(const Figure& figure, std::size_t number) {
   const std::string unit =
       figure.unit.empty() ? "" : fmt::format(" <span class=\"unit\">{}</span>", figure.unit);
-  return fmt::format(
-      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">"
-      "<span class=\"number\">{1}</span> {2}</h3><p>{3}</p></figcaption>\n"
-      "<p class=\"axis\">{4}{5}</p>\n<div class=\"panels\"></div>\n<div class=\"legend\"></div>\n"
-      "</figure>\n",
-      figure.id, number, figure.title, figure.caption, figure.quantity, unit);
+  return FigureElement(figure.id,
+                       fmt::format("<span class=\"number\">{}</span> {}", number, figure.title),
+                       figure.caption, fmt::format("{}{}", figure.quantity, unit));
 }
 
 std::string ScenarioElement(std::span<const ReportRun> runs, std::size_t index) {
@@ -131,10 +129,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
 /// "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
-  const auto less = [&](const ReportRun& a, const ReportRun& b) { return get(a) < get(b); };
-  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), less);
-  const auto first = get(*least);
-  const auto last = get(*most);
+  const auto [first, last] = std::ranges::minmax(std::views::transform(runs, get));
   return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
 }
 
@@ -180,7 +175,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
   }
   std::string figures;
   for (std::size_t i = 0; i < Figures().size(); ++i) {
-    figures += FigureElement(Figures()[i], i + 1);
+    figures += NumberedFigure(Figures()[i], i + 1);
   }
   const bool no_figures = runs.empty() && curves;
   const std::array scripts{assets::kModelJs,  assets::kScrollJs, assets::kChartJs,

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -109,18 +111,10 @@ std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
 }
 
 /// "m/s2" as "m/s²".
-std::string UnitText(const std::string& unit) {
-  std::string text;
-  for (const char c : unit) {
-    if (c == '2') {
-      text += "²";
-    } else if (c == '3') {
-      text += "³";
-    } else {
-      text += c;
-    }
-  }
-  return EscapeHtml(text);
+std::string UnitText(std::string unit) {
+  boost::replace_all(unit, "2", "²");
+  boost::replace_all(unit, "3", "³");
+  return EscapeHtml(unit);
 }
 
 /// Description of a measure, its unit, and its name in JSON and CSV.
