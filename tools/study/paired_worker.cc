@@ -7,6 +7,7 @@
 
 #include "services/metrics/run_metrics.h"
 #include "tools/stats/statistics.h"
+#include "tools/sweep/engine.h"
 
 namespace fogline::study {
 namespace {
@@ -44,16 +45,10 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
             [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
-    metrics::MeasureAccumulator measures(scenario);
-    metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
-    std::size_t i = 0;
-    loop_.Run(scenario, seed, [&](const closed_loop::StepView& step) {
-      const metrics::Sample sample = step.ToSample();
-      measures.Add(sample);
-      // If one run of the pair ended early, SI covers only the steps that both have.
-      if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);
-    });
-    runs.push_back(ValuesOf(measures.Result(), improvement.Pct()));
+    scenario_ = scenario;
+    scenario_.seed = seed;
+    const sweep::SweepRow row = sweep::RunPaired(loop_, scenario_, baseline_);
+    runs.push_back(ValuesOf(row.measures, row.si_pct));
   }
   return runs;
 }

@@ -24,6 +24,7 @@ class PairedWorker {
 
  private:
   closed_loop::ReusedLoop loop_;
+  Scenario scenario_;
   std::vector<metrics::Sample> baseline_;
 };
 

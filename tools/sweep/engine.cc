@@ -12,6 +12,19 @@
 
 namespace fogline::sweep {
 
+SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
+                   std::span<const metrics::Sample> baseline) {
+  metrics::MeasureAccumulator measures(scenario);
+  metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  std::size_t i = 0;
+  loop.Run(scenario, [&](const closed_loop::StepView& step) {
+    const metrics::Sample sample = step.ToSample();
+    measures.Add(sample);
+    if (i < baseline.size()) improvement.Add(baseline[i++], sample);
+  });
+  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
+}
+
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
   baseline_.clear();
@@ -37,18 +50,8 @@ SweepRow SweepWorker::ComputeRow() {
               [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
-  metrics::MeasureAccumulator measures(scenario_);
-  metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
-  std::size_t i = 0;
-  loop_.Run(scenario_, [&](const closed_loop::StepView& step) {
-    const metrics::Sample sample = step.ToSample();
-    measures.Add(sample);
-    // If one run of the pair ended early, SI covers only the steps that both have.
-    if (policy != Policy::kNone && i < baseline_.size()) {
-      improvement.Add(baseline_[i++], sample);
-    }
-  });
-  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
+  if (policy == Policy::kNone) return RunPaired(loop_, scenario_, {});
+  return RunPaired(loop_, scenario_, baseline_);
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "services/closed_loop/closed_loop.h"
@@ -19,6 +20,12 @@ struct SweepRow {
   /// for a paired run without compromised safety.
   std::optional<double> si_pct;
 };
+
+/// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
+/// empty for a run that is its own pair. If one run of the pair ends early, SI covers only the
+/// steps that both have. @throws as ReusedLoop::Run()
+SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
+                   std::span<const metrics::Sample> baseline);
 
 /// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.
 class SweepWorker {
