@@ -15,6 +15,7 @@
 
 #include "common/atomic_file.h"
 #include "common/file.h"
+#include "common/json.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "services/log/event_log.h"
@@ -147,8 +148,7 @@ auto Into(nlohmann::ordered_json& json) {
   return
       [&json]<class V>(std::string_view name, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
-          json[std::string(name)] =
-              value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+          json[std::string(name)] = OrNull(value);
         } else {
           json[std::string(name)] = value;
         }

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
@@ -35,7 +36,7 @@ int RunMetrics(const MetricsArguments& arguments) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
-      row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
+      row["si_pct"] = OrNull(improvements[i]);
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
       row["metrics"] = nlohmann::ordered_json::parse(cli::MeasuresJson(run.result));
       rows.push_back(std::move(row));
