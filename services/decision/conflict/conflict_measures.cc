@@ -130,23 +130,9 @@ static_assert(std::ranges::equal(kBlameMeasures, ChoiceNames<BlameChoice>::kName
               "each measure of blame has a line in scenario/sections/decision.h and a row here, in "
               "the same order");
 
-template <class Row>
-const Row* Find(std::span<const Row> rows, std::string_view name) {
-  const auto found = std::ranges::find(rows, name, &Row::name);
-  return found == rows.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 std::span<const ConflictMeasureRow> ConflictMeasures() { return kConflictMeasures; }
 std::span<const BlameMeasureRow> BlameMeasures() { return kBlameMeasures; }
-
-const ConflictMeasureRow* FindConflictMeasure(std::string_view name) {
-  return Find(ConflictMeasures(), name);
-}
-
-const BlameMeasureRow* FindBlameMeasure(std::string_view name) {
-  return Find(BlameMeasures(), name);
-}
 
 }  // namespace fogline::conflict

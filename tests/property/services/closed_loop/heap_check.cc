@@ -16,6 +16,7 @@
 #include "services/models/vehicle/longitudinal_vehicle.h"
 #include "tests/property/services/acc/draw.h"
 #include "tests/property/services/closed_loop/shipped.h"
+#include "tests/support/find_row.h"
 
 // Functions of the C library, which the replacements below call.
 extern "C" void* __libc_malloc(std::size_t size);                       // NOLINT
@@ -178,7 +179,7 @@ bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.absent_probability = 0.3;
   bool clean = true;
   for (const char* policy : {"traded", "blend"}) {
-    scenario.arbitrator.policy = policies::FindPolicy(policy).value();
+    scenario.arbitrator.policy = test::FindPolicy(policy).value();
     for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
       std::int64_t steps = 0;
       clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;

@@ -11,6 +11,7 @@
 #include "services/lidar/lidar.h"
 #include "services/visibility.h"
 #include "tests/support/sensor_errors.h"
+#include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
 namespace {
@@ -144,7 +145,7 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
   scenario.fog.clear_visibility_m = 1e5;
   scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
   const double range_m =
-      lidar::AttenuatedRange_m(scenario.lidar.beam.clear_range_m, ExtinctionOf(1e5));
+      test::AttenuatedRange_m(scenario.lidar.beam.clear_range_m, ExtinctionOf(1e5));
   for (const std::int64_t beams : {1, 15, 101}) {
     scenario.lidar.beam.beams = beams;
     int detections = 0;

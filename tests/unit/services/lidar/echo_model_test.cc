@@ -33,7 +33,7 @@ TEST(EchoModelTest, AttenuationAloneEndsDetectionAtTheAttenuatedRange) {
   beam.target_reflectivity = beam.clear_reflectivity;
   const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
-    const double range_m = lidar::AttenuatedRange_m(beam.clear_range_m, ExtinctionOf(visibility_m));
+    const double range_m = test::AttenuatedRange_m(beam.clear_range_m, ExtinctionOf(visibility_m));
     EXPECT_NEAR(model.At(range_m, visibility_m).target, 0.0, 1e-12);
   }
 }

@@ -66,10 +66,10 @@ TEST(FogBeamTest, AttenuationAloneLeavesTheTabulatedRanges) {
   const std::vector<double> of_200_m{113, 85, 60, 48, 40, 31, 27, 22, 17};
   for (std::size_t i = 0; i < kVisibilities_m.size(); ++i) {
     const double extinction_pm = ExtinctionOf(kVisibilities_m[i]);
-    EXPECT_NEAR(lidar::AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
-    EXPECT_NEAR(lidar::AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
+    EXPECT_NEAR(test::AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
+    EXPECT_NEAR(test::AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
   }
-  EXPECT_EQ(lidar::AttenuatedRange_m(120.0, 0.0), 120.0);
+  EXPECT_EQ(test::AttenuatedRange_m(120.0, 0.0), 120.0);
 }
 
 TEST(FogBeamTest, TheFogsPeakLiesInTheNearFieldAndComesNearerInDenserFog) {
