@@ -38,15 +38,15 @@ inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=no
 /// The measure of safety in most findings.
 inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 
-/// A measure of a run: one of VisitMeasures(), the safety improvement, or "collided" (1 or 0).
-struct ComparedMeasure {
+/// A measure of a run: one of VisitMetrics(), the safety improvement, or "collided" (1 or 0).
+struct ComparedMetric {
   std::string name;
   std::string unit;
   std::string description;
 };
-std::span<const ComparedMeasure> ComparedMeasures();
+std::span<const ComparedMetric> ComparedMetrics();
 /// @throws std::out_of_range
-std::size_t PlaceOfMeasure(std::string_view name);
+std::size_t PlaceOfMetric(std::string_view name);
 
 /// One variant in one case.
 struct Cell {

@@ -14,18 +14,18 @@ namespace {
 
 /// If a pair of cars existed and never closed in, its smallest time to collision is infinite
 /// instead of missing.
-void KeepInfinite(metrics::PairMeasures& pair) {
+void KeepInfinite(metrics::PairMetrics& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
 }
 
-// The values are in the order of ComparedMeasures().
-RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& si_pct) {
+// The values are in the order of ComparedMetrics().
+RunValues ValuesOf(metrics::RunMetrics measures, const std::optional<double>& si_pct) {
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
   RunValues values{si_pct.value_or(stats::kMissing),
                    measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
-  metrics::VisitMeasures(
+  metrics::VisitMetrics(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
           values.push_back(value.value_or(stats::kMissing));

@@ -13,7 +13,7 @@ namespace fogline::study {
 namespace {
 
 std::string UnitOf(std::string_view measure) {
-  return ComparedMeasures()[PlaceOfMeasure(measure)].unit;
+  return ComparedMetrics()[PlaceOfMetric(measure)].unit;
 }
 
 }  // namespace

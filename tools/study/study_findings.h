@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/study/comparison.h"
 
 namespace fogline::study {

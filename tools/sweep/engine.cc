@@ -14,7 +14,7 @@ namespace fogline::sweep {
 
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline) {
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
   std::size_t i = 0;
   loop.Run(scenario, [&](const closed_loop::StepView& step) {

@@ -15,7 +15,7 @@ namespace fogline::sweep {
 
 /// Result of a row of a sweep.
 struct SweepRow {
-  metrics::RunMeasures measures;
+  metrics::RunMetrics measures;
   /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
   /// for a paired run without compromised safety.
   std::optional<double> si_pct;

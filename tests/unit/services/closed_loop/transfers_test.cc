@@ -26,7 +26,7 @@ struct Counted {
 
 Counted CountTransfers(const Scenario& scenario) {
   Counted counted;
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   take_over::TakeOverLog log;
   closed_loop::ClosedLoop(scenario).Run(0, [&](const closed_loop::StepView& step) {
     measures.Add(step.ToSample());
