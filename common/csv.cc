@@ -1,13 +1,13 @@
 #include "common/csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "common/parse_number.h"
 #include "common/text.h"
 
 namespace fogline {
@@ -58,11 +58,8 @@ void Split(const Cell& line, std::vector<Cell>& cells) {
 }
 
 std::optional<double> ToFinite(std::string_view text) {
-  double value = 0.0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto number = ParseNumber<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
-// Times of a scenario in whole steps.
+// Times in whole steps, rounded down or up. If the quotient of time and step differs from a whole
+// number only by rounding, it counts as this whole number: 0.3 s is three steps of 0.1 s, although
+// the quotient of these doubles is a little less than 3.
 #pragma once
 
 #include <cmath>
@@ -6,11 +8,17 @@
 
 namespace fogline {
 
-/// The least number of steps that together last at least `time_s` >= 0. If the quotient of time and
-/// step exceeds a whole number only by rounding, it counts as this whole number.
+/// Difference from a whole number that counts as rounding, in steps.
+inline constexpr double kStepRounding = 1e-9;
+
+/// Number of whole steps in a time.
+inline double WholeSteps(double time_s, double step_s) {
+  return std::floor(time_s / step_s + kStepRounding);
+}
+
+/// The least number of steps that together last at least `time_s` >= 0.
 inline std::int64_t StepsUntil(double time_s, double step_s) {
-  constexpr double kRounding = 1e-9;  // steps
-  return static_cast<std::int64_t>(std::ceil(time_s / step_s - kRounding));
+  return static_cast<std::int64_t>(std::ceil(time_s / step_s - kStepRounding));
 }
 
 }  // namespace fogline

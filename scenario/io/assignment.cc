@@ -1,7 +1,6 @@
 #include "scenario/io/assignment.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/parse_number.h"
 #include "scenario/io/catalogue.h"
 
 namespace fogline {
@@ -73,11 +73,7 @@ void FieldAssignment::Set(Scenario& scenario, double number) const {
 }
 
 void FieldAssignment::Set(Scenario& scenario, std::string_view text) const {
-  Value value{.number = std::nullopt, .text = text};
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size()) value.number = number;
-  Assign(scenario, pointer_, value);
+  Assign(scenario, pointer_, {.number = ParseNumber<double>(text), .text = text});
 }
 
 }  // namespace fogline

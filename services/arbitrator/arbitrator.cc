@@ -60,8 +60,8 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
   // The mode names the side with more authority. If both sides have half, it names the human.
-  out_.mode = state.lambda_human < models::kMainAuthority ? arbitration_t::AUTOMATION
-                                                          : arbitration_t::HUMAN;
+  out_.mode =
+      state.lambda_human < kMainAuthority ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
   if (take_over_) {
     out_.mode = take_over::InfoOf(take_over_->outcome().state).mode;
     sent_mps2_ = out_.acceleration_mps2;
@@ -85,7 +85,7 @@ policies::EngagementRequest Arbitrator::OwnRequest(const ego_t& ego, const track
 bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
                      const driver_command_t& driver, Transfer::Offers& offers) {
   const bool manoeuvre_ran = take_over_->in_manoeuvre();
-  const bool human_wanted = shares_ ? wanted > 0 : wanted >= models::kMainAuthority;
+  const bool human_wanted = shares_ ? wanted > 0 : wanted >= kMainAuthority;
   const take_over::TakeOverOutcome& asked =
       take_over_->Step(ego.header, {.human_wanted = human_wanted || !automation_there_,
                                     .automation_mps2 = offers.automation_mps2,

@@ -18,7 +18,7 @@
 #include "services/decision/policies/policy.h"
 #include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline::arbitrator {
 
@@ -55,7 +55,7 @@ class Arbitrator {
   /// Whether the last decision wants the human to drive, also while the transfer is still under
   /// way. If the driver must be asked: whether he has taken over and has at least half of the
   /// authority.
-  bool wants_human() const { return granted_ >= models::kMainAuthority; }
+  bool wants_human() const { return granted_ >= kMainAuthority; }
   /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {
     return take_over_ && take_over_->outcome().authority != take_over::Authority::kHuman;

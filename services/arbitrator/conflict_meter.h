@@ -6,14 +6,14 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/decision/conflict/conflict_measure.h"
-#include "services/decision/conflict/one_step/doc.h"
-#include "services/decision/policies/evidence.h"
+#include "services/decision/conflict/over_time/doc.h"
+#include "services/decision/policies/conflict_inputs.h"
 #include "services/graph.h"
 
 namespace fogline::arbitrator {
 
 /// DoC = 1/(1 + exp(-slope (x - centre))). The scenario's measure says what x is: as in the paper
-/// it is z (services/decision/conflict/one_step/doc.h); with another measure it is the score of
+/// it is z (services/decision/conflict/over_time/doc.h); with another measure it is the score of
 /// this measure (services/decision/conflict/conflict_measures.cc). With measure_scale probability
 /// the DoC is the score itself.
 class ConflictMeter {

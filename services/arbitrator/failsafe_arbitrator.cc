@@ -93,7 +93,7 @@ Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pa
 
 void FailsafeArbitrator::Drive(std::int8_t mode, double acceleration_mps2) {
   out_.mode = mode;
-  out_.lambda_human = models::HumanDrives(mode) ? 1 : 0;
+  out_.lambda_human = HumanDrives(mode) ? 1 : 0;
   out_.lambda_automation = 1 - out_.lambda_human;
   out_.acceleration_mps2 = acceleration_mps2;
 }

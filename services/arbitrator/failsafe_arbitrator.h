@@ -10,9 +10,9 @@
 #include "services/arbitrator/failsafe_table.h"
 #include "services/arbitrator/sensor_pairs.h"
 #include "services/graph.h"
+#include "services/host_modes.h"
 #include "services/input_state.h"
 #include "services/models/minimal_risk/minimal_risk.h"
-#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::arbitrator {
 
@@ -51,9 +51,7 @@ class FailsafeArbitrator {
   /// work.
   std::string_view fallback() const { return FallbackText(decision_); }
   /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
-  std::int8_t minimal_risk() const {
-    return models::IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0};
-  }
+  std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
   /// The decision of the last step.
   Decision decision() const { return decision_; }
 

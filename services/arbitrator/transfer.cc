@@ -6,7 +6,7 @@
 
 #include "common/whole_steps.h"
 #include "services/decision/policies/policy.h"
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline::arbitrator {
 namespace {
@@ -52,7 +52,7 @@ Transfer::Transfer(const TransferSection& section, double step_s)
 }
 
 Transfer::State Transfer::Smooth(double wanted, const Offers& offers, double applied_mps2) {
-  const bool to_human = wanted >= models::kMainAuthority;
+  const bool to_human = wanted >= kMainAuthority;
   if (to_human != to_human_) {
     to_human_ = to_human;
     limiting_ = section_.gate || section_.profile == TransferProfile::kJerkLimited;
@@ -100,7 +100,7 @@ void Transfer::Overrule(const State& actual) {
   progress_ = section_.profile == TransferProfile::kSigmoid && !end
                   ? InverseSigmoid(actual.lambda_human)
                   : actual.lambda_human;
-  to_human_ = actual.lambda_human >= models::kMainAuthority;
+  to_human_ = actual.lambda_human >= kMainAuthority;
   limiting_ = false;
   previous_mps2_ = actual.acceleration_mps2;
 }

@@ -4,7 +4,7 @@
 
 #include "common/errors.h"
 #include "common/text.h"
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline::driver {
 namespace {
@@ -50,7 +50,7 @@ Driver::Driver(const Scenario& scenario)
 // stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
 // no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
 void Driver::SetOnDemandInput(const arbitration_t& host) {
-  const bool monitors = host.mode == arbitration_t::AUTOMATION || models::IsLocked(host.mode);
+  const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
   task_ = monitors ? models::DriverTask::kMonitors : models::DriverTask::kDrives;
 }
 

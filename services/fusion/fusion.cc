@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/conflict_inputs.h"
 #include "services/decision/policies/policies.h"
 #include "services/fusion/line_of_sight.h"
 

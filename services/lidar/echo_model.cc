@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 
 namespace fogline::lidar {
 
@@ -27,7 +27,7 @@ EchoModel::EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm)
 EchoPowers EchoModel::At(double range_m, double visibility_m) const {
   constexpr double kNoEcho = -std::numeric_limits<double>::infinity();
   if (range_m <= optics_.overlap_start_m) return {kNoEcho, kNoEcho, range_m};
-  const double extinction_pm = models::ExtinctionOf(visibility_m);
+  const double extinction_pm = ExtinctionOf(visibility_m);
   const auto [log_strength, peak_m] = PeakAt(extinction_pm);
   EchoPowers echoes{.target = ClearTarget(range_m) - 2.0 * extinction_pm * range_m,
                     .fog = log_backscatter_ - std::log(visibility_m) + log_strength,

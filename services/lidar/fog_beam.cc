@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include <boost/math/quadrature/gauss.hpp>
-#include <boost/math/special_functions/lambert_w.hpp>
 #include <boost/math/tools/minima.hpp>
 
 namespace fogline::lidar {
@@ -74,11 +73,6 @@ FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm) {
   const auto [end_m, value] = boost::math::tools::brent_find_minima(
       negative, from_m, from_m + optics.pulse_length_m, kPeakBits);
   return {.strength_pm = -value, .range_m = end_m - 0.5 * optics.pulse_length_m};
-}
-
-double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
-  if (extinction_pm == 0.0) return clear_range_m;
-  return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
 }
 
 double Beta2And20(double u, double v) {

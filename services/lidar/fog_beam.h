@@ -42,11 +42,6 @@ struct FogPeak {
 /// J = L g(r*) / 2 with r* where g is largest.) extinction_pm >= 0.
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 
-/// Maximum range in fog of a target that can be detected up to R_c = `clear_range_m` in clear air.
-/// It is the range R with (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
-/// Lambert's W, R = W(alpha R_c) / alpha.
-double AttenuatedRange_m(double clear_range_m, double extinction_pm);
-
 /// Beta(2, 20) distributed number from two uniform ones in (0, 1): the second smallest of 21
 /// uniform numbers. The smallest is 1 - u^(1/21). The next one divides the rest of the interval
 /// like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs no rejection.

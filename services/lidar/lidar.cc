@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 
 namespace fogline::lidar {
 
@@ -14,8 +14,8 @@ Lidar::Lidar(const Scenario& scenario)
       random_(scenario.seed, Stream::kLidar),
       beam_random_(scenario.seed, Stream::kLidarBeam) {
   if (scenario.fog.model == FogModel::kBeam) {
-    model_.emplace(lidar_.beam, models::ExtinctionOf(scenario.fog.clear_visibility_m),
-                   models::ExtinctionOf(scenario.fog.visibility_m));
+    model_.emplace(lidar_.beam, ExtinctionOf(scenario.fog.clear_visibility_m),
+                   ExtinctionOf(scenario.fog.visibility_m));
     echoes_.reserve(static_cast<std::size_t>(lidar_.beam.beams));
   }
 }

@@ -20,7 +20,7 @@ namespace fogline::metrics {
 /// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
 /// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
 /// for the measure.
-struct RunMeasures {
+struct RunMetrics {
   /// Number of samples.
   std::int64_t steps = 0;
   /// Time from the first sample to the last, s.
@@ -32,8 +32,8 @@ struct RunMeasures {
   std::optional<double> min_follower_gap_m;
   /// Surrogate measures of the host behind the preceding car, and of the first following car behind
   /// the host.
-  PairMeasures host;
-  PairMeasures follower;
+  PairMetrics host;
+  PairMetrics follower;
   /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
@@ -45,14 +45,14 @@ struct RunMeasures {
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
   /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
-  /// services/models/minimal_risk/modes.h. In traded control he then drives; in shared control he
+  /// services/host_modes.h. In traded control he then drives; in shared control he
   /// may have a small part.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. It ends with the last step, because the command of
   /// that step is never carried out.
   double human_time_s = 0;
   /// Hand-overs in either direction: the human drives in only one of two successive steps, by
-  /// HumanDrives(lambda_H) in services/models/minimal_risk/modes.h. `fogline events` lists the same
+  /// HumanDrives(lambda_H) in services/host_modes.h. `fogline events` lists the same
   /// hand-overs, in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
@@ -67,7 +67,7 @@ struct RunMeasures {
   /// step until `handover_s` after its last step.
   std::optional<double> max_handover_jerk_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
-  DetectionMeasures detection;
+  DetectionMetrics detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
@@ -91,25 +91,25 @@ struct RunMeasures {
 /// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
 /// tables and reports use these calls.
 template <class Visitor>
-void VisitMeasures(const RunMeasures& m, Visitor&& visit);
+void VisitMetrics(const RunMetrics& m, Visitor&& visit);
 
 /// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
 /// without a following car.
 double CompromisedSafety(const Sample& sample);
 
 /// Collects the measures of a run, sample by sample, in order of steps.
-class MeasureAccumulator {
+class MetricsAccumulator {
  public:
   /// For a run of this scenario: uses its section `measures`, and bias and lateral offset of its
   /// LiDAR.
-  explicit MeasureAccumulator(const Scenario& scenario);
+  explicit MetricsAccumulator(const Scenario& scenario);
   /// For a run of a scenario with the defaults.
-  MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
+  MetricsAccumulator() : MetricsAccumulator(Scenario{}) {}
 
   void Add(const Sample& sample);
 
   /// Measures of the samples so far.
-  RunMeasures Result() const;
+  RunMetrics Result() const;
 
  private:
   void AddSafety(const Sample& sample);
@@ -123,7 +123,7 @@ class MeasureAccumulator {
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;
-  RunMeasures measures_;  // measures without a final division
+  RunMetrics metrics_;  // measures without a final division
   Mean compromised_safety_fog_m_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
@@ -135,7 +135,7 @@ class MeasureAccumulator {
 };
 
 /// Measures of a whole run of a scenario.
-RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
+RunMetrics Measure(std::span<const Sample> samples, const Scenario& scenario = {});
 
 /// Safety improvement SI of a run with traded control over its baseline, a run without traded
 /// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
@@ -169,7 +169,7 @@ std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
                                            std::span<const Sample> traded, double floor_m);
 
 template <class Visitor>
-void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
+void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
   const auto count = [&](std::string_view name, std::int64_t value, std::string_view unit,
                          std::string_view description) { visit(name, value, unit, description); };
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
@@ -184,7 +184,7 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
   const auto pair = [&](const std::string& car, const std::array<std::string_view, 8>& names,
-                        const PairMeasures& of) {
+                        const PairMetrics& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
     number(names[1], of.tet_s, "s",
            car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");

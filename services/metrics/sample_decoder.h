@@ -13,7 +13,7 @@ class SampleDecoder {
   /// @return the sample, valid until the next call; nullptr if a message does not decode
   template <class Messages>
   const Sample* Decode(const Messages& messages) {
-    return Decode(messages, [&messages]<class M>(M& message) {
+    return DecodeWith([&messages]<class M>(M& message) {
       return fogline::runtime::Decode(messages[IndexOf<M>()], message);
     });
   }
@@ -22,12 +22,11 @@ class SampleDecoder {
   template <class Messages>
   const Sample* DecodeWithHoles(const Messages& messages) {
     if (messages[IndexOf<truth_t>()].empty()) return nullptr;
-    const bool decoded = Decode(messages, [&messages]<class M>(M& message) {
+    return DecodeWith([&messages]<class M>(M& message) {
       const auto& bytes = messages[IndexOf<M>()];
       if (bytes.empty()) message = Missing<M>();
       return bytes.empty() || fogline::runtime::Decode(bytes, message);
     });
-    return decoded ? &sample_ : nullptr;
   }
 
   /// Messages of the step decoded last.
@@ -39,8 +38,7 @@ class SampleDecoder {
   template <class M>
   static M Missing() {
     M message{};
-    VisitFields(message, [](std::string_view, const auto& value) {
-      using V = std::decay_t<decltype(value)>;
+    VisitFields(message, []<class V>(std::string_view, const V& value) {
       if constexpr (std::is_same_v<V, double>) {
         const_cast<double&>(value) = std::numeric_limits<double>::quiet_NaN();
       }
@@ -48,8 +46,8 @@ class SampleDecoder {
     return message;
   }
 
-  template <class Messages, class Take>
-  const Sample* Decode(const Messages& /*messages*/, const Take& take) {
+  template <class Take>
+  const Sample* DecodeWith(const Take& take) {
     if (!(take(truth_) && take(radar_) && take(lidar_) && take(track_) && take(acc_) &&
           take(driver_) && take(host_) && take(follower_))) {
       return nullptr;

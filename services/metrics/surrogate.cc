@@ -101,12 +101,12 @@ void PairAccumulator::Add(const CarPair& pair, double since_s) {
                pair.gap_m - models::RssSafeDistance(rss_, pair.speed_mps, pair.lead_speed_mps));
 }
 
-PairMeasures PairAccumulator::Result() const {
-  PairMeasures result{.min_ttc_s = IfFinite(min_ttc_s_),
-                      .min_headway_s = IfFinite(min_headway_s_),
-                      .max_drac_mps2 = IfFinite(max_drac_mps2_),
-                      .min_picud_m = IfFinite(min_picud_m_),
-                      .min_rss_margin_m = IfFinite(min_rss_margin_m_)};
+PairMetrics PairAccumulator::Result() const {
+  PairMetrics result{.min_ttc_s = IfFinite(min_ttc_s_),
+                     .min_headway_s = IfFinite(min_headway_s_),
+                     .max_drac_mps2 = IfFinite(max_drac_mps2_),
+                     .min_picud_m = IfFinite(min_picud_m_),
+                     .min_rss_margin_m = IfFinite(min_rss_margin_m_)};
   if (met_) {
     result.tet_s = tet_s_;
     result.tit_s2 = tit_s2_;

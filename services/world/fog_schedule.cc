@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "services/graph.h"
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 
 namespace fogline::world {
 double FogLevel(FogProfile profile, double x) {
@@ -36,9 +36,9 @@ Fog FogSchedule::At(std::int64_t utime) const {
   Fog fog{
       .present = true, .level = FogLevel(fog_.profile, x), .visibility_m = fog_.clear_visibility_m};
   if (fog_.model == FogModel::kBeam) {
-    const double clear_pm = models::ExtinctionOf(fog_.clear_visibility_m);
-    const double dense_pm = models::ExtinctionOf(fog_.visibility_m);
-    fog.visibility_m = models::VisibilityOf(clear_pm + fog.level * (dense_pm - clear_pm));
+    const double clear_pm = ExtinctionOf(fog_.clear_visibility_m);
+    const double dense_pm = ExtinctionOf(fog_.visibility_m);
+    fog.visibility_m = VisibilityOf(clear_pm + fog.level * (dense_pm - clear_pm));
   }
   return fog;
 }

@@ -46,8 +46,8 @@ bool VehicleFallback::follower_in_minimal_risk() const {
 void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& host) {
   if (Usable(host.state)) {
     const std::int8_t mode = host.newest->mode;
-    const bool stops = models::InMinimalRisk(mode);
-    if (mode == arbitration_t::RECOVERING && !models::IsLocked(host_out_.mode)) commanded_ = false;
+    const bool stops = InMinimalRisk(mode);
+    if (mode == arbitration_t::RECOVERING && !IsLocked(host_out_.mode)) commanded_ = false;
     if (commanded_ && !stops) host_.BeginMinimalRisk(now.host_acceleration_mps2);
     if (stops) commanded_ = true;
     host_out_ = *host.newest;

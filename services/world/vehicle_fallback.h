@@ -11,9 +11,9 @@
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
+#include "services/host_modes.h"
 #include "services/input_state.h"
 #include "services/models/minimal_risk/minimal_risk.h"
-#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::world {
 
@@ -74,7 +74,7 @@ class VehicleFallback {
   /// Whether the host is in a manoeuvre that no command ends: its own, or one that the arbitrator
   /// has commanded.
   bool host_in_minimal_risk() const {
-    return host_.in_minimal_risk() || (commanded_ && models::IsLocked(host_out_.mode));
+    return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
   }
   /// Whether the vehicle makes the manoeuvre by itself; the arbitrator has to know this.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }

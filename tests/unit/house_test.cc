@@ -61,7 +61,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"services/follower", "follower", "a role; its car may have an ACC"},
     {"services/runtime/wire", "runtime", "the bytes of messages"},
     {"services/metrics", "metrics", "judges what the messages of a run say"},
-    {"services/metrics/closed_loop", "metrics", "all roles in one process, and their metrics"},
+    {"services/closed_loop", "closed_loop", "all roles in one process, and their metrics"},
     {"services/runtime/transport", "runtime", "carries the bytes"},
     {"services/runtime/discovery", "runtime", "finds runs by what is carried"},
     {"services/runtime/node", "runtime", "a role's part in any run"},

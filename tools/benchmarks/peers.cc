@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"
@@ -20,7 +20,7 @@ constexpr double kCars = 3;
 /// Runs of the paper's experiment per second, measured on the single core of this thread.
 double ClosedLoopRunsPerSecond(double duration_s) {
   Scenario scenario = LoadScenario("scenario/paper.json");
-  metrics::ClosedLoop loop(scenario);
+  closed_loop::ClosedLoop loop(scenario);
   std::int64_t runs = 0;
   std::int64_t steps = 0;
   double wall_s = 0;
@@ -29,9 +29,9 @@ double ClosedLoopRunsPerSecond(double duration_s) {
       constexpr int kBatch = 100;
       for (int i = 0; i < kBatch; ++i) {
         ++scenario.seed;
-        metrics::MeasureAccumulator measures;
+        metrics::MetricsAccumulator measures;
         loop.Restart(scenario);
-        loop.Run(0, [&](const metrics::StepView& step) { measures.Add(step.ToSample()); });
+        loop.Run(0, [&](const closed_loop::StepView& step) { measures.Add(step.ToSample()); });
         steps += measures.Result().steps;
       }
       runs += kBatch;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 
 namespace fogline::benchmarks {
 namespace {
@@ -26,7 +26,7 @@ struct Recorded {
 
 std::vector<Recorded> Record(const Scenario& scenario) {
   std::vector<Recorded> steps;
-  metrics::ClosedLoop(scenario).Run(0, [&steps](const metrics::StepView& step) {
+  closed_loop::ClosedLoop(scenario).Run(0, [&steps](const closed_loop::StepView& step) {
     steps.push_back({step.truth, step.ego, step.radar, step.lidar, step.track, step.acc,
                      step.driver, step.host, step.follower});
   });
@@ -159,8 +159,8 @@ BENCHMARK(FollowerStep);
 /// A whole run: construction and every step.
 void ClosedLoopRun(benchmark::State& state) {
   for (auto _ : state) {
-    metrics::ClosedLoop(Paper()).Run(
-        0, [](const metrics::StepView& step) { benchmark::DoNotOptimize(&step); });
+    closed_loop::ClosedLoop(Paper()).Run(
+        0, [](const closed_loop::StepView& step) { benchmark::DoNotOptimize(&step); });
   }
   state.counters["per_step"] = benchmark::Counter(
       static_cast<double>(Paper().steps),
@@ -170,7 +170,7 @@ BENCHMARK(ClosedLoopRun);
 
 void ClosedLoopConstruction(benchmark::State& state) {
   for (auto _ : state) {
-    metrics::ClosedLoop loop(Paper());
+    closed_loop::ClosedLoop loop(Paper());
     benchmark::DoNotOptimize(&loop);
   }
 }

@@ -1,7 +1,6 @@
 #include "tools/calibrate/free_field.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/parse_number.h"
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
 #include "scenario/sections/field_text.h"
@@ -27,13 +27,9 @@ constexpr int kLogarithmicDigits = 6;
   throw InputError(fmt::format("error: --free {}: {}", Shown(text), why));
 }
 
-std::optional<double> ParseNumber(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) {
-    return std::nullopt;
-  }
-  return number;
+std::optional<double> ParseFinite(std::string_view text) {
+  const auto number = ParseNumber<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 /// Value, bounds and unit of a number or integer field of a scenario.
@@ -80,8 +76,8 @@ FreeField::Parts FreeField::Split(const std::string& text) {
   }
   const std::size_t colon = bounds.find(':');
   if (colon == std::string_view::npos) Refuse(text, kForm);
-  const auto lowest = ParseNumber(bounds.substr(0, colon));
-  const auto highest = ParseNumber(bounds.substr(colon + 1));
+  const auto lowest = ParseFinite(bounds.substr(0, colon));
+  const auto highest = ParseFinite(bounds.substr(colon + 1));
   if (!lowest || !highest) Refuse(text, kForm);
   parts.lowest = *lowest;
   parts.highest = *highest;
@@ -133,7 +129,7 @@ double FreeField::ValueAt(double share) const {
   const std::string rounded = is_logarithmic_
                                   ? fmt::format("{:.{}g}", exact, kLogarithmicDigits)
                                   : fmt::format("{:.{}f}", exact, std::max(0, decimals));
-  return std::clamp(*ParseNumber(rounded), lowest_, highest_);
+  return std::clamp(*ParseFinite(rounded), lowest_, highest_);
 }
 
 double FreeField::ShareOf(double value) const {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include <fmt/core.h>
@@ -27,13 +25,6 @@ namespace fogline::doctor {
 namespace {
 
 using Level = Finding::Level;
-
-std::string Content(const char* file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Value of a number among a URL's options; `otherwise` if the URL lacks it.
 int UrlOption(const std::string& url, const std::string& name, int otherwise) {
@@ -87,7 +78,8 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
                         fmt::format("no route to {}: {}", group, error), RouteRemedy()});
     return false;
   }
-  const std::string interface = runtime::RouteInterface(Content("/proc/net/route"), group);
+  const std::string interface =
+      runtime::RouteInterface(runtime::KernelTable("/proc/net/route"), group);
   const std::string through = interface.empty() ? "a route that is not in the main table"
                                                 : fmt::format("interface {}", interface);
   if (ttl > 0 && interface == "lo") {

@@ -41,28 +41,15 @@ using Variable = std::unique_ptr<matvar_t, Free>;
   throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", PathText(file)));
 }
 
-template <class T>
-struct MatType;
-template <>
-struct MatType<double> {
-  static constexpr matio_classes kClass = MAT_C_DOUBLE;
-  static constexpr matio_types kType = MAT_T_DOUBLE;
+/// How a MAT-file calls a type of numbers.
+struct MatType {
+  matio_classes class_type;
+  matio_types data_type;
 };
-template <>
-struct MatType<std::int8_t> {
-  static constexpr matio_classes kClass = MAT_C_INT8;
-  static constexpr matio_types kType = MAT_T_INT8;
-};
-template <>
-struct MatType<std::int32_t> {
-  static constexpr matio_classes kClass = MAT_C_INT32;
-  static constexpr matio_types kType = MAT_T_INT32;
-};
-template <>
-struct MatType<std::int64_t> {
-  static constexpr matio_classes kClass = MAT_C_INT64;
-  static constexpr matio_types kType = MAT_T_INT64;
-};
+constexpr MatType TypeOf(double) { return {MAT_C_DOUBLE, MAT_T_DOUBLE}; }
+constexpr MatType TypeOf(std::int8_t) { return {MAT_C_INT8, MAT_T_INT8}; }
+constexpr MatType TypeOf(std::int32_t) { return {MAT_C_INT32, MAT_T_INT32}; }
+constexpr MatType TypeOf(std::int64_t) { return {MAT_C_INT64, MAT_T_INT64}; }
 
 /// A field as a matrix with one row for each message. MAT-files store matrices column by column.
 Variable MatrixOf(const FieldTable& field, std::size_t messages) {
@@ -73,8 +60,9 @@ Variable MatrixOf(const FieldTable& field, std::size_t messages) {
           columns[i % field.width * messages + i / field.width] = values[i];
         }
         std::array<std::size_t, 2> size{messages, field.width};
-        return Variable(Mat_VarCreate(nullptr, MatType<T>::kClass, MatType<T>::kType, size.size(),
-                                      size.data(), columns.data(), 0));
+        const auto [class_type, data_type] = TypeOf(T());
+        return Variable(Mat_VarCreate(nullptr, class_type, data_type, size.size(), size.data(),
+                                      columns.data(), 0));
       },
       field.values);
 }

@@ -1,7 +1,6 @@
 // fogline compare: compares the host of a run with a real car that was recorded behind the same
 // leader.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "common/csv_series.h"
 #include "common/file.h"
 #include "common/interrupt.h"
+#include "common/parse_number.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/io/json.h"
@@ -64,12 +64,6 @@ std::size_t FindColumn(const std::vector<std::string_view>& header, const std::s
   return static_cast<std::size_t>(it - header.begin());
 }
 
-bool IsNumber(std::string_view text) {
-  double ignored = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 [[noreturn]] void RefuseCell(const std::filesystem::path& file, const std::string& text,
                              std::uint32_t offset, const std::string& why) {
   const auto line = 1 + std::count(text.begin(), text.begin() + offset, '\n');
@@ -97,7 +91,8 @@ Recording ReadRecording(const CompareArguments& arguments, const RecordedSection
     Refuse(file, csv.text.empty() ? "the file is empty; it needs a header line that names columns"
                                   : "the first line is empty; it must name the columns");
   }
-  if (std::ranges::all_of(header, IsNumber)) {
+  if (std::ranges::all_of(
+          header, [](std::string_view cell) { return ParseNumber<double>(cell).has_value(); })) {
     Refuse(file,
            fmt::format("the first line is {}; it must name the columns", Shown(Names(header))));
   }

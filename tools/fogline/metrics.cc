@@ -5,13 +5,14 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/pairing.h"
 #include "tools/fogline/verbs.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline {
 namespace {
@@ -35,9 +36,9 @@ int RunMetrics(const MetricsArguments& arguments) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
-      row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
+      row["si_pct"] = OrNull(improvements[i]);
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
-      row["metrics"] = nlohmann::ordered_json::parse(cli::MeasuresJson(run.result));
+      row["metrics"] = nlohmann::ordered_json::parse(cli::MetricsJson(run.result));
       rows.push_back(std::move(row));
       continue;
     }
@@ -48,9 +49,9 @@ int RunMetrics(const MetricsArguments& arguments) {
     if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
     if (improvements[i]) {
       fmt::print("  {:<32}{:>12} %\n", "si_pct",
-                 report::MeasureText("si_pct", *improvements[i], "%"));
+                 report::MetricText("si_pct", *improvements[i], "%"));
     }
-    fmt::print("{}", cli::MeasuresText(run.result));
+    fmt::print("{}", cli::MetricsText(run.result));
   }
   if (arguments.json) cli::PrintJson(rows);
   if (!readable) return kBadInput;

@@ -119,9 +119,9 @@ std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   return names;
 }
 
-std::vector<report::ReportMeasure> MeasuresOf(const metrics::RunMeasures& measures) {
-  std::vector<report::ReportMeasure> out;
-  metrics::VisitMeasures(
+std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures) {
+  std::vector<report::ReportMetric> out;
+  metrics::VisitMetrics(
       measures, [&out]<class V>(std::string_view name, const V& value, std::string_view unit,
                                 std::string_view description) {
         double number = std::numeric_limits<double>::quiet_NaN();
@@ -188,7 +188,7 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .seed = run.result.seed,
           .digest = run.result.digest,
           .samples = std::move(run.result.samples),
-          .measures = MeasuresOf(run.result.measures),
+          .measures = MetricsOf(run.result.measures),
           .si_pct = si_pct};
 }
 

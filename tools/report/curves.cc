@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -49,21 +50,16 @@ constexpr CurveFigure kThresholdFigure{"thresholds", "A",
 constexpr CurveFigure kFrontFigure{"front", "B", "The price of safety: the Pareto front",
                                    "Safety improvement (SI)"};
 
-std::string FigureElement(const CurveFigure& figure, const std::string& caption) {
-  return fmt::format(
-      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">"
-      "<span class=\"number\">{1}</span> {2}</h3><p>{3}</p></figcaption>\n"
-      "<p class=\"axis\">{4} <span class=\"unit\">%</span></p>\n<div class=\"panels\"></div>\n"
-      "<div class=\"legend\"></div>\n</figure>\n",
-      figure.id, figure.letter, figure.title, caption, figure.axis);
+std::string CurveFigureElement(const CurveFigure& figure, const std::string& caption) {
+  return FigureElement(
+      figure.id, fmt::format("<span class=\"number\">{}</span> {}", figure.letter, figure.title),
+      caption, fmt::format("{} <span class=\"unit\">%</span>", figure.axis));
 }
 
 /// The number of seeds without SI; "" if all seeds have one.
 std::string MissingText(const ReportCurves& curves) {
-  const auto fewer = [](const ReportCurves::Point& a, const ReportCurves::Point& b) {
-    return a.si_pct.count < b.si_pct.count;
-  };
-  const auto least = std::min_element(curves.points.begin(), curves.points.end(), fewer);
+  const auto least = std::ranges::min_element(
+      curves.points, {}, [](const ReportCurves::Point& point) { return point.si_pct.count; });
   const std::int64_t seeds = curves.last_seed - curves.first_seed + 1;
   if (least == curves.points.end() || least->si_pct.count == seeds) return "";
   return fmt::format(
@@ -106,9 +102,8 @@ std::vector<FrontPoint> FrontPoints(const ReportCurves& curves) {
       points.push_back({.rhe_pct = *rhe, .si_pct = *si, .rows = {row}, .thresholds = ""});
     }
   }
-  std::sort(points.begin(), points.end(), [](const FrontPoint& a, const FrontPoint& b) {
-    return std::pair(a.rhe_pct, a.si_pct) < std::pair(b.rhe_pct, b.si_pct);
-  });
+  std::ranges::sort(points, {},
+                    [](const FrontPoint& point) { return std::pair(point.rhe_pct, point.si_pct); });
   std::vector<stats::TradeOff> trade_offs;
   for (FrontPoint& point : points) {
     point.thresholds = ThresholdsText(curves, point.rows);
@@ -139,9 +134,8 @@ std::vector<std::size_t> LabelOrder(const ReportCurves& curves,
       others.push_back(i);
     }
   }
-  std::stable_sort(tenths.begin(), tenths.end(), [&](std::size_t a, std::size_t b) {
-    return points[a].rows.size() > points[b].rows.size();
-  });
+  std::ranges::stable_sort(tenths, std::ranges::greater(),
+                           [&](std::size_t i) { return points[i].rows.size(); });
   tenths.insert(tenths.end(), others.begin(), others.end());
   return tenths;
 }
@@ -172,8 +166,8 @@ std::string CurvesContent(const ReportCurves& curves) {
       "</label>\n<button type=\"button\" id=\"whole-curves\" disabled>Whole range</button>\n"
       "</div>\n<div class=\"figures\">\n{}{}</div>\n"
       "<details class=\"values\"><summary>All values</summary>\n{}</details>\n",
-      curves.points.size() - 1, FigureElement(kThresholdFigure, about),
-      FigureElement(kFrontFigure, front), CurveTable(curves, points));
+      curves.points.size() - 1, CurveFigureElement(kThresholdFigure, about),
+      CurveFigureElement(kFrontFigure, front), CurveTable(curves, points));
 }
 
 std::string CurvesData(const ReportCurves& curves) {

@@ -3,33 +3,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <fmt/format.h>
 
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline::report {
 namespace {
 
 constexpr std::string_view kNoNumber = "–";
 constexpr std::string_view kMinus = "−";
-
-/// The character reference for `c`; "" if `c` needs none.
-std::string_view Entity(char c) {
-  switch (c) {
-    case '&':
-      return "&amp;";
-    case '<':
-      return "&lt;";
-    case '>':
-      return "&gt;";
-    case '"':
-      return "&quot;";
-    case '\'':
-      return "&#39;";
-    default:
-      return "";
-  }
-}
 
 std::string_view ValueOf(std::string_view name,
                          std::initializer_list<std::pair<std::string_view, std::string>> values) {
@@ -42,30 +26,17 @@ std::string_view ValueOf(std::string_view name,
 }  // namespace
 
 std::string EscapeHtml(std::string_view text) {
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) {
-    const std::string_view entity = Entity(c);
-    if (entity.empty()) {
-      escaped += c;
-    } else {
-      escaped += entity;
-    }
-  }
+  std::string escaped(text);
+  boost::replace_all(escaped, "&", "&amp;");  // first, because the others contain it
+  boost::replace_all(escaped, "<", "&lt;");
+  boost::replace_all(escaped, ">", "&gt;");
+  boost::replace_all(escaped, "\"", "&quot;");
+  boost::replace_all(escaped, "'", "&#39;");
   return escaped;
 }
 
 std::string EscapeScript(std::string_view json) {
-  std::string escaped;
-  escaped.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
+  return boost::replace_all_copy(std::string(json), "<", "\\u003c");
 }
 
 std::string Fill(std::string_view page,
@@ -83,6 +54,15 @@ std::string Fill(std::string_view page,
   return filled;
 }
 
+std::string FigureElement(std::string_view id, std::string_view heading, std::string_view caption,
+                          std::string_view axis) {
+  return fmt::format(
+      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">{1}"
+      "</h3><p>{2}</p></figcaption>\n<p class=\"axis\">{3}</p>\n<div class=\"panels\"></div>\n"
+      "<div class=\"legend\"></div>\n</figure>\n",
+      id, heading, caption, axis);
+}
+
 std::string Decimal(double value, int decimals) {
   if (!std::isfinite(value)) return std::string(kNoNumber);
   std::string text = fmt::format("{:.{}f}", std::fabs(value), decimals);
@@ -96,9 +76,9 @@ std::string DataElement(double value, int decimals) {
   return fmt::format("<data value=\"{}\">{}</data>", value, Decimal(value, decimals));
 }
 
-std::string MeasureElement(std::string_view name, double value, std::string_view unit) {
+std::string MetricElement(std::string_view name, double value, std::string_view unit) {
   if (!std::isfinite(value)) return std::string(kNoNumber);
-  std::string text = MeasureText(name, value, unit);
+  std::string text = MetricText(name, value, unit);
   if (const std::size_t minus = text.find('-'); minus != std::string::npos) {
     text.replace(minus, 1, kMinus);
   }

@@ -19,13 +19,17 @@ std::string EscapeScript(std::string_view json);
 std::string Fill(std::string_view page,
                  std::initializer_list<std::pair<std::string_view, std::string>> values);
 
+/// A figure that a script draws. The texts are HTML. @param axis name of the y axis
+std::string FigureElement(std::string_view id, std::string_view heading, std::string_view caption,
+                          std::string_view axis);
+
 /// A number with this many decimals and a true minus sign; "–" for NaN and infinity.
 std::string Decimal(double value, int decimals);
 
 /// The same in a data element, which also has the exact number.
 std::string DataElement(double value, int decimals);
 
-/// The same for a measure, formatted by MeasureText().
-std::string MeasureElement(std::string_view name, double value, std::string_view unit);
+/// The same for a measure, formatted by MetricText().
+std::string MetricElement(std::string_view name, double value, std::string_view unit);
 
 }  // namespace fogline::report

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <ranges>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -31,12 +32,12 @@ std::string Fact(std::string_view what, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", what, value);
 }
 
-std::string MeasureFact(std::string_view what, std::string_view name, double value,
-                        std::string_view unit) {
-  return Fact(what, fmt::format("{} {}", MeasureElement(name, value, unit), unit));
+std::string MetricFact(std::string_view what, std::string_view name, double value,
+                       std::string_view unit) {
+  return Fact(what, fmt::format("{} {}", MetricElement(name, value, unit), unit));
 }
 
-std::string CollisionFact(const metrics::RunMeasures& measures) {
+std::string CollisionFact(const metrics::RunMetrics& measures) {
   if (!measures.collision_time_s) return "";
   const bool host = measures.collision == truth_t::COLLISION_HOST;
   return Fact("Collision",
@@ -70,12 +71,12 @@ std::string BadgeElement(const ReportRun& run) {
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
-  if (run.si_pct) facts += MeasureFact("Safety improvement", "si_pct", *run.si_pct, "%");
-  const metrics::RunMeasures measures = metrics::Measure(run.samples, run.scenario);
-  facts += MeasureFact("Human drives", "human_time_s", measures.human_time_s, "s");
+  if (run.si_pct) facts += MetricFact("Safety improvement", "si_pct", *run.si_pct, "%");
+  const metrics::RunMetrics measures = metrics::Measure(run.samples, run.scenario);
+  facts += MetricFact("Human drives", "human_time_s", measures.human_time_s, "s");
   if (measures.max_compromised_safety_m) {
-    facts += MeasureFact("Worst compromised safety", "max_compromised_safety_m",
-                         *measures.max_compromised_safety_m, "m");
+    facts += MetricFact("Worst compromised safety", "max_compromised_safety_m",
+                        *measures.max_compromised_safety_m, "m");
   }
   facts += CollisionFact(measures);
   return fmt::format(
@@ -85,15 +86,12 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
       OriginElement(run), ShortageElement(run), facts);
 }
 
-std::string FigureElement(const Figure& figure, std::size_t number) {
+std::string NumberedFigure(const Figure& figure, std::size_t number) {
   const std::string unit =
       figure.unit.empty() ? "" : fmt::format(" <span class=\"unit\">{}</span>", figure.unit);
-  return fmt::format(
-      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">"
-      "<span class=\"number\">{1}</span> {2}</h3><p>{3}</p></figcaption>\n"
-      "<p class=\"axis\">{4}{5}</p>\n<div class=\"panels\"></div>\n<div class=\"legend\"></div>\n"
-      "</figure>\n",
-      figure.id, number, figure.title, figure.caption, figure.quantity, unit);
+  return FigureElement(figure.id,
+                       fmt::format("<span class=\"number\">{}</span> {}", number, figure.title),
+                       figure.caption, fmt::format("{}{}", figure.quantity, unit));
 }
 
 std::string ScenarioElement(std::span<const ReportRun> runs, std::size_t index) {
@@ -131,10 +129,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
 /// "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
-  const auto less = [&](const ReportRun& a, const ReportRun& b) { return get(a) < get(b); };
-  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), less);
-  const auto first = get(*least);
-  const auto last = get(*most);
+  const auto [first, last] = std::ranges::minmax(std::views::transform(runs, get));
   return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
 }
 
@@ -180,7 +175,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
   }
   std::string figures;
   for (std::size_t i = 0; i < Figures().size(); ++i) {
-    figures += FigureElement(Figures()[i], i + 1);
+    figures += NumberedFigure(Figures()[i], i + 1);
   }
   const bool no_figures = runs.empty() && curves;
   const std::array scripts{assets::kModelJs,  assets::kScrollJs, assets::kChartJs,
@@ -196,7 +191,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
                {"curves", CurvesSection(curves)},
                {"figures_hidden", no_figures ? " hidden" : ""},
                {"figures", figures},
-               {"measures", Section("measures", "Measures", MeasureTable(runs))},
+               {"measures", Section("measures", "Measures", MetricTable(runs))},
                {"differences", Section("differences", "What differs between the scenarios",
                                        DifferenceTable(runs))},
                {"scenarios", Section("scenarios", "Scenarios", scenarios)},

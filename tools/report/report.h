@@ -16,7 +16,7 @@
 namespace fogline::report {
 
 /// A number that rates a run.
-struct ReportMeasure {
+struct ReportMetric {
   std::string name;
   double value = 0;  // NaN if the run has none
   std::string unit;  // "" if it has none
@@ -35,7 +35,7 @@ struct ReportRun {
   std::int64_t seed = 0;
   std::string digest;
   std::vector<metrics::Sample> samples;  // in order of time
-  std::vector<ReportMeasure> measures;
+  std::vector<ReportMetric> measures;
   std::optional<double> si_pct =
       {};  // safety improvement over the paired run without traded control
 };

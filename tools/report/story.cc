@@ -14,7 +14,7 @@
 #include "services/metrics/detection.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/report/figures.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/report/tables.h"
 
 namespace fogline::report {
@@ -27,7 +27,7 @@ constexpr std::size_t kMostRuns = 3;        // with traded control that a senten
 struct Told {
   const ReportRun* run;
   std::string name;
-  metrics::RunMeasures measures;
+  metrics::RunMetrics measures;
 
   bool IsTraded() const { return run->scenario.arbitrator.policy != Policy::kNone; }
 };
@@ -73,16 +73,6 @@ std::string TimeText(double time_s) {
   return text;
 }
 
-/// "a, b and c".
-std::string Listed(const std::vector<std::string>& parts, std::string_view comma) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0) text += i + 1 == parts.size() ? std::string_view(" and ") : comma;
-    text += parts[i];
-  }
-  return text;
-}
-
 /// "In fog from 19 s to 30 s"; "" without fog.
 std::string FogText(std::span<const metrics::Sample> samples) {
   constexpr std::size_t kMostNamed = 3;
@@ -97,7 +87,7 @@ std::string FogText(std::span<const metrics::Sample> samples) {
     spans.push_back(
         fmt::format("from {} s to {} s", TimeText(window.begin_s), TimeText(window.end_s)));
   }
-  return "In fog " + Listed(spans, ", ");
+  return "In fog " + ListText(spans);
 }
 
 /// Errors of the LiDAR in fog, over all runs of a group.
@@ -146,11 +136,11 @@ std::string FogSentence(const Group& group) {
   if (effects.empty()) {
     effects.push_back(fmt::format("was never more than {} wrong", LengthText(tolerance_m)));
   }
-  return fmt::format("{} the LiDAR {}", fog, Listed(effects, ", "));
+  return fmt::format("{} the LiDAR {}", fog, ListText(effects));
 }
 
 /// Safety of a run by itself.
-std::string SafetyText(const metrics::RunMeasures& measures) {
+std::string SafetyText(const metrics::RunMetrics& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
   if (!measures.max_compromised_safety_m) return "no car collided";
   if (*measures.max_compromised_safety_m == 0) return "the following car never came too close";
@@ -181,7 +171,7 @@ std::string OutcomeText(const Told& told, const Told* baseline) {
 
 /// "the human drove for 9.4 s".
 std::string DrivingText(const Told& told) {
-  const metrics::RunMeasures& measures = told.measures;
+  const metrics::RunMetrics& measures = told.measures;
   if (measures.human_time_s == 0) return "the human never drove";
   if (measures.human_time_s >= measures.duration_s) return "the human drove all the time";
   return fmt::format("the human drove for {} s", TimeText(measures.human_time_s));

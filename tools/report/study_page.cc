@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -53,15 +55,6 @@ std::string ScaleText(const StudyFigure& figure) {
   return fmt::format(" <span class=\"unit\">(▸ beyond {:g})</span>", figure.most);
 }
 
-std::string FigureElement(const StudyFigure& figure) {
-  return fmt::format(
-      "<figure id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">{1}"
-      "</h3><p>{2}</p></figcaption>\n<p class=\"axis\">{3}{4}</p>\n<div class=\"panels\"></div>\n"
-      "<div class=\"legend\"></div>\n</figure>\n",
-      figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption), EscapeHtml(figure.y_label),
-      ScaleText(figure));
-}
-
 std::string Row(const std::vector<std::string>& cells, std::string_view first,
                 std::string_view rest) {
   std::string row = "<tr>";
@@ -88,7 +81,10 @@ std::string SectionElement(const StudySection& section) {
     findings += fmt::format("<p>{}</p>\n", EscapeHtml(finding));
   }
   std::string figures;
-  for (const StudyFigure& figure : section.figures) figures += FigureElement(figure);
+  for (const StudyFigure& figure : section.figures) {
+    figures += FigureElement(figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption),
+                             EscapeHtml(figure.y_label) + ScaleText(figure));
+  }
   std::string tables;
   for (const StudyTable& table : section.tables) tables += TableElement(table);
   return fmt::format(
@@ -99,16 +95,11 @@ std::string SectionElement(const StudySection& section) {
       EscapeHtml(section.method), figures, tables);
 }
 
-/// A cell of a Markdown table.
-std::string Cell(std::string_view text) {
-  std::string cell;
-  for (const char c : text) cell += c == '|' ? "\\|" : std::string(1, c);
-  return cell;
-}
-
+/// A row of a Markdown table.
 std::string TextRow(const std::vector<std::string>& cells) {
   std::string row = "|";
-  for (const std::string& cell : cells) row += fmt::format(" {} |", Cell(cell));
+  for (const std::string& cell : cells)
+    row += fmt::format(" {} |", boost::replace_all_copy(cell, "|", "\\|"));
   return row + "\n";
 }
 

@@ -12,7 +12,7 @@
 #include "common/interrupt.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample_decoder.h"
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/bus_run.h"
@@ -50,7 +50,7 @@ class StepWriter {
  public:
   StepWriter(runtime::Digest& digest, DirectLog* log) : digest_(digest), log_(log) {}
 
-  void Add(const metrics::StepView& step) {
+  void Add(const closed_loop::StepView& step) {
     step.ForEachMessage([this](const auto& message) { AddOne(message); });
   }
 
@@ -75,11 +75,11 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   ExperimentResult result;
   runtime::Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   metrics::FollowerAccumulator followers;
   const TimePoint began = Clock::now();
-  metrics::ClosedLoop loop(scenario);
-  loop.Run(run_id, [&](const metrics::StepView& step) {
+  closed_loop::ClosedLoop loop(scenario);
+  loop.Run(run_id, [&](const closed_loop::StepView& step) {
     writer.Add(step);
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
@@ -218,7 +218,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
-    const metrics::ClosedLoop parts(scenario);
+    const closed_loop::ClosedLoop parts(scenario);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.
     const std::string what = error.what();
@@ -249,7 +249,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
 }
 
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   LoggedRun logged = ReadSteps(log, [&](const metrics::Sample& sample) { measures.Add(sample); });
   logged.result.measures = measures.Result();
   return logged;

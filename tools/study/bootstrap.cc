@@ -6,11 +6,6 @@
 #include "tools/stats/statistics.h"
 
 namespace fogline::study {
-namespace {
-
-constexpr double kTail = 0.025;  // at each end of an interval of 95 %
-
-}  // namespace
 
 void Resampling::Draw(std::int64_t replicate, std::vector<double>& weights) const {
   weights.assign(runs_, 0.0);

@@ -10,8 +10,6 @@
 namespace fogline::study {
 namespace {
 
-constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
-
 bool IsZeroThroughout(std::span<const double> values) {
   return std::ranges::all_of(values, [](double value) { return value == 0; });
 }

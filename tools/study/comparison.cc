@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
@@ -17,12 +17,12 @@
 namespace fogline::study {
 namespace {
 
-std::vector<ComparedMeasure> AllMeasures() {
-  std::vector<ComparedMeasure> all{
+std::vector<ComparedMetric> AllMetrics() {
+  std::vector<ComparedMetric> all{
       {"si_pct", "%", "safety improvement over the paired run without traded control"},
       {"collided", "", "probability of a collision"}};
-  metrics::VisitMeasures(
-      metrics::RunMeasures{},
+  metrics::VisitMetrics(
+      metrics::RunMetrics{},
       [&](std::string_view name, const auto&, std::string_view unit, std::string_view description) {
         all.push_back({std::string(name), std::string(unit), std::string(description)});
       });
@@ -34,13 +34,10 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
                                   const std::vector<StudyVariant>& variants) {
   std::vector<Scenario> scenarios;
   for (const StudyCase& one : cases) {
-    std::vector<std::string> overrides = one.overrides;
-    overrides.emplace_back(kWithoutTradedControl);
-    scenarios.push_back(context.Load(one.file, overrides));
+    scenarios.push_back(
+        context.Load(one.file, one.overrides, {std::string(kWithoutTradedControl)}));
     for (const StudyVariant& variant : variants) {
-      overrides = one.overrides;
-      overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-      scenarios.push_back(context.Load(one.file, overrides));
+      scenarios.push_back(context.Load(one.file, one.overrides, variant.overrides));
     }
   }
   return scenarios;
@@ -48,13 +45,13 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
 
 }  // namespace
 
-std::span<const ComparedMeasure> ComparedMeasures() {
-  static const std::vector<ComparedMeasure> kAll = AllMeasures();
+std::span<const ComparedMetric> ComparedMetrics() {
+  static const std::vector<ComparedMetric> kAll = AllMetrics();
   return kAll;
 }
 
-std::size_t PlaceOfMeasure(std::string_view name) {
-  const std::span<const ComparedMeasure> all = ComparedMeasures();
+std::size_t PlaceOfMetric(std::string_view name) {
+  const std::span<const ComparedMetric> all = ComparedMetrics();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].name == name) return i;
   }
@@ -65,7 +62,7 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
                        std::vector<StudyVariant> variants)
     : cases_(std::move(cases)), variants_(std::move(variants)), seeds_(context.seeds.count()) {
   const std::vector<Scenario> scenarios = ScenariosOf(context, cases_, variants_);
-  const std::size_t measures = ComparedMeasures().size();
+  const std::size_t measures = ComparedMetrics().size();
   const auto seeds = static_cast<std::size_t>(seeds_);
   values_.assign(cases_.size() * variants_.size() * measures * seeds, stats::kMissing);
   const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
@@ -97,7 +94,7 @@ Comparison::Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> v
       seeds_(seeds),
       values_(std::move(values)) {
   const std::size_t cells = cases_.size() * variants_.size();
-  if (values_.size() != cells * ComparedMeasures().size() * static_cast<std::size_t>(seeds)) {
+  if (values_.size() != cells * ComparedMetrics().size() * static_cast<std::size_t>(seeds)) {
     throw std::invalid_argument("a comparison needs a value of every measure of every run");
   }
 }
@@ -109,7 +106,7 @@ std::int64_t Comparison::runs() const {
 std::span<const double> Comparison::Values(Cell cell, std::string_view measure) const {
   const auto seeds = static_cast<std::size_t>(seeds_);
   const std::size_t place = cell.test_case * variants_.size() + cell.variant;
-  const std::size_t row = place * ComparedMeasures().size() + PlaceOfMeasure(measure);
+  const std::size_t row = place * ComparedMetrics().size() + PlaceOfMetric(measure);
   return std::span(values_).subspan(row * seeds, seeds);
 }
 
@@ -127,6 +124,16 @@ metrics::EventShare Comparison::Collisions(Cell cell) const {
   return metrics::ClopperPearson(events, seeds_);
 }
 
+Estimate Comparison::Point(Cell cell, std::string_view measure) const {
+  Estimate mean = Mean(cell, measure);
+  if (measure == "collided") {
+    const metrics::EventShare share = Collisions(cell);
+    mean.low = share.lower;
+    mean.high = share.upper;
+  }
+  return mean;
+}
+
 metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
   std::int64_t events = 0;
   std::int64_t runs = 0;
@@ -139,7 +146,7 @@ metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, doub
 }
 
 std::span<const double> Comparison::AllOf(Cell cell) const {
-  const std::size_t length = ComparedMeasures().size() * static_cast<std::size_t>(seeds_);
+  const std::size_t length = ComparedMetrics().size() * static_cast<std::size_t>(seeds_);
   const std::size_t place = cell.test_case * variants_.size() + cell.variant;
   return std::span(values_).subspan(place * length, length);
 }
@@ -175,20 +182,14 @@ std::string Comparison::Csv(std::size_t reference) const {
       "difference_infinite,difference,difference_ci95_low,difference_ci95_high\n";
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
-      for (const ComparedMeasure& measure : ComparedMeasures()) {
-        Estimate mean = Mean({c, v}, measure.name);
-        if (measure.name == "collided") {
-          const metrics::EventShare share = Collisions({c, v});
-          mean.low = share.lower;
-          mean.high = share.upper;
-        }
+      for (const ComparedMetric& measure : ComparedMetrics()) {
+        const Estimate mean = Point({c, v}, measure.name);
         const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
                            variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
                            CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
                            CsvText(mean.high), variants_[reference].name, difference.n,
-                           difference.infinite, CsvText(difference.mean), CsvText(difference.low),
-                           CsvText(difference.high));
+                           difference.infinite, CsvText(difference));
       }
     }
   }
@@ -197,7 +198,7 @@ std::string Comparison::Csv(std::size_t reference) const {
 
 report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string id,
                                          std::string title, bool cases_on_axis) const {
-  const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+  const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
   report::StudyFigure figure{
       .id = std::move(id),
       .title = std::move(title),
@@ -220,16 +221,7 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
     one.name = cases_on_axis ? variants_[s].name : cases_[s].name;
     for (std::size_t p = 0; p < places; ++p) {
       const Cell cell = cases_on_axis ? Cell{p, s} : Cell{s, p};
-      Estimate mean = Mean(cell, measure);
-      if (measure == "collided") {
-        const metrics::EventShare share = Collisions(cell);
-        mean.low = share.lower;
-        mean.high = share.upper;
-      }
-      one.x.push_back(static_cast<double>(p));
-      one.y.push_back(mean.mean);
-      one.low.push_back(mean.low);
-      one.high.push_back(mean.high);
+      AddPoint(one, static_cast<double>(p), Point(cell, measure));
     }
   }
   return figure;
@@ -241,7 +233,7 @@ report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell
   report::StudyTable table{.caption = std::move(caption),
                            .columns = {name_cases ? "case" : "variant"}};
   for (const std::string_view measure : measures) {
-    const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+    const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
     table.columns.push_back(info.unit.empty() ? info.name
                                               : fmt::format("{} ({})", info.name, info.unit));
   }
@@ -271,6 +263,13 @@ report::StudyTable Comparison::TableOfVariant(std::size_t variant,
   return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
                              variants_[variant].name, seeds_),
                  rows, true, measures);
+}
+
+void AddPoint(report::StudySeries& series, double x, const Estimate& estimate) {
+  series.x.push_back(x);
+  series.y.push_back(estimate.mean);
+  series.low.push_back(estimate.low);
+  series.high.push_back(estimate.high);
 }
 
 std::string NameForReaders(std::string_view measure) {

@@ -35,15 +35,18 @@ struct StudyVariant {
 /// The override for a run without traded control.
 inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=none";
 
-/// A measure of a run: one of VisitMeasures(), the safety improvement, or "collided" (1 or 0).
-struct ComparedMeasure {
+/// The measure of safety in most findings.
+inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+
+/// A measure of a run: one of VisitMetrics(), the safety improvement, or "collided" (1 or 0).
+struct ComparedMetric {
   std::string name;
   std::string unit;
   std::string description;
 };
-std::span<const ComparedMeasure> ComparedMeasures();
+std::span<const ComparedMetric> ComparedMetrics();
 /// @throws std::out_of_range
-std::size_t PlaceOfMeasure(std::string_view name);
+std::size_t PlaceOfMetric(std::string_view name);
 
 /// One variant in one case.
 struct Cell {
@@ -74,6 +77,9 @@ class Comparison {
   Estimate Difference(Cell a, Cell b, std::string_view measure) const;
   /// Share of runs with a collision.
   metrics::EventShare Collisions(Cell cell) const;
+  /// A measure with its interval, for figures and files: as Mean(), but the interval of "collided"
+  /// is that of Collisions().
+  Estimate Point(Cell cell, std::string_view measure) const;
   /// Share of runs in which a measure is at most `limit`, among the runs that have it. `runs` is 0
   /// if no run has it.
   metrics::EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
@@ -109,6 +115,9 @@ class Comparison {
   std::int64_t seeds_ = 0;
   std::vector<double> values_;  // by case, variant, measure, seed
 };
+
+/// Adds an estimate at `x` to a series.
+void AddPoint(report::StudySeries& series, double x, const Estimate& estimate);
 
 /// The name of a measure in findings and figures, such as "safety improvement (SI)".
 std::string NameForReaders(std::string_view measure);

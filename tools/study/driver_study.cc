@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
@@ -14,14 +14,14 @@
 namespace fogline::study {
 namespace {
 
-constexpr std::array kVisibilities_m{200.0, 120.0, 80.0, 60.0, 45.0, 35.0, 25.0};
+constexpr std::array kDensities_m{200.0, 120.0, 80.0, 60.0, 45.0, 35.0, 25.0};
 
 const std::vector<std::string> kSeesFog{"/human/sight=fog"};
 const std::vector<std::string> kWholeHuman{"/human/sight=fog", "/human/misjudges=true",
                                            "/human/loses_awareness=true"};
 
-/// Kinds of drivers in the fog of dense_fog.json.
-std::vector<StudyCase> Kinds() {
+/// HumanKinds of drivers in the fog of dense_fog.json.
+std::vector<StudyCase> HumanKinds() {
   return {{"paper's driver", "dense_fog.json", {}},
           {"IIDM", "dense_fog.json", {"/human/following=iidm"}},
           {"ACC-IDM", "dense_fog.json", {"/human/following=acc_idm"}},
@@ -34,10 +34,10 @@ std::vector<StudyCase> Kinds() {
 }
 
 /// The paper's driver and a complete human model in fog of every density: pairs of cases that
-/// follow Kinds().
+/// follow HumanKinds().
 std::vector<StudyCase> Densities() {
   std::vector<StudyCase> cases;
-  for (const double visibility_m : kVisibilities_m) {
+  for (const double visibility_m : kDensities_m) {
     std::vector<std::string> overrides{fmt::format("/fog/visibility_m={}", visibility_m)};
     cases.push_back(
         {fmt::format("paper's driver at {:g} m", visibility_m), "dense_fog.json", overrides});
@@ -47,19 +47,19 @@ std::vector<StudyCase> Densities() {
   return cases;
 }
 
-constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
-                                                         "mean_compromised_safety_fog_m",
-                                                         "collided",
-                                                         "min_host_gap_m",
-                                                         "min_host_ttc_s",
-                                                         "max_host_drac_mps2",
-                                                         "max_abs_jerk_mps3",
-                                                         "min_follower_ttc_s"};
+constexpr std::array<std::string_view, 8> kDriverTable{"si_pct",
+                                                       "mean_compromised_safety_fog_m",
+                                                       "collided",
+                                                       "min_host_gap_m",
+                                                       "min_host_ttc_s",
+                                                       "max_host_drac_mps2",
+                                                       "max_abs_jerk_mps3",
+                                                       "min_follower_ttc_s"};
 
 /// A measure as a function of the visibility: without traded control, and with each of the two
 /// drivers.
-report::StudyFigure OverVisibility(const Comparison& comparison, std::string_view measure,
-                                   std::string id, std::string title) {
+report::StudyFigure OverDensity(const Comparison& comparison, std::string_view measure,
+                                std::string id, std::string title) {
   report::StudyFigure figure{
       .id = std::move(id),
       .title = std::move(title),
@@ -68,24 +68,15 @@ report::StudyFigure OverVisibility(const Comparison& comparison, std::string_vie
       .y_label = NameForReaders(measure),
       .log_x = true,
       .log_y = report::IsTimeToCollision(measure)};
-  const std::size_t first = Kinds().size();
+  const std::size_t first = HumanKinds().size();
   for (const auto& [name, driver, variant] :
        {std::tuple("without traded control", 0U, 0U), std::tuple("paper's driver", 0U, 1U),
         std::tuple("human", 1U, 1U)}) {
     report::StudySeries& series = figure.series.emplace_back();
     series.name = name;
-    for (std::size_t i = kVisibilities_m.size(); i-- > 0;) {
+    for (std::size_t i = kDensities_m.size(); i-- > 0;) {
       const Cell cell{first + 2 * i + driver, variant};
-      Estimate mean = comparison.Mean(cell, measure);
-      if (measure == "collided") {
-        const metrics::EventShare share = comparison.Collisions(cell);
-        mean.low = share.lower;
-        mean.high = share.upper;
-      }
-      series.x.push_back(kVisibilities_m[i]);
-      series.y.push_back(mean.mean);
-      series.low.push_back(mean.low);
-      series.high.push_back(mean.high);
+      AddPoint(series, kDensities_m[i], comparison.Point(cell, measure));
     }
   }
   return figure;
@@ -97,13 +88,12 @@ std::string FindingOfDensity(const Comparison& comparison) {
   std::vector<std::string> worse_than_paper;
   std::vector<std::string> worse_than_none;
   std::vector<std::string> cut_short;
-  const std::size_t first = Kinds().size();
-  constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
-  for (std::size_t i = 0; i < kVisibilities_m.size(); ++i) {
+  const std::size_t first = HumanKinds().size();
+  for (std::size_t i = 0; i < kDensities_m.size(); ++i) {
     const Cell paper{first + 2 * i, 1};
     const Cell human{first + 2 * i + 1, 1};
     const Cell none{first + 2 * i + 1, 0};
-    const std::string name = fmt::format("{:g} m", kVisibilities_m[i]);
+    const std::string name = fmt::format("{:g} m", kDensities_m[i]);
     if (comparison.PairsCutShort(human, paper) + comparison.PairsCutShort(human, none) > 0) {
       cut_short.push_back(name);
       continue;
@@ -131,7 +121,7 @@ std::string FindingOfDensity(const Comparison& comparison) {
 }  // namespace
 
 StudyResult RunDriverStudy(const StudyContext& context) {
-  std::vector<StudyCase> cases = Kinds();
+  std::vector<StudyCase> cases = HumanKinds();
   const std::size_t kinds = cases.size();
   for (StudyCase& one : Densities()) cases.push_back(std::move(one));
   const Comparison comparison(
@@ -144,16 +134,16 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   section.findings.resize(1 + kinds);  // one finding is for the densities
   section.findings.push_back(FindingOfDensity(comparison));
   section.figures = {
-      OverVisibility(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",
-                     "Compromised safety over the density of the fog (m)"),
-      OverVisibility(comparison, "collided", "driver-collisions-visibility",
-                     "Collisions over the density of the fog"),
-      OverVisibility(comparison, "min_host_ttc_s", "driver-ttc-visibility",
-                     "The host's smallest time to collision over the density of the fog (s)"),
-      OverVisibility(comparison, "max_abs_jerk_mps3", "driver-jerk-visibility",
-                     "Largest jerk over the density of the fog (m/s3)")};
-  section.tables = {comparison.TableOfVariant(0, kTableMeasures),
-                    comparison.TableOfVariant(1, kTableMeasures)};
+      OverDensity(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",
+                  "Compromised safety over the density of the fog (m)"),
+      OverDensity(comparison, "collided", "driver-collisions-visibility",
+                  "Collisions over the density of the fog"),
+      OverDensity(comparison, "min_host_ttc_s", "driver-ttc-visibility",
+                  "The host's smallest time to collision over the density of the fog (s)"),
+      OverDensity(comparison, "max_abs_jerk_mps3", "driver-jerk-visibility",
+                  "Largest jerk over the density of the fog (m/s3)")};
+  section.tables = {comparison.TableOfVariant(0, kDriverTable),
+                    comparison.TableOfVariant(1, kDriverTable)};
   section.method = fmt::format(
       "{} seeds of dense_fog.json with other human drivers of the host, without and with traded "
       "control; sight, errors and awareness with their defaults. Without traded control the driver "

@@ -11,8 +11,6 @@
 namespace fogline::study {
 namespace {
 
-constexpr double kPercent = 100;
-
 /// Collects the values of an estimate.
 class Collection {
  public:
@@ -96,6 +94,11 @@ std::string Text(const metrics::EventShare& share) {
 
 std::string CsvText(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
+
+std::string CsvText(const Estimate& estimate) {
+  return fmt::format("{},{},{}", CsvText(estimate.mean), CsvText(estimate.low),
+                     CsvText(estimate.high));
 }
 
 }  // namespace fogline::study

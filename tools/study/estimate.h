@@ -10,6 +10,10 @@
 
 namespace fogline::study {
 
+inline constexpr double kPercent = 100;
+/// Probability at each end of an interval of 95 %.
+inline constexpr double kTail = 0.025;
+
 /// Mean over n runs with its 95 % confidence interval (Student's t). NaN if n is too small: the
 /// mean needs 1, the interval 2. A time to a collision that never happens is infinite. Such runs
 /// are not among the n, because a mean cannot include them; they are counted separately.
@@ -52,5 +56,7 @@ std::string Text(double value, int decimals);
 
 /// A number in a CSV file; empty for NaN and infinity.
 std::string CsvText(double value);
+/// "12.3,12,12.6": mean and interval in a CSV file.
+std::string CsvText(const Estimate& estimate);
 
 }  // namespace fogline::study

@@ -2,28 +2,30 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "services/metrics/run_metrics.h"
 #include "tools/stats/statistics.h"
+#include "tools/sweep/engine.h"
 
 namespace fogline::study {
 namespace {
 
 /// If a pair of cars existed and never closed in, its smallest time to collision is infinite
 /// instead of missing.
-void KeepInfinite(metrics::PairMeasures& pair) {
+void KeepInfinite(metrics::PairMetrics& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
 }
 
-// The values are in the order of ComparedMeasures().
-RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& si_pct) {
+// The values are in the order of ComparedMetrics().
+RunValues ValuesOf(metrics::RunMetrics measures, const std::optional<double>& si_pct) {
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
   RunValues values{si_pct.value_or(stats::kMissing),
                    measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
-  metrics::VisitMeasures(
+  metrics::VisitMetrics(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
           values.push_back(value.value_or(stats::kMissing));
@@ -36,35 +38,17 @@ RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& s
 
 }  // namespace
 
-template <class Visit>
-void PairedWorker::Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
-  scenario_ = scenario;
-  scenario_.seed = seed;
-  if (loop_) {
-    loop_->Restart(scenario_);
-  } else {
-    loop_.emplace(scenario_);
-  }
-  loop_->Run(0, visit);
-}
-
 std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios,
                                              std::int64_t seed) {
   baseline_.clear();
-  Run(scenarios.front(), seed,
-      [this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
+  loop_.Run(scenarios.front(), seed,
+            [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
-    metrics::MeasureAccumulator measures(scenario);
-    metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
-    std::size_t i = 0;
-    Run(scenario, seed, [&](const metrics::StepView& step) {
-      const metrics::Sample sample = step.ToSample();
-      measures.Add(sample);
-      // If one run of the pair ended early, SI covers only the steps that both have.
-      if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);
-    });
-    runs.push_back(ValuesOf(measures.Result(), improvement.Pct()));
+    scenario_ = scenario;
+    scenario_.seed = seed;
+    const sweep::SweepRow row = sweep::RunPaired(loop_, scenario_, baseline_);
+    runs.push_back(ValuesOf(row.measures, row.si_pct));
   }
   return runs;
 }

@@ -3,17 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "scenario/sections/scenario.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample.h"
 
 namespace fogline::study {
 
-/// The measures of a run in the order of ComparedMeasures(); NaN for a missing measure.
+/// The measures of a run in the order of ComparedMetrics(); NaN for a missing measure.
 using RunValues = std::vector<double>;
 
 /// For use by one thread; it keeps its buffers.
@@ -24,10 +23,7 @@ class PairedWorker {
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
 
  private:
-  template <class Visit>
-  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit);
-
-  std::optional<metrics::ClosedLoop> loop_;
+  closed_loop::ReusedLoop loop_;
   Scenario scenario_;
   std::vector<metrics::Sample> baseline_;
 };

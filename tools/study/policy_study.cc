@@ -13,7 +13,7 @@ namespace fogline::study {
 namespace {
 
 /// Every policy of the table.
-std::vector<StudyVariant> Variants() {
+std::vector<StudyVariant> EveryPolicy() {
   std::vector<StudyVariant> variants;
   for (const policies::PolicyRow& row : policies::Policies()) {
     variants.push_back({std::string(row.name), {fmt::format("/arbitrator/policy={}", row.name)}});
@@ -23,7 +23,7 @@ std::vector<StudyVariant> Variants() {
 
 /// Three fogs: the paper's; the paper's with a radar whose mounting offset is calibrated out and a
 /// DoC that knows the offset; and fog as a physical model.
-std::vector<StudyCase> Cases() {
+std::vector<StudyCase> PolicyFogs() {
   return {{"bias fog", "paper.json", {}},
           {"bias fog with calibrated radar",
            "paper.json",
@@ -31,16 +31,16 @@ std::vector<StudyCase> Cases() {
           {"beam fog", "dense_fog.json", {}}};
 }
 
-constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
-                                                          "rhe_pct",
-                                                          "collided",
-                                                          "mean_compromised_safety_fog_m",
-                                                          "min_follower_ttc_s",
-                                                          "max_follower_drac_mps2",
-                                                          "max_abs_jerk_mps3",
-                                                          "transfers_pmin",
-                                                          "wrong_human_s",
-                                                          "wrong_automation_s"};
+constexpr std::array<std::string_view, 10> kPolicyTable{"si_pct",
+                                                        "rhe_pct",
+                                                        "collided",
+                                                        "mean_compromised_safety_fog_m",
+                                                        "min_follower_ttc_s",
+                                                        "max_follower_drac_mps2",
+                                                        "max_abs_jerk_mps3",
+                                                        "transfers_pmin",
+                                                        "wrong_human_s",
+                                                        "wrong_automation_s"};
 
 /// The policies that can change the driver, by variant: all except those whose rule is
 /// Rule::kNever.
@@ -80,7 +80,7 @@ std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case
                                         "mean_compromised_safety_fog_m", "m", 4));
 }
 
-std::string FindingOf(const Comparison& comparison, std::size_t c) {
+std::string FindingOfFog(const Comparison& comparison, std::size_t c) {
   const std::vector<std::size_t> all = AllVariants(comparison);
   const std::string same = SameRunsText(comparison, c);
   const std::size_t none = comparison.VariantNamed("none");
@@ -95,13 +95,13 @@ std::string FindingOf(const Comparison& comparison, std::size_t c) {
 }  // namespace
 
 StudyResult RunPolicyStudy(const StudyContext& context) {
-  const Comparison comparison(context, Cases(), Variants());
+  const Comparison comparison(context, PolicyFogs(), EveryPolicy());
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    section.findings.push_back(FindingOf(comparison, c));
-    section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));
+    section.findings.push_back(FindingOfFog(comparison, c));
+    section.tables.push_back(comparison.TableOfCase(c, kPolicyTable));
   }
   section.figures = {
       comparison.FigureOf("si_pct", "policy-si", "Safety improvement by policy"),

@@ -57,8 +57,9 @@ const Study* FindStudy(std::string_view name) {
   return found == std::end(kStudies) ? nullptr : &*found;
 }
 
-Scenario StudyContext::Load(std::string_view file,
-                            const std::vector<std::string>& overrides) const {
+Scenario StudyContext::Load(std::string_view file, std::vector<std::string> overrides,
+                            const std::vector<std::string>& more) const {
+  overrides.insert(overrides.end(), more.begin(), more.end());
   return LoadScenario(scenarios / file, overrides);
 }
 

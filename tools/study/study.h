@@ -31,8 +31,9 @@ struct StudyContext {
   /// Called repeatedly with the finished and the total number of units; returns false to stop.
   std::function<bool(std::int64_t done, std::int64_t total)> progress;
 
-  /// A scenario of the folder with overrides applied. @throws InputError
-  Scenario Load(std::string_view file, const std::vector<std::string>& overrides = {}) const;
+  /// A scenario of the folder with `overrides` and then `more` applied. @throws InputError
+  Scenario Load(std::string_view file, std::vector<std::string> overrides,
+                const std::vector<std::string>& more = {}) const;
   /// @throws StudyStopped
   void Show(std::int64_t done, std::int64_t total) const;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -11,10 +12,8 @@
 namespace fogline::study {
 namespace {
 
-constexpr double kPercent = 100;
-
 std::string UnitOf(std::string_view measure) {
-  return ComparedMeasures()[PlaceOfMeasure(measure)].unit;
+  return ComparedMetrics()[PlaceOfMetric(measure)].unit;
 }
 
 }  // namespace
@@ -108,51 +107,31 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
   return text;
 }
 
-std::string ListText(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
-
 std::string AgainstText(const Comparison& comparison, std::size_t test_case,
                         const std::vector<std::size_t>& variants, std::size_t reference,
                         std::string_view measure, std::string_view unit, int decimals) {
-  std::vector<std::string> more;
-  std::vector<std::string> less;
-  std::vector<std::string> undecided;
-  std::vector<std::string> too_few;
+  std::map<Verdict, std::vector<std::string>> by_verdict;
   for (const std::size_t v : Distinct(comparison, test_case, variants)) {
     if (comparison.HasSameRuns({test_case, v}, {test_case, reference})) continue;
     const Estimate difference =
         comparison.Difference({test_case, v}, {test_case, reference}, measure);
-    const std::string& name = comparison.variants()[v].name;
-    switch (VerdictOf(difference)) {
-      case Verdict::kMore:
-        more.push_back(fmt::format("{} (by {} {})", name, Text(difference, decimals), unit));
-        break;
-      case Verdict::kLess:
-        less.push_back(
-            fmt::format("{} (by {} {})", name, Text(Turned(difference), decimals), unit));
-        break;
-      case Verdict::kUndecided:
-        undecided.push_back(name);
-        break;
-      case Verdict::kTooFew:
-        too_few.push_back(name);
-        break;
+    const Verdict verdict = VerdictOf(difference);
+    std::string name = comparison.variants()[v].name;
+    if (verdict == Verdict::kLess || verdict == Verdict::kMore) {
+      const Estimate size = verdict == Verdict::kLess ? Turned(difference) : difference;
+      name += fmt::format(" (by {} {})", Text(size, decimals), unit);
     }
+    by_verdict[verdict].push_back(std::move(name));
   }
   std::vector<std::string> parts;
-  if (!less.empty()) parts.push_back(fmt::format("less for {}", ListText(less)));
-  if (!more.empty()) parts.push_back(fmt::format("more for {}", ListText(more)));
-  if (!undecided.empty())
-    parts.push_back(fmt::format("no significant difference for {}", ListText(undecided)));
-  if (!too_few.empty()) {
-    parts.push_back(fmt::format("too few runs for an interval for {}", ListText(too_few)));
-  }
+  const auto part = [&](Verdict verdict, std::string_view what) {
+    const std::vector<std::string>& names = by_verdict[verdict];
+    if (!names.empty()) parts.push_back(fmt::format("{} for {}", what, ListText(names)));
+  };
+  part(Verdict::kLess, "less");
+  part(Verdict::kMore, "more");
+  part(Verdict::kUndecided, "no significant difference");
+  part(Verdict::kTooFew, "too few runs for an interval");
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -7,9 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/report/metric_text.h"
 #include "tools/study/comparison.h"
 
 namespace fogline::study {
+
+using report::ListText;
 
 /// Whether more of a quantity is better, for sentences that rank.
 enum class Better { kMore, kLess };
@@ -41,9 +44,6 @@ std::string DifferenceText(const Estimate& difference, std::string_view unit, in
 
 /// The text with a capital first letter.
 std::string Capital(std::string text);
-
-/// "a, b and c".
-std::string ListText(const std::vector<std::string>& names);
 
 /// Groups `variants` by the difference of a measure from variant `reference`: "less for a (by ...);
 /// more for b (by ...); no significant difference for c; too few runs for an interval for d".

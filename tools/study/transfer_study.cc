@@ -17,7 +17,7 @@ constexpr double kComfortableJerk_mps3 = 2.5;
 /// Largest tolerable loss of safety by a smooth transfer, points of SI.
 constexpr double kTolerableLoss = 3;
 
-std::vector<StudyVariant> Variants() {
+std::vector<StudyVariant> WaysToTransfer() {
   std::vector<StudyVariant> variants;
   for (const std::string_view profile : {"step", "linear", "sigmoid", "jerk_limited"}) {
     variants.push_back({std::string(profile),
@@ -30,7 +30,7 @@ std::vector<StudyVariant> Variants() {
   return variants;
 }
 
-constexpr std::array<std::string_view, 8> kTableMeasures{
+constexpr std::array<std::string_view, 8> kTransferTable{
     "max_handover_jerk_mps3", "max_handover_jump_mps2", "si_pct",         "rhe_pct",
     "max_abs_jerk_mps3",      "rms_jerk_mps3",          "transfers_pmin", "collided"};
 
@@ -110,7 +110,7 @@ std::string VerdictText(const Comparison& comparison, std::size_t c) {
   return text + (fail.empty() ? "." : fmt::format("; not {}.", ListText(fail)));
 }
 
-std::string FindingOf(const Comparison& comparison, std::size_t c) {
+std::string FindingOfScenario(const Comparison& comparison, std::size_t c) {
   const Estimate step = comparison.Mean({c, 0}, "max_handover_jerk_mps3");
   std::string text = fmt::format(
       "{}: the paper's step has a largest jerk at a hand-over of {} m/s3 and an SI of "
@@ -128,14 +128,14 @@ std::string FindingOf(const Comparison& comparison, std::size_t c) {
 StudyResult RunTransferStudy(const StudyContext& context) {
   const Comparison comparison(
       context, {{"paper.json", "paper.json", {}}, {"dense_fog.json", "dense_fog.json", {}}},
-      Variants());
+      WaysToTransfer());
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.findings.push_back(FindingOfStep(comparison));
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    section.findings.push_back(FindingOf(comparison, c));
-    section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));
+    section.findings.push_back(FindingOfScenario(comparison, c));
+    section.tables.push_back(comparison.TableOfCase(c, kTransferTable));
   }
   section.figures = {
       comparison.FigureOf("max_handover_jerk_mps3", "transfer-jerk", "Jerk at hand-overs"),

@@ -52,9 +52,9 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// Cases in which the limit that their name mentions takes effect. Cars of a kind whose limits are
-/// never reached give equal runs, so they are left out; MethodOf() names them.
-std::vector<StudyCase> Cases() {
+/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose
+/// limits are never reached give equal runs, so they are left out; VehicleMethod() names them.
+std::vector<StudyCase> VehicleCases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {
     const auto add = [&](std::string_view name, const std::vector<std::string>& overrides) {
@@ -82,14 +82,14 @@ constexpr std::size_t kNone = 0;
 constexpr std::size_t kTraded = 1;
 constexpr std::size_t kJerkLimited = 2;
 
-constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
-                                                         "mean_compromised_safety_fog_m",
-                                                         "collided",
-                                                         "min_host_gap_m",
-                                                         "min_follower_gap_m",
-                                                         "max_follower_drac_mps2",
-                                                         "max_handover_jerk_mps3",
-                                                         "rms_jerk_mps3"};
+constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
+                                                        "mean_compromised_safety_fog_m",
+                                                        "collided",
+                                                        "min_host_gap_m",
+                                                        "min_follower_gap_m",
+                                                        "max_follower_drac_mps2",
+                                                        "max_handover_jerk_mps3",
+                                                        "rms_jerk_mps3"};
 
 /// Largest magnitude of a host's acceleration in any run.
 double HardestOf(const Comparison& comparison) {
@@ -104,7 +104,7 @@ double HardestOf(const Comparison& comparison) {
   return hardest;
 }
 
-std::string MethodOf(const Comparison& comparison) {
+std::string VehicleMethod(const Comparison& comparison) {
   constexpr double kGravity_mps2 = 9.81;
   const double hardest = HardestOf(comparison);
   const double wet = models::FrictionOf(Surface::kWet) * kGravity_mps2;
@@ -125,7 +125,7 @@ std::string MethodOf(const Comparison& comparison) {
 
 StudyResult RunVehicleStudy(const StudyContext& context) {
   const Comparison comparison(
-      context, Cases(),
+      context, VehicleCases(),
       {{"none", {"/arbitrator/policy=none"}},
        {"traded", {"/arbitrator/policy=traded"}},
        {"traded jerk-limited",
@@ -144,9 +144,9 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
                                          "How hard the follower has to brake", true),
                      comparison.FigureOf("collided", "vehicle-collisions", "Collisions", true)};
   for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
-    section.tables.push_back(comparison.TableOfVariant(v, kTableMeasures));
+    section.tables.push_back(comparison.TableOfVariant(v, kVehicleTable));
   }
-  section.method = MethodOf(comparison);
+  section.method = VehicleMethod(comparison);
   result.files = {{"vehicle.csv", comparison.Csv(0)}};
   return result;
 }

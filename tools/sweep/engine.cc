@@ -12,14 +12,17 @@
 
 namespace fogline::sweep {
 
-template <class Visit>
-void SweepWorker::Run(Visit&& visit) {
-  if (loop_) {
-    loop_->Restart(scenario_);
-  } else {
-    loop_.emplace(scenario_);
-  }
-  loop_->Run(0, visit);
+SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
+                   std::span<const metrics::Sample> baseline) {
+  metrics::MetricsAccumulator measures(scenario);
+  metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  std::size_t i = 0;
+  loop.Run(scenario, [&](const closed_loop::StepView& step) {
+    const metrics::Sample sample = step.ToSample();
+    measures.Add(sample);
+    if (i < baseline.size()) improvement.Add(baseline[i++], sample);
+  });
+  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
 }
 
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
@@ -43,21 +46,12 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    Run([this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
+    loop_.Run(scenario_,
+              [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
     scenario_.arbitrator.policy = policy;
   }
-  metrics::MeasureAccumulator measures(scenario_);
-  metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
-  std::size_t i = 0;
-  Run([&](const metrics::StepView& step) {
-    const metrics::Sample sample = step.ToSample();
-    measures.Add(sample);
-    // If one run of the pair ended early, SI covers only the steps that both have.
-    if (policy != Policy::kNone && i < baseline_.size()) {
-      improvement.Add(baseline_[i++], sample);
-    }
-  });
-  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
+  if (policy == Policy::kNone) return RunPaired(loop_, scenario_, {});
+  return RunPaired(loop_, scenario_, baseline_);
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/sweep/plan.h"
 
@@ -14,11 +15,17 @@ namespace fogline::sweep {
 
 /// Result of a row of a sweep.
 struct SweepRow {
-  metrics::RunMeasures measures;
+  metrics::RunMetrics measures;
   /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
   /// for a paired run without compromised safety.
   std::optional<double> si_pct;
 };
+
+/// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
+/// empty for a run that is its own pair. If one run of the pair ends early, SI covers only the
+/// steps that both have. @throws as ReusedLoop::Run()
+SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
+                   std::span<const metrics::Sample> baseline);
 
 /// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.
 class SweepWorker {
@@ -32,13 +39,10 @@ class SweepWorker {
  private:
   /// The row of scenario_. Before the first row of a unit it runs the pair without traded control.
   SweepRow ComputeRow();
-  /// Runs scenario_ to its end.
-  template <class Visit>
-  void Run(Visit&& visit);
 
   const SweepPlan& plan_;
   Scenario scenario_;
-  std::optional<metrics::ClosedLoop> loop_;
+  closed_loop::ReusedLoop loop_;
   std::vector<metrics::Sample> baseline_;
 };
 

@@ -19,7 +19,7 @@ namespace fogline::sweep {
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
   /// Adds a run. SI and RHE may be missing: SI needs compromised safety in the paired run.
-  void Add(const std::optional<double>& si, const metrics::RunMeasures& measures) {
+  void Add(const std::optional<double>& si, const metrics::RunMetrics& measures) {
     if (si) si_pct.Add(*si);
     if (measures.rhe_pct) rhe_pct.Add(*measures.rhe_pct);
     if (measures.collision != truth_t::COLLISION_NONE) ++collisions;

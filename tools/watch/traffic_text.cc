@@ -1,6 +1,8 @@
 #include "tools/watch/traffic_text.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -18,6 +20,15 @@ constexpr std::size_t kHashShown = 12;
 
 std::string Number(const std::optional<double>& value, double unit, int decimals) {
   return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
+}
+
+/// The name of a message's constant; "?" for an unknown one.
+std::string_view NameIn(std::initializer_list<std::pair<std::int8_t, std::string_view>> names,
+                        std::int8_t value) {
+  for (const auto& [constant, name] : names) {
+    if (constant == value) return name;
+  }
+  return "?";
 }
 
 std::string NameOfUndecodable(const Undecodable& undecodable) {
@@ -165,35 +176,17 @@ std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t 
 }
 
 std::string_view StateName(std::int8_t state) {
-  switch (state) {
-    case status_t::WAITING:
-      return "WAITING";
-    case status_t::READY:
-      return "READY";
-    case status_t::RUNNING:
-      return "RUNNING";
-    case status_t::DONE:
-      return "DONE";
-    case status_t::FAILED:
-      return "FAILED";
-    case status_t::LEFT:
-      return "LEFT";
-    default:
-      return "?";
-  }
+  return NameIn({{status_t::WAITING, "WAITING"},
+                 {status_t::READY, "READY"},
+                 {status_t::RUNNING, "RUNNING"},
+                 {status_t::DONE, "DONE"},
+                 {status_t::FAILED, "FAILED"},
+                 {status_t::LEFT, "LEFT"}},
+                state);
 }
 
 std::string_view PhaseName(std::int8_t phase) {
-  switch (phase) {
-    case run_t::PREPARE:
-      return "PREPARE";
-    case run_t::GO:
-      return "GO";
-    case run_t::STOP:
-      return "STOP";
-    default:
-      return "?";
-  }
+  return NameIn({{run_t::PREPARE, "PREPARE"}, {run_t::GO, "GO"}, {run_t::STOP, "STOP"}}, phase);
 }
 
 }  // namespace fogline::watch

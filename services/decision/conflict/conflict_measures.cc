@@ -7,10 +7,10 @@
 #include "services/decision/conflict/one_step/binned_belief.h"
 #include "services/decision/conflict/one_step/consonant_belief.h"
 #include "services/decision/conflict/one_step/divergence.h"
-#include "services/decision/conflict/one_step/doc.h"
 #include "services/decision/conflict/one_step/momentary.h"
-#include "services/decision/conflict/one_step/nis.h"
+#include "services/decision/conflict/over_time/doc.h"
 #include "services/decision/conflict/over_time/lidar_modes.h"
+#include "services/decision/conflict/over_time/nis.h"
 #include "services/decision/conflict/over_time/sequential.h"
 #include "services/decision/conflict/over_time/third_witness.h"
 
@@ -130,23 +130,9 @@ static_assert(std::ranges::equal(kBlameMeasures, ChoiceNames<BlameChoice>::kName
               "each measure of blame has a line in scenario/sections/decision.h and a row here, in "
               "the same order");
 
-template <class Row>
-const Row* Find(std::span<const Row> rows, std::string_view name) {
-  const auto found = std::ranges::find(rows, name, &Row::name);
-  return found == rows.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 std::span<const ConflictMeasureRow> ConflictMeasures() { return kConflictMeasures; }
 std::span<const BlameMeasureRow> BlameMeasures() { return kBlameMeasures; }
-
-const ConflictMeasureRow* FindConflictMeasure(std::string_view name) {
-  return Find(ConflictMeasures(), name);
-}
-
-const BlameMeasureRow* FindBlameMeasure(std::string_view name) {
-  return Find(BlameMeasures(), name);
-}
 
 }  // namespace fogline::conflict

@@ -29,8 +29,4 @@ std::span<const ConflictMeasureRow> ConflictMeasures();
 /// All measures of which sensor is wrong.
 std::span<const BlameMeasureRow> BlameMeasures();
 
-/// The row with this name; nullptr if there is none.
-const ConflictMeasureRow* FindConflictMeasure(std::string_view name);
-const BlameMeasureRow* FindBlameMeasure(std::string_view name);
-
 }  // namespace fogline::conflict

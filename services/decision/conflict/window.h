@@ -28,10 +28,13 @@ class Window {
   /// Calls visit(value) for each value, oldest first; leaves out empty places.
   template <class Visitor>
   void ForEach(Visitor&& visit) const {
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-      const std::optional<double>& value = values_[(oldest_ + i) % values_.size()];
-      if (value) visit(*value);
-    }
+    const auto visit_places = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (values_[i]) visit(*values_[i]);
+      }
+    };
+    visit_places(oldest_, values_.size());
+    visit_places(0, oldest_);
   }
 
   /// Calls visit(value) for each value, newest first; leaves out empty places.

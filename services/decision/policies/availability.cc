@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "services/host_modes.h"
 #include "services/models/driver/take_over_time.h"
-#include "services/models/minimal_risk/modes.h"
 
 namespace fogline::policies {
 namespace {
@@ -44,7 +44,7 @@ EngagementRequest Availability::Decide(const ArbitratorView& view) {
 }
 
 bool Availability::DriverIsAvailable(const ArbitratorView& view) const {
-  if (view.lambda_human >= models::kMainAuthority || !view.surroundings.followed) return true;
+  if (view.lambda_human >= kMainAuthority || !view.surroundings.followed) return true;
   const double time_s = TimeUntilHardBraking(
       view.surroundings.follower_gap_m, view.surroundings.follower_speed_mps - view.ego.speed_mps,
       std::max(0.0, -view.ego.acceleration_mps2), section_.comfort_mps2);

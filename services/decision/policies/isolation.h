@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "services/decision/conflict/conflict_measures.h"
-#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/conflict_inputs.h"
 #include "services/decision/policies/policy.h"
 
 namespace fogline::policies {

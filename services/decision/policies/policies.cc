@@ -41,10 +41,4 @@ std::span<const PolicyRow> Policies() { return kPolicies; }
 
 const PolicyRow& RowOf(Policy policy) { return kPolicies[static_cast<std::size_t>(policy)]; }
 
-std::optional<Policy> FindPolicy(std::string_view name) {
-  const auto found = std::ranges::find(kPolicies, name, &PolicyRow::name);
-  if (found == kPolicies.end()) return std::nullopt;
-  return static_cast<Policy>(found - kPolicies.begin());
-}
-
 }  // namespace fogline::policies

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -44,8 +43,5 @@ std::span<const PolicyRow> Policies();
 
 /// The row of this policy.
 const PolicyRow& RowOf(Policy policy);
-
-/// The policy with this name; nullopt if there is none.
-std::optional<Policy> FindPolicy(std::string_view name);
 
 }  // namespace fogline::policies

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline::take_over {
 namespace {
@@ -27,7 +27,7 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
     if (row != kTakeOverTable.end()) return row->logged;
   }
   if (to == arbitration_t::MINIMAL_RISK) return "manoeuvre begins: inputs have failed";
-  if (models::HumanDrives(to)) return kToDriver;
+  if (HumanDrives(to)) return kToDriver;
   if (to == arbitration_t::AUTOMATION) return kToAutomation;
   return "change of state";
 }
@@ -49,10 +49,10 @@ void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_
                         .logged = "activation of the automation"});
   }
   const std::int8_t from = last_ ? last_->mode : arbitration_t::AUTOMATION;
-  const bool human = models::HumanDrives(command.lambda_human);
-  const bool transfer = last_ && human != models::HumanDrives(last_->lambda_human);
-  const bool with_state = models::HumanDrives(command.mode) != models::HumanDrives(from) &&
-                          models::HumanDrives(command.mode) == human;
+  const bool human = HumanDrives(command.lambda_human);
+  const bool transfer = last_ && human != HumanDrives(last_->lambda_human);
+  const bool with_state =
+      HumanDrives(command.mode) != HumanDrives(from) && HumanDrives(command.mode) == human;
   if (command.mode != from) Change(command, from, transfer && with_state);
   if (transfer) Transfer(command);
   if (transfer && !with_state) {
@@ -63,13 +63,13 @@ void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_
                         .transfer = true,
                         .logged = human ? kToDriver : kToAutomation});
   }
-  if (human_mps2 && models::HumanDrives(command.mode)) Drive(command, *human_mps2);
+  if (human_mps2 && HumanDrives(command.mode)) Drive(command, *human_mps2);
   last_ = command;
 }
 
 void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool transfer) {
-  const bool has_share = models::HumanDrives(command.mode);
-  const bool share_changes = has_share != models::HumanDrives(from);
+  const bool has_share = HumanDrives(command.mode);
+  const bool share_changes = has_share != HumanDrives(from);
   std::string_view logged = LoggedOf(from, command.mode);
   if (share_changes && !transfer) {
     if (has_share) logged = "driver takes part";
@@ -99,8 +99,7 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
 }
 
 void TakeOverLog::Transfer(const arbitration_t& command) {
-  const bool answers =
-      asked_ && models::HumanDrives(command.mode) && models::HumanDrives(command.lambda_human);
+  const bool answers = asked_ && HumanDrives(command.mode) && HumanDrives(command.lambda_human);
   if (!answers || requests_.empty() || requests_.back().transferred) return;
   requests_.back().transferred = command.header.step;
 }

@@ -6,7 +6,7 @@
 
 #include <boost/math/special_functions/lambert_w.hpp>
 
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 
 namespace fogline::models {
 

@@ -10,7 +10,7 @@ namespace fogline::models {
 
 enum class Seen { kOutline, kLamps, kNothing };
 
-/// With extinction sigma = ln 20 / visibility (services/models/driver/visibility.h):
+/// With extinction sigma = ln 20 / visibility (services/visibility.h):
 ///
 ///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)

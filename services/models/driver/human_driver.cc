@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scenario/sections/whole_steps.h"
+#include "common/whole_steps.h"
 
 namespace fogline::models {
 namespace {

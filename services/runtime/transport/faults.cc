@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/parse_number.h"
 #include "common/random.h"
 
 namespace fogline::runtime {
@@ -36,22 +36,18 @@ InputError FaultsError(const std::string& what) {
 }
 
 template <class Number>
-Number ParseNumber(std::string_view name, std::string_view text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stopped != end || text.empty()) {
-    throw FaultsError(fmt::format("{}=\"{}\" is not a number", name, text));
-  }
-  return value;
+Number NumberOf(std::string_view name, std::string_view text) {
+  const auto number = ParseNumber<Number>(text);
+  if (!number) throw FaultsError(fmt::format("{}=\"{}\" is not a number", name, text));
+  return *number;
 }
 
 void Set(std::string_view name, std::string_view text, FaultRates& rates) {
   if (name == "seed") {
-    rates.seed = ParseNumber<std::int64_t>(name, text);
+    rates.seed = NumberOf<std::int64_t>(name, text);
     return;
   }
-  const double value = ParseNumber<double>(name, text);
+  const double value = NumberOf<double>(name, text);
   if (name == "delay_ms") {
     if (!(value >= 0 && value <= kMaxDelayMs)) {
       throw FaultsError(fmt::format("{}={} is outside [0, {}] ms", name, text, kMaxDelayMs));

@@ -8,8 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <fmt/core.h>
@@ -35,13 +33,6 @@ int SetOption(int socket, int level, int name, const void* value, socklen_t size
 }
 
 in_addr Loopback() { return {.s_addr = htonl(INADDR_LOOPBACK)}; }
-
-std::string Content(const char* file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Of an interface; 0 if there is none.
 int InterfaceIndex(const std::string& interface) {
@@ -100,14 +91,14 @@ LcmSockets::Reach ReachOf(const std::string& url) {
 GroupMembership::GroupMembership(std::vector<int> sockets, const std::string& url)
     : sockets_(std::move(sockets)), group_(GroupOf(url).value_or("")) {
   inet_pton(AF_INET, group_.c_str(), &joined_.imr_multiaddr);
-  joined_.imr_ifindex = InterfaceIndex(RouteInterface(Content("/proc/net/route"), group_));
+  joined_.imr_ifindex = InterfaceIndex(RouteInterface(KernelTable("/proc/net/route"), group_));
 }
 
 void GroupMembership::Renew() {
-  const std::string interface = RouteInterface(Content("/proc/net/route"), group_);
+  const std::string interface = RouteInterface(KernelTable("/proc/net/route"), group_);
   const int index = InterfaceIndex(interface);
   if (index == 0) return;  // there is no route
-  if (index == joined_.imr_ifindex && HasGroup(Content("/proc/net/igmp"), interface, group_)) {
+  if (index == joined_.imr_ifindex && HasGroup(KernelTable("/proc/net/igmp"), interface, group_)) {
     return;
   }
   std::string trouble;

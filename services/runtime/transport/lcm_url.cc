@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdlib>
 
+#include "common/parse_number.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_url.h"
 
@@ -21,15 +21,6 @@ constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
-
-template <class Integer>
-std::optional<Integer> ParseNumber(std::string_view text) {
-  Integer value{};
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || rest != end) return std::nullopt;
-  return value;
-}
 
 std::optional<in_addr> ParseAddress(std::string_view text) {
   in_addr address{};

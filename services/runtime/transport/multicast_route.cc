@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <sstream>
 
 #include <fmt/core.h>
@@ -102,6 +103,12 @@ std::string RouteInterface(std::string_view table, const std::string& address) {
     best_metric = metric;
   }
   return best;
+}
+
+std::string KernelTable(const char* file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
 }
 
 bool HasGroup(std::string_view table, std::string_view interface, const std::string& group) {

@@ -31,6 +31,9 @@ std::string RouteError(const std::string& address);
 /// address.
 std::string RouteInterface(std::string_view table, const std::string& address);
 
+/// A table of the kernel, such as /proc/net/route; "" if it cannot be read.
+std::string KernelTable(const char* file);
+
 /// Whether an interface receives a multicast group, by a table in the form of /proc/net/igmp.
 bool HasGroup(std::string_view table, std::string_view interface, const std::string& group);
 

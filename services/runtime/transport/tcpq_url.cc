@@ -4,11 +4,11 @@
 #include <netdb.h>
 
 #include <array>
-#include <charconv>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/parse_number.h"
 
 namespace fogline::runtime::tcpq {
 namespace {
@@ -16,13 +16,9 @@ namespace {
 constexpr std::string_view kScheme = "tcpq://";
 
 std::uint16_t ParsePort(std::string_view text, std::string_view what) {
-  std::uint16_t port = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, port);
-  if (error != std::errc{} || rest != end) {
-    throw InputError(fmt::format("error: {}: \"{}\" is no port (0 to 65535)", what, text));
-  }
-  return port;
+  const auto port = ParseNumber<std::uint16_t>(text);
+  if (!port) throw InputError(fmt::format("error: {}: \"{}\" is no port (0 to 65535)", what, text));
+  return *port;
 }
 
 std::string AddressOf(const std::string& host, std::string_view what) {

@@ -10,6 +10,7 @@
 #include "scenario/io/loader.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/policies/policies.h"
+#include "tests/support/find_row.h"
 #include "tests/support/input_errors.h"
 #include "tools/study/study.h"
 
@@ -48,7 +49,7 @@ std::map<std::string, int> Column(const std::string& csv, const std::string& nam
 }
 
 TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
-  ASSERT_TRUE(policies::FindPolicy("cautious"));
+  ASSERT_TRUE(test::FindPolicy("cautious"));
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"cautious\""));
   const study::StudyResult result = Make("policy");
   const std::map<std::string, int> variants = Column(result.files[0].content, "variant");
@@ -65,7 +66,7 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
 }
 
 TEST(ExtensionTest, AnotherMeasureOfTheTableIsInTheScenarioAndInTheConflictStudy) {
-  ASSERT_NE(conflict::FindConflictMeasure("relative"), nullptr);
+  ASSERT_NE(test::FindConflictMeasure("relative"), nullptr);
   EXPECT_THAT(ScenarioSchema(), HasSubstr("\"relative\""));
   const study::StudyResult result = Make("conflict");
   const std::map<std::string, int> measures = Column(result.files[0].content, "measure");

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "tests/property/fallback/real_time_loop.h"
 
 namespace fogline {
@@ -113,10 +113,11 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(SilentRolesTest, WithoutASilentRoleIsTheLockstepRun) {
-  metrics::ClosedLoop lockstep(scenario_);
+  closed_loop::ClosedLoop lockstep(scenario_);
   std::vector<double> commands;
-  lockstep.Run(
-      1, [&](const metrics::StepView& step) { commands.push_back(step.host.acceleration_mps2); });
+  lockstep.Run(1, [&](const closed_loop::StepView& step) {
+    commands.push_back(step.host.acceleration_mps2);
+  });
   std::size_t k = 0;
   RealTimeLoop(scenario_).Run([&](const Moment& m) {
     ASSERT_LT(k, commands.size());

@@ -7,12 +7,9 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "tools/study/estimate.h"
+
 namespace fogline::study {
-namespace {
-
-constexpr double kTail = 0.025;  // at each end of an interval of 95 %
-
-}  // namespace
 
 conflict::ConflictParameters DetectorParameters(const Scenario& scenario) {
   conflict::ConflictParameters parameters = policies::ConflictParametersOf(scenario.arbitrator);
@@ -37,16 +34,9 @@ std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold) 
   return first->time_s;
 }
 
-void DetectorBench::Prepare(const Scenario& scenario, std::int64_t seed) {
-  scenario_ = scenario;
-  scenario_.seed = seed;
-  if (loop_) {
-    loop_->Restart(scenario_);
-  } else {
-    loop_.emplace(scenario_);
-  }
-  witness_.emplace(scenario_.fusion);
-  const conflict::ConflictParameters parameters = DetectorParameters(scenario_);
+void DetectorBench::Prepare(const Scenario& scenario) {
+  witness_.emplace(scenario.fusion);
+  const conflict::ConflictParameters parameters = DetectorParameters(scenario);
   measures_.clear();
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     measures_.push_back(row.make(parameters));

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/conflict/conflict_parameters.h"
-#include "services/decision/policies/evidence.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/decision/policies/conflict_inputs.h"
 
 namespace fogline::study {
 
@@ -40,8 +40,8 @@ class DetectorBench {
   /// ConflictMeasures().
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
-    Prepare(scenario, seed);
-    loop_->Run(0, [&](const metrics::StepView& step) {
+    Prepare(scenario);
+    loop_.Run(scenario, seed, [&](const closed_loop::StepView& step) {
       const conflict::Evidence evidence{
           .radar = policies::StatedBy(step.radar),
           .lidar = policies::StatedBy(step.lidar),
@@ -52,10 +52,9 @@ class DetectorBench {
   }
 
  private:
-  void Prepare(const Scenario& scenario, std::int64_t seed);
+  void Prepare(const Scenario& scenario);
 
-  Scenario scenario_;
-  std::optional<metrics::ClosedLoop> loop_;
+  closed_loop::ReusedLoop loop_;
   std::optional<policies::Witness> witness_;
   std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;
   std::vector<double> scores_;

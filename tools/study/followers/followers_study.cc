@@ -17,7 +17,7 @@ struct Behind {
   std::vector<std::string> overrides;
 };
 
-std::vector<Behind> Kinds() {
+std::vector<Behind> FollowerKinds() {
   const auto human = [](std::string_view style) {
     return std::vector<std::string>{"/followers/driver=human",
                                     fmt::format("/followers/style={}", style)};
@@ -38,11 +38,11 @@ std::vector<Behind> Kinds() {
            {"/followers/driver=drawn", "/followers/style=drawn", "/followers/count=5"}}};
 }
 
-std::vector<StudyCase> Cases() {
+std::vector<StudyCase> FollowerCases() {
   std::vector<StudyCase> cases;
   for (const auto& [fog, file] :
        {std::pair("bias fog", "paper.json"), std::pair("beam fog", "dense_fog.json")}) {
-    for (const Behind& kind : Kinds()) {
+    for (const Behind& kind : FollowerKinds()) {
       cases.push_back({.name = fmt::format("{}: {}", fog, kind.name),
                        .file = file,
                        .overrides = kind.overrides,
@@ -52,14 +52,14 @@ std::vector<StudyCase> Cases() {
   return cases;
 }
 
-constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
-                                                         "mean_compromised_safety_fog_m",
-                                                         "collided",
-                                                         "min_follower_gap_m",
-                                                         "min_follower_ttc_s",
-                                                         "min_follower_headway_s",
-                                                         "max_follower_drac_mps2",
-                                                         "min_follower_rss_margin_m"};
+constexpr std::array<std::string_view, 8> kFollowersTable{"si_pct",
+                                                          "mean_compromised_safety_fog_m",
+                                                          "collided",
+                                                          "min_follower_gap_m",
+                                                          "min_follower_ttc_s",
+                                                          "min_follower_headway_s",
+                                                          "max_follower_drac_mps2",
+                                                          "min_follower_rss_margin_m"};
 
 // Overrides with which a string settles before the fog, whatever the headways are. The fog is as
 // long as in the file.
@@ -86,7 +86,7 @@ const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
 /// Describes the course of a disturbance along one string.
-std::string FindingOf(const StringOutcome& string) {
+std::string FindingOfString(const StringOutcome& string) {
   const CarInString& first = string.cars[1];
   const CarInString& last = string.cars[kStringCars];
   std::vector<std::string> ratios;
@@ -141,60 +141,56 @@ report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_
     for (std::size_t place = 0; place <= kStringCars; ++place) {
       const Estimate mean = EstimateOf(string.cars[place].*values);
       if (mean.n == 0) continue;
-      series.x.push_back(static_cast<double>(place));
-      series.y.push_back(mean.mean);
-      series.low.push_back(mean.low);
-      series.high.push_back(mean.high);
+      AddPoint(series, static_cast<double>(place), mean);
     }
   }
   return figure;
 }
 
 /// A measure that the study reports for each place.
-struct StringMeasure {
+struct StringMetric {
   std::string_view name;
   std::vector<double> CarInString::*values;
   int decimals;
 };
-constexpr std::array kStringMeasures{
-    StringMeasure{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
-    StringMeasure{"amplification", &CarInString::amplification, 2},
-    StringMeasure{"min_ttc_s", &CarInString::min_ttc_s, 1},
-    StringMeasure{"min_gap_m", &CarInString::min_gap_m, 2}};
+constexpr std::array kStringMetrics{
+    StringMetric{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
+    StringMetric{"amplification", &CarInString::amplification, 2},
+    StringMetric{"min_ttc_s", &CarInString::min_ttc_s, 1},
+    StringMetric{"min_gap_m", &CarInString::min_gap_m, 2}};
 
-report::StudyTable TableOf(const StringOutcome& string, std::int64_t seeds) {
+report::StudyTable TableOfString(const StringOutcome& string, std::int64_t seeds) {
   report::StudyTable table{
       .caption =
           fmt::format("String of {}, {}: by place; collisions in {}", string.kind, string.variant,
                       Text(metrics::ClopperPearson(string.collisions, seeds))),
       .columns = {"place"}};
-  for (const StringMeasure& measure : kStringMeasures) table.columns.emplace_back(measure.name);
+  for (const StringMetric& measure : kStringMetrics) table.columns.emplace_back(measure.name);
   for (std::size_t place = 0; place <= kStringCars; ++place) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(place == 0 ? "host" : fmt::format("follower {}", place));
-    for (const StringMeasure& measure : kStringMeasures) {
+    for (const StringMetric& measure : kStringMetrics) {
       row.push_back(Text(EstimateOf(string.cars[place].*measure.values), measure.decimals));
     }
   }
   return table;
 }
 
-std::string CsvOf(std::span<const StringOutcome> strings) {
+std::string StringsCsv(std::span<const StringOutcome> strings) {
   std::string csv =
       "string,variant,place,measure,n,infinite,mean,std,ci95_low,ci95_high,minus_first,"
       "minus_first_ci95_low,minus_first_ci95_high\n";
   for (const StringOutcome& string : strings) {
     for (std::size_t place = 0; place <= kStringCars; ++place) {
-      for (const StringMeasure& measure : kStringMeasures) {
+      for (const StringMetric& measure : kStringMetrics) {
         const std::vector<double>& values = string.cars[place].*measure.values;
         if (values.empty()) continue;
         const Estimate mean = EstimateOf(values);
         const Estimate difference = PairedDifference(values, string.cars[1].*measure.values);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", string.kind, string.variant,
-                           place, measure.name, mean.n, mean.infinite, CsvText(mean.mean),
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", string.kind, string.variant, place,
+                           measure.name, mean.n, mean.infinite, CsvText(mean.mean),
                            CsvText(mean.deviation), CsvText(mean.low), CsvText(mean.high),
-                           CsvText(difference.mean), CsvText(difference.low),
-                           CsvText(difference.high));
+                           CsvText(difference));
       }
     }
   }
@@ -206,8 +202,8 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   report::StudySection& section = result.section;
   result.runs += static_cast<std::int64_t>(strings.size()) * context.seeds.count();
   for (const StringOutcome& string : strings) {
-    section.findings.push_back(FindingOf(string));
-    section.tables.push_back(TableOf(string, context.seeds.count()));
+    section.findings.push_back(FindingOfString(string));
+    section.tables.push_back(TableOfString(string, context.seeds.count()));
   }
   for (const StudyVariant& variant : kVariants) {
     section.figures.push_back(
@@ -219,7 +215,7 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
                                       "Smallest time to collision along a string",
                                       "Smallest time to collision (s)", &CarInString::min_ttc_s));
   }
-  result.files.push_back({"followers-string.csv", CsvOf(strings)});
+  result.files.push_back({"followers-string.csv", StringsCsv(strings)});
 }
 
 /// The context of one part of a study, whose progress counts `all` units in total.
@@ -234,7 +230,7 @@ StudyContext Part(const StudyContext& whole, std::int64_t before, std::int64_t a
 }  // namespace
 
 StudyResult RunFollowersStudy(const StudyContext& context) {
-  const std::vector<StudyCase> cases = Cases();
+  const std::vector<StudyCase> cases = FollowerCases();
   const std::vector<StudyCase> kinds = Strings();
   const auto compared = static_cast<std::int64_t>(cases.size()) * context.seeds.count();
   const auto strung =
@@ -253,8 +249,8 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
                      comparison.FigureOf("min_follower_ttc_s", "followers-ttc",
                                          "Smallest time to collision of the follower", true),
                      comparison.FigureOf("collided", "followers-collisions", "Collisions", true)};
-  section.tables = {comparison.TableOfVariant(0, kTableMeasures),
-                    comparison.TableOfVariant(1, kTableMeasures)};
+  section.tables = {comparison.TableOfVariant(0, kFollowersTable),
+                    comparison.TableOfVariant(1, kFollowersTable)};
   section.method = fmt::format(
       "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
       "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC. Other "

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/follower_metrics.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
@@ -24,47 +23,32 @@ constexpr double kLeastBraking_mps2 = 0.01;
 /// Result of one run.
 struct StringRun {
   std::array<double, kStringCars + 1> max_deceleration_mps2{};
-  std::vector<metrics::FollowerMeasures> followers;
+  std::vector<metrics::FollowerMetrics> followers;
   bool collided = false;
 };
 
-/// For use by one thread.
-class StringWorker {
- public:
-  StringRun Run(const Scenario& scenario, std::int64_t seed) {
-    scenario_ = scenario;
-    scenario_.seed = seed;
-    if (loop_) {
-      loop_->Restart(scenario_);
-    } else {
-      loop_.emplace(scenario_);
-    }
-    StringRun run;
-    metrics::FollowerAccumulator followers;
-    loop_->Run(0, [&](const metrics::StepView& step) {
-      const truth_t& truth = step.truth;
-      run.collided = truth.collision != truth_t::COLLISION_NONE;
-      const double time_s = static_cast<double>(truth.header.utime) * 1e-6;
-      if (time_s < scenario_.fog.start_s - kBefore_s) return;
-      followers.Add(truth, step.follower);
-      const auto brakes = [&](std::size_t place, double acceleration_mps2) {
-        double& most = run.max_deceleration_mps2[place];
-        most = std::max(most, -acceleration_mps2);
-      };
-      brakes(0, truth.host_acceleration_mps2);
-      const auto cars = std::min(kStringCars, truth.follower_acceleration_mps2.size());
-      for (std::size_t i = 0; i < cars; ++i) brakes(i + 1, truth.follower_acceleration_mps2[i]);
-    });
-    run.followers = followers.Result();
-    return run;
-  }
+StringRun RunString(closed_loop::ReusedLoop& loop, const Scenario& scenario, std::int64_t seed) {
+  StringRun run;
+  metrics::FollowerAccumulator followers;
+  loop.Run(scenario, seed, [&](const closed_loop::StepView& step) {
+    const truth_t& truth = step.truth;
+    run.collided = truth.collision != truth_t::COLLISION_NONE;
+    const double time_s = static_cast<double>(truth.header.utime) * 1e-6;
+    if (time_s < scenario.fog.start_s - kBefore_s) return;
+    followers.Add(truth, step.follower);
+    const auto brakes = [&](std::size_t place, double acceleration_mps2) {
+      double& most = run.max_deceleration_mps2[place];
+      most = std::max(most, -acceleration_mps2);
+    };
+    brakes(0, truth.host_acceleration_mps2);
+    const auto cars = std::min(kStringCars, truth.follower_acceleration_mps2.size());
+    for (std::size_t i = 0; i < cars; ++i) brakes(i + 1, truth.follower_acceleration_mps2[i]);
+  });
+  run.followers = followers.Result();
+  return run;
+}
 
- private:
-  std::optional<metrics::ClosedLoop> loop_;
-  Scenario scenario_;
-};
-
-void Add(const StringRun& run, StringOutcome& outcome) {
+void AddToString(const StringRun& run, StringOutcome& outcome) {
   outcome.collisions += run.collided ? 1 : 0;
   for (std::size_t place = 0; place <= kStringCars; ++place) {
     CarInString& car = outcome.cars[place];
@@ -75,8 +59,8 @@ void Add(const StringRun& run, StringOutcome& outcome) {
     car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? stats::kMissing
                                                                 : own_mps2 / ahead_mps2);
     const bool there = place <= run.followers.size();
-    const metrics::FollowerMeasures measures =
-        there ? run.followers[place - 1] : metrics::FollowerMeasures{};
+    const metrics::FollowerMetrics measures =
+        there ? run.followers[place - 1] : metrics::FollowerMetrics{};
     car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : stats::kMissing));
     car.min_gap_m.push_back(measures.min_gap_m.value_or(stats::kMissing));
   }
@@ -90,10 +74,9 @@ std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<con
   std::vector<Scenario> scenarios;
   for (const StudyCase& kind : kinds) {
     for (const StudyVariant& variant : variants) {
-      std::vector<std::string> overrides = kind.overrides;
+      std::vector<std::string> overrides = variant.overrides;
       overrides.push_back("/followers/count=" + std::to_string(kStringCars));
-      overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-      scenarios.push_back(context.Load(kind.file, overrides));
+      scenarios.push_back(context.Load(kind.file, kind.overrides, overrides));
       outcomes.push_back({.kind = kind.name,
                           .variant = variant.name,
                           .cars = std::vector<CarInString>(kStringCars + 1)});
@@ -102,13 +85,13 @@ std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<con
   const std::int64_t seeds = context.seeds.count();
   const std::int64_t units = static_cast<std::int64_t>(scenarios.size()) * seeds;
   stats::ComputeInOrder(
-      0, units, context.jobs, [] { return StringWorker(); },
-      [&](StringWorker& worker, std::int64_t unit) {
-        return worker.Run(scenarios[static_cast<std::size_t>(unit / seeds)],
-                          context.seeds.first + unit % seeds);
+      0, units, context.jobs, [] { return closed_loop::ReusedLoop(); },
+      [&](closed_loop::ReusedLoop& loop, std::int64_t unit) {
+        return RunString(loop, scenarios[static_cast<std::size_t>(unit / seeds)],
+                         context.seeds.first + unit % seeds);
       },
       [&](std::int64_t unit, const StringRun& run) {
-        Add(run, outcomes[static_cast<std::size_t>(unit / seeds)]);
+        AddToString(run, outcomes[static_cast<std::size_t>(unit / seeds)]);
         context.Show(unit + 1, units);
         return true;
       });

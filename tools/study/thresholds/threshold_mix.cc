@@ -39,8 +39,6 @@ constexpr double kErringShare = 0.5;
 constexpr Range kMonitoring{0.1, 1.0};
 constexpr Range kLeadAmplitude_mps{0, 1.5};
 
-constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
-
 /// Sets the fields that vary between situations.
 Scenario Draw(Scenario scenario, std::int64_t seed) {
   const Random random(seed, kMix);
@@ -88,34 +86,28 @@ std::vector<RuleFamily> Families() {
   }
   constexpr std::array kBases{0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 0.98};
   constexpr std::array kCosts{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
-  std::vector<RuleFamily> families{
-      FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
-      FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
-      FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
-      FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
-  return families;
+  return {FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
+          FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
+          FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
+          FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
 }
 
 std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed) {
   std::vector<Scenario> bases;
-  std::vector<std::string> overrides = kMixed;
-  overrides.emplace_back(kWithoutTradedControl);
-  bases.push_back(context.Load("paper.json", overrides));
+  bases.push_back(context.Load("paper.json", kMixed, {std::string(kWithoutTradedControl)}));
   for (const RuleFamily& family : mixed.families) {
     for (const StudyVariant& member : family.members) {
-      overrides = kMixed;
-      overrides.insert(overrides.end(), member.overrides.begin(), member.overrides.end());
-      bases.push_back(context.Load("paper.json", overrides));
+      bases.push_back(context.Load("paper.json", kMixed, member.overrides));
     }
   }
   return bases;
 }
 
-void Add(const RunValues& run, RuleMember& member) {
-  member.si_pct.push_back(run[PlaceOfMeasure("si_pct")]);
-  member.rhe_pct.push_back(run[PlaceOfMeasure("rhe_pct")]);
-  member.shortfall_m.push_back(run[PlaceOfMeasure(kShortfall)]);
-  member.collisions += run[PlaceOfMeasure("collided")] > 0 ? 1 : 0;
+void AddToMember(const RunValues& run, RuleMember& member) {
+  member.si_pct.push_back(run[PlaceOfMetric("si_pct")]);
+  member.rhe_pct.push_back(run[PlaceOfMetric("rhe_pct")]);
+  member.shortfall_m.push_back(run[PlaceOfMetric(kShortfall)]);
+  member.collisions += run[PlaceOfMetric("collided")] > 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -137,7 +129,7 @@ MixedRuns RunMix(const StudyContext& context) {
         return worker.Compute(scenarios, seed);
       },
       [&](std::int64_t unit, const std::vector<RunValues>& runs) {
-        for (std::size_t m = 0; m < runs.size(); ++m) Add(runs[m], mixed.members[m]);
+        for (std::size_t m = 0; m < runs.size(); ++m) AddToMember(runs[m], mixed.members[m]);
         context.Show(unit + 1, mixed.situations);
         return true;
       });

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -53,9 +53,7 @@ Beside BesideFixed(const MixedRuns& mixed) {
   beside.si = compare([&](std::size_t i) { return std::span(mixed.members[i].si_pct); });
   beside.shortfall = compare([&](std::size_t i) { return std::span(spared[i]); });
   for (AtEqualEngagement& one : beside.shortfall) {
-    Estimate& difference = one.difference;
-    difference.mean = -difference.mean;
-    std::tie(difference.low, difference.high) = std::pair(-difference.high, -difference.low);
+    one.difference = Turned(one.difference);
     if (one.place) one.place->gain = -one.place->gain;
   }
   return beside;
@@ -71,12 +69,9 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 }
 
 /// Verdict on one family by the intervals, and whether it agrees with the expectation.
-std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t family) {
-  std::vector<std::string> above;
-  std::vector<std::string> below;
+std::string FindingOfFamily(const MixedRuns& mixed, const Beside& beside, std::size_t family) {
+  std::map<Verdict, std::vector<std::string>> by_verdict;
   std::vector<std::string> equal;
-  std::vector<std::string> undecided;
-  std::vector<std::string> too_few;
   std::vector<std::string> beyond;
   std::vector<std::string> dominated;  // among the members that are better at equal RHE
   for (std::size_t i = 0; i < mixed.members.size(); ++i) {
@@ -96,26 +91,17 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
       equal.push_back(member.name);
       continue;
     }
-    switch (one.verdict()) {
-      case Verdict::kMore:
-        above.push_back(text);
-        if (one.cheaper && VerdictOf(one.against_cheaper) == Verdict::kLess) {
-          dominated.push_back(fmt::format("{} ({} points less than {})", member.name,
-                                          Text(Turned(one.against_cheaper), 2),
-                                          mixed.members[*one.cheaper].name));
-        }
-        break;
-      case Verdict::kLess:
-        below.push_back(text);
-        break;
-      case Verdict::kUndecided:
-        undecided.push_back(text);
-        break;
-      case Verdict::kTooFew:
-        too_few.push_back(text);
-        break;
+    by_verdict[one.verdict()].push_back(text);
+    if (one.verdict() == Verdict::kMore && one.cheaper &&
+        VerdictOf(one.against_cheaper) == Verdict::kLess) {
+      dominated.push_back(fmt::format("{} ({} points less than {})", member.name,
+                                      Text(Turned(one.against_cheaper), 2),
+                                      mixed.members[*one.cheaper].name));
     }
   }
+  const std::vector<std::string>& above = by_verdict[Verdict::kMore];
+  const std::vector<std::string>& below = by_verdict[Verdict::kLess];
+  const std::vector<std::string>& undecided = by_verdict[Verdict::kUndecided];
   const auto part = [](std::string_view what, const std::vector<std::string>& of) {
     return of.empty() ? std::string() : fmt::format(" {}: {}.", what, ListText(of));
   };
@@ -137,7 +123,7 @@ std::string FindingOf(const MixedRuns& mixed, const Beside& beside, std::size_t 
       "{} against the best fixed threshold of the same RHE, by SI.{}{}{}{}{}{}{}",
       Capital(mixed.families[family].name), part("More", above), part("Equal", equal),
       part("Less", below), part("Not decided", undecided),
-      part("Too few runs for an interval", too_few),
+      part("Too few runs for an interval", by_verdict[Verdict::kTooFew]),
       part("Not compared, because their RHE is beyond that of every fixed threshold", beyond),
       answer);
 }
@@ -185,13 +171,6 @@ std::string FrontText(const MixedRuns& mixed) {
         ListText(like));
   }
   return text;
-}
-
-void AddPoint(report::StudySeries& series, double x, const Estimate& estimate) {
-  series.x.push_back(x);
-  series.y.push_back(estimate.mean);
-  series.low.push_back(estimate.low);
-  series.high.push_back(estimate.high);
 }
 
 /// The members of a family in order of RHE.
@@ -243,7 +222,7 @@ report::StudyFigure DifferenceFigure(const MixedRuns& mixed, const Beside& besid
   return figure;
 }
 
-std::string CsvOf(const MixedRuns& mixed, const Beside& beside) {
+std::string RulesCsv(const MixedRuns& mixed, const Beside& beside) {
   std::string csv =
       "family,member,situations,rhe_n,rhe_pct,rhe_ci95_low,rhe_ci95_high,si_n,si_pct,si_ci95_low,"
       "si_ci95_high,compromised_n,compromised_safety_fog_m,compromised_ci95_low,"
@@ -258,24 +237,21 @@ std::string CsvOf(const MixedRuns& mixed, const Beside& beside) {
     for (const auto values :
          {&RuleMember::rhe_pct, &RuleMember::si_pct, &RuleMember::shortfall_m}) {
       const Estimate mean = EstimateOf(member.*values);
-      csv += fmt::format(",{},{},{},{}", mean.n, CsvText(mean.mean), CsvText(mean.low),
-                         CsvText(mean.high));
+      csv += fmt::format(",{},{}", mean.n, CsvText(mean));
     }
     csv += fmt::format(",{}", member.collisions);
     const std::optional<CurvePlace>& place = beside.si[i].place;
     csv += fmt::format(",{}", place ? ThresholdText(mixed, *place) : "");
     for (const AtEqualEngagement* one : {&beside.si[i], &beside.shortfall[i]}) {
       const std::optional<CurvePlace>& at = one->place;
-      const Estimate& difference = one->difference;
-      csv += fmt::format(",{},{},{},{}", at ? CsvText(at->gain) : "", CsvText(difference.mean),
-                         CsvText(difference.low), CsvText(difference.high));
+      csv += fmt::format(",{},{}", at ? CsvText(at->gain) : "", CsvText(one->difference));
     }
     csv += "\n";
   }
   return csv;
 }
 
-report::StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
+report::StudyTable TableOfRules(const MixedRuns& mixed, const Beside& beside) {
   report::StudyTable table{
       .caption = "Every rule: means over the situations [95 % confidence intervals]",
       .columns = {"rule", "RHE (%)", "SI (%)", "fixed threshold of equal RHE",
@@ -293,7 +269,7 @@ report::StudyTable TableOf(const MixedRuns& mixed, const Beside& beside) {
   return table;
 }
 
-std::string MethodOf(const MixedRuns& mixed, const Beside& beside) {
+std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
   double widest = 0;
   for (std::size_t i = 0; i + 1 < beside.curve.size(); ++i) {
     widest = std::max(widest, std::abs(beside.curve[i].rhe_pct - beside.curve[i + 1].rhe_pct));
@@ -325,7 +301,7 @@ StudyResult RunThresholdStudy(const StudyContext& context) {
   result.runs = mixed.situations * static_cast<std::int64_t>(mixed.members.size() + 1);
   report::StudySection& section = result.section;
   for (std::size_t f = 1; f < mixed.families.size(); ++f) {
-    section.findings.push_back(FindingOf(mixed, beside, f));
+    section.findings.push_back(FindingOfFamily(mixed, beside, f));
   }
   section.findings.push_back(FrontText(mixed));
   section.figures = {
@@ -334,9 +310,9 @@ StudyResult RunThresholdStudy(const StudyContext& context) {
                   "Safety improvement (SI, %)", &RuleMember::si_pct),
       FrontFigure(mixed, "threshold-cs", "The same in metres", "Mean compromised safety in fog (m)",
                   &RuleMember::shortfall_m)};
-  section.tables = {TableOf(mixed, beside)};
-  section.method = MethodOf(mixed, beside);
-  result.files = {{"threshold.csv", CsvOf(mixed, beside)}};
+  section.tables = {TableOfRules(mixed, beside)};
+  section.method = ThresholdMethod(mixed, beside);
+  result.files = {{"threshold.csv", RulesCsv(mixed, beside)}};
   return result;
 }
 

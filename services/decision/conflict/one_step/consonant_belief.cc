@@ -36,10 +36,6 @@ double MaxwellBelow(double y) {
   return std::erf(y / std::numbers::sqrt2) - kDensityFactor * y * std::exp(-y * y / 2);
 }
 
-double ConsonantPlausibility(double y) {
-  return kDensityFactor * y * std::exp(-y * y / 2) + std::erfc(y / std::numbers::sqrt2);
-}
-
 double ConsonantConflict(const Disagreement& disagreement) {
   // The integral is over the intervals of the narrow belief, because F of the wide one varies
   // slowly there. Beyond 9 standard deviations the integral of f is 1e-16.

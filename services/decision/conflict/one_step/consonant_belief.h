@@ -51,9 +51,6 @@ class ConsonantBeliefs {
 /// F(y) = erf(y/sqrt(2)) - sqrt(2/pi) y exp(-y^2/2), the distribution of f; 0 for y <= 0.
 double MaxwellBelow(double y);
 
-/// pl(x) = sqrt(2/pi) y exp(-y^2/2) + erfc(y/sqrt(2)) = 1 - F(y), y = |x - mu|/s.
-double ConsonantPlausibility(double y);
-
 /// k(d) = P(s1 Y1 + s2 Y2 < |d|), Y1 and Y2 independent with density f: the probability that two
 /// intervals have no point in common,
 ///     k = integral over [0, |d|/s1] of f(y) F((|d| - s1 y)/s2) dy,

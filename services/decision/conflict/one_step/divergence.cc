@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "services/decision/conflict/one_step/nis.h"
-
 namespace fogline::conflict {
 
 double BhattacharyyaOfMeans(const Disagreement& disagreement) {

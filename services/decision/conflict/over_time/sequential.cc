@@ -21,26 +21,16 @@ void Cusum::Reset() {
   sum_ = 0;
 }
 
-Glr::Glr(const ConflictParameters& parameters)
-    : source_(parameters), standardised_(parameters.glr_window_steps) {}
-
-double Glr::Step(const Evidence& evidence) {
-  const std::optional<Disagreement> disagreement = source_.Next(evidence);
-  standardised_.Push(disagreement ? std::optional(disagreement->standardised()) : std::nullopt);
+double LargestJump(const Window& standardised) {
   double sum = 0;
   int count = 0;
   double largest = 0;
-  standardised_.ForEachBackwards([&](double u) {
+  standardised.ForEachBackwards([&](double u) {
     sum += u;
     ++count;
     largest = std::max(largest, sum * sum / (2 * count));
   });
   return largest;
-}
-
-void Glr::Reset() {
-  source_.Reset();
-  standardised_.Clear();
 }
 
 SprtBounds WaldBounds(double alpha, double beta) {

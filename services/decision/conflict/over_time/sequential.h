@@ -1,10 +1,7 @@
 // Sequential tests of the difference: they add up the evidence of many steps.
 #pragma once
 
-#include <optional>
-
-#include "services/decision/conflict/disagreement.h"
-#include "services/decision/conflict/window.h"
+#include "services/decision/conflict/over_time/windowed.h"
 
 namespace fogline::conflict {
 
@@ -35,19 +32,10 @@ class Cusum final : public ConflictMeasure {
 ///
 ///     max over j of (sum from j to now of u_i)^2/(2 n_j),        at least 0
 ///
-/// over the n_j differences since step j, which lies in the window. A skipped step leaves its place
-/// empty; an empty window scores 0.
-class Glr final : public ConflictMeasure {
- public:
-  explicit Glr(const ConflictParameters& parameters);
-
-  double Step(const Evidence& evidence) override;
-  void Reset() override;
-
- private:
-  DisagreementSource source_;
-  Window standardised_;
-};
+/// over the n_j differences since step j, which lies in the window.
+double LargestJump(const Window& standardised);
+using Glr =
+    Windowed<&Disagreement::standardised, LargestJump, &ConflictParameters::glr_window_steps>;
 
 /// Bounds of the sequential probability ratio test for the error probabilities alpha (false alarm)
 /// and beta (miss) (Wald 1947).

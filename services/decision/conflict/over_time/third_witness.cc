@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/decision/conflict/one_step/nis.h"
+#include "services/decision/conflict/over_time/nis.h"
 
 namespace fogline::conflict {
 namespace {

@@ -40,7 +40,7 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
 // A simple window with deque and loops must agree exactly: no drift, and no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
-    conflict::ConflictWindow window(length);
+    conflict::ConflictWindow window(static_cast<int>(length));
     std::deque<std::optional<double>> last;
     const Random random(static_cast<std::int64_t>(length), Stream::kLidar);
     for (int k = 0; k < 2000; ++k) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/models/driver/idm.h"
 #include "tests/property/services/acc/draw.h"
 
@@ -48,7 +48,7 @@ TEST(DriverProperty, StaysWithinTheLimitsOfTheCarAndOfAwarenessWhateverIsHumanAb
     Scenario scenario = AnyRoad(draw);
     scenario.human = AnyHuman(draw);
     const double least = std::min(scenario.driver.readiness, scenario.human.awareness.monitoring);
-    metrics::ClosedLoop(scenario).Run(1, [&](const metrics::StepView& step) {
+    closed_loop::ClosedLoop(scenario).Run(1, [&](const closed_loop::StepView& step) {
       const driver_command_t& command = step.driver;
       ASSERT_TRUE(std::isfinite(command.acceleration_mps2));
       ASSERT_GE(command.acceleration_mps2, -scenario.driver.max_deceleration_mps2);
@@ -70,7 +70,7 @@ TEST(DriverProperty, IsThePapersBitByBitWithEverySwitchOffWhateverTheOtherNumber
     scenario.human.misjudges = false;
     scenario.human.loses_awareness = false;
     const models::Idm idm(scenario.driver);
-    metrics::ClosedLoop(scenario).Run(1, [&](const metrics::StepView& step) {
+    closed_loop::ClosedLoop(scenario).Run(1, [&](const closed_loop::StepView& step) {
       const truth_t& truth = step.truth;
       ASSERT_EQ(
           step.driver.acceleration_mps2,
@@ -89,7 +89,7 @@ TEST(DriverProperty, GainsAwarenessInAStepIfAndOnlyIfHeDroveInTheOneBefore) {
     scenario.human.loses_awareness = true;
     std::optional<double> before;
     std::int8_t mode = arbitration_t::AUTOMATION;
-    metrics::ClosedLoop(scenario).Run(1, [&](const metrics::StepView& step) {
+    closed_loop::ClosedLoop(scenario).Run(1, [&](const closed_loop::StepView& step) {
       const double now = step.driver.readiness;
       if (before && mode == arbitration_t::HUMAN) {
         ASSERT_TRUE(now > *before || now == 1);

@@ -9,8 +9,9 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "services/lidar/lidar.h"
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 #include "tests/support/sensor_errors.h"
+#include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
 namespace {
@@ -91,7 +92,7 @@ struct Outcomes {
 //   no echo  X < -t / s and Y < -f / s
 //   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
 Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {
-  const lidar::EchoModel model(beam, models::ExtinctionOf(20000.0), models::ExtinctionOf(20.0));
+  const lidar::EchoModel model(beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
   const lidar::EchoPowers echoes = model.At(gap_m, visibility_m);
   const double s = beam.log_std;
   const double t = echoes.target;
@@ -144,7 +145,7 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
   scenario.fog.clear_visibility_m = 1e5;
   scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
   const double range_m =
-      lidar::AttenuatedRange_m(scenario.lidar.beam.clear_range_m, models::ExtinctionOf(1e5));
+      test::AttenuatedRange_m(scenario.lidar.beam.clear_range_m, ExtinctionOf(1e5));
   for (const std::int64_t beams : {1, 15, 101}) {
     scenario.lidar.beam.beams = beams;
     int detections = 0;
@@ -162,8 +163,7 @@ TEST(LidarProperty, FogScattersByABetaDistribution) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
   scenario.lidar.beam.log_std = 0.01;  // only the fog gives echoes
-  const lidar::EchoModel model(scenario.lidar.beam, models::ExtinctionOf(20000.0),
-                               models::ExtinctionOf(20.0));
+  const lidar::EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20.0));
   const double peak_m = model.At(60.0, 25.0).fog_range_m;
   const boost::math::beta_distribution beta(2.0, 20.0);
   std::vector<double> shares;

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/models/vehicle/vehicle_parameters.h"
 #include "tests/property/services/acc/draw.h"
 #include "tests/unit/services/world/commands.h"
@@ -32,8 +32,8 @@ Scenario Drawn(std::int64_t seed, std::int64_t count) {
 
 std::vector<truth_t> TruthsOf(const Scenario& scenario) {
   std::vector<truth_t> truths;
-  metrics::ClosedLoop loop(scenario);
-  loop.Run(1, [&](const metrics::StepView& step) { truths.push_back(step.truth); });
+  closed_loop::ClosedLoop loop(scenario);
+  loop.Run(1, [&](const closed_loop::StepView& step) { truths.push_back(step.truth); });
   return truths;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/decision/policies/policies.h"
+#include "tests/support/find_row.h"
 
 namespace fogline {
 namespace {
@@ -198,7 +199,7 @@ TEST(ArbitratorTest, ConflictTakesSilenceForDisagreement) {
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
-  scenario.arbitrator.policy = policies::FindPolicy(name).value();
+  scenario.arbitrator.policy = test::FindPolicy(name).value();
   scenario.arbitrator.window_steps = 1;
   return scenario;
 }
@@ -250,7 +251,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
 
 TEST(ArbitratorTest, ADegreeOfConflictCanBeMadeOfAnyMeasure) {
   Scenario scenario = WithPolicy("traded");
-  scenario.arbitrator.measure = static_cast<MeasureChoice>(conflict::FindConflictMeasure("nis") -
+  scenario.arbitrator.measure = static_cast<MeasureChoice>(test::FindConflictMeasure("nis") -
                                                            conflict::ConflictMeasures().data());
   scenario.arbitrator.measure_slope = 1;
   scenario.arbitrator.measure_centre = 6.63;
@@ -280,7 +281,7 @@ class SharedWithTheAskedTest : public testing::Test {
  protected:
   static Scenario Sharing() {
     Scenario scenario;
-    scenario.arbitrator.policy = policies::FindPolicy("blend").value();
+    scenario.arbitrator.policy = test::FindPolicy("blend").value();
     scenario.arbitrator.window_steps = 1;
     scenario.arbitrator.take_over = {
         .mode = TakeOverMode::kRequested, .time = {.mean_s = 1, .std_s = 1e-3}, .recovery_s = 1};

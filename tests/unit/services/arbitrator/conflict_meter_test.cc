@@ -6,6 +6,7 @@
 
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/decision/conflict/over_time/lidar_modes.h"
+#include "tests/support/find_row.h"
 #include "tests/support/input_errors.h"
 
 namespace fogline {
@@ -34,7 +35,7 @@ Messages Differing() {
 Scenario With(std::string_view measure) {
   Scenario scenario;
   scenario.fusion.radar_range_std_m = 0.4;
-  scenario.arbitrator.measure = static_cast<MeasureChoice>(conflict::FindConflictMeasure(measure) -
+  scenario.arbitrator.measure = static_cast<MeasureChoice>(test::FindConflictMeasure(measure) -
                                                            conflict::ConflictMeasures().data());
   return scenario;
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "services/decision/policies/policies.h"
+#include "tests/support/find_row.h"
 
 namespace fogline {
 namespace {
@@ -267,7 +268,7 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
 
 Scenario WithPolicy(std::string_view name) {
   Scenario scenario;
-  scenario.arbitrator.policy = policies::FindPolicy(name).value();
+  scenario.arbitrator.policy = test::FindPolicy(name).value();
   return scenario;
 }
 

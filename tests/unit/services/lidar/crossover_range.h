@@ -1,19 +1,27 @@
-// Where the fog hides a target from a LiDAR, as published parameter sets tell it.
+// How far a LiDAR sees in fog, and where fog hides a target, as published parameter sets tell it.
 #pragma once
 
 #include <cmath>
 #include <numbers>
 
-#include "services/lidar/fog_beam.h"
+#include <boost/math/special_functions/lambert_w.hpp>
 
 namespace fogline::test {
+
+/// Maximum range in fog of a target that can be detected up to R_c = `clear_range_m` in clear air.
+/// It is the range R with (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
+/// Lambert's W, R = W(alpha R_c) / alpha.
+inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
+  if (extinction_pm == 0.0) return clear_range_m;
+  return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
+}
 
 /// Range beyond which the echo of the fog is stronger than that of the target. There the ratio
 ///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
 /// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
 inline double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
                                double extinction_pm) {
-  return lidar::AttenuatedRange_m(
+  return AttenuatedRange_m(
       std::sqrt(reflectivity / (std::numbers::pi * backscatter_pmsr * fog_strength_pm)),
       extinction_pm);
 }

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 #include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kClear_m = 20000.0;
 
 lidar::EchoModel Model(const LidarBeamSection& beam, double densest_m) {
-  return {beam, models::ExtinctionOf(kClear_m), models::ExtinctionOf(densest_m)};
+  return {beam, ExtinctionOf(kClear_m), ExtinctionOf(densest_m)};
 }
 
 TEST(EchoModelTest, TheClearTargetIsAtTheThresholdAtItsClearRange) {
@@ -25,7 +25,7 @@ TEST(EchoModelTest, TheClearTargetIsAtTheThresholdAtItsClearRange) {
   const lidar::EchoModel model = Model(beam, 50.0);
   // In clear air of 20 km the attenuation is 2 alpha R = 0.036.
   EXPECT_NEAR(model.At(beam.clear_range_m, kClear_m).target,
-              -2.0 * models::ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
+              -2.0 * ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
 }
 
 TEST(EchoModelTest, AttenuationAloneEndsDetectionAtTheAttenuatedRange) {
@@ -33,8 +33,7 @@ TEST(EchoModelTest, AttenuationAloneEndsDetectionAtTheAttenuatedRange) {
   beam.target_reflectivity = beam.clear_reflectivity;
   const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
-    const double range_m =
-        lidar::AttenuatedRange_m(beam.clear_range_m, models::ExtinctionOf(visibility_m));
+    const double range_m = test::AttenuatedRange_m(beam.clear_range_m, ExtinctionOf(visibility_m));
     EXPECT_NEAR(model.At(range_m, visibility_m).target, 0.0, 1e-12);
   }
 }
@@ -43,7 +42,7 @@ TEST(EchoModelTest, EchoesAreEquallyStrongAtTheCrossover) {
   const LidarBeamSection beam;
   const lidar::EchoModel model = Model(beam, 20.0);
   for (const double visibility_m : {600.0, 100.0, 50.0, 20.0}) {
-    const double extinction_pm = models::ExtinctionOf(visibility_m);
+    const double extinction_pm = ExtinctionOf(visibility_m);
     const double range_m = test::CrossoverRange_m(
         lidar::FindFogPeak(lidar::OpticsOf(beam), extinction_pm).strength_pm,
         beam.target_reflectivity, beam.backscatter_factor / visibility_m, extinction_pm);
@@ -58,7 +57,7 @@ TEST(EchoModelTest, TheTableIsCloseToThePeakItself) {
   const lidar::BeamOptics optics = lidar::OpticsOf(beam);
   const lidar::EchoModel model = Model(beam, 5.0);
   for (double visibility_m = 5.0; visibility_m < 30000.0; visibility_m *= 1.07) {
-    const lidar::FogPeak peak = lidar::FindFogPeak(optics, models::ExtinctionOf(visibility_m));
+    const lidar::FogPeak peak = lidar::FindFogPeak(optics, ExtinctionOf(visibility_m));
     const double expected = std::log(std::numbers::pi * beam.backscatter_factor / visibility_m /
                                      beam.clear_reflectivity * beam.clear_range_m *
                                      beam.clear_range_m * peak.strength_pm);
@@ -100,7 +99,7 @@ TEST(EchoModelTest, FogEchoesAreUndetectableInClearAirAndDetectableInThickFog) {
 TEST(EchoModelTest, IntensityIsOneForTheTargetInClearAirAndFadesWithTheFog) {
   const lidar::EchoModel model = Model(LidarBeamSection{}, 50.0);
   for (const double range_m : {3.0, 10.0, 33.0, 100.0}) {
-    const double loss = 2.0 * models::ExtinctionOf(50.0) * range_m;
+    const double loss = 2.0 * ExtinctionOf(50.0) * range_m;
     EXPECT_NEAR(model.Intensity(model.At(range_m, 50.0).target, range_m), std::exp(-loss), 1e-12);
   }
   const lidar::EchoPowers echoes = model.At(33.0, 50.0);

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/models/driver/visibility.h"
+#include "services/visibility.h"
 #include "tests/unit/services/lidar/crossover_range.h"
 
 namespace fogline {
@@ -31,7 +31,7 @@ constexpr lidar::BeamOptics kPhysical{
 const std::vector<double> kVisibilities_m{600, 300, 150, 100, 75, 50, 40, 30, 20};
 
 double Crossover(const lidar::BeamOptics& optics, double reflectivity, double visibility_m) {
-  const double extinction_pm = models::ExtinctionOf(visibility_m);
+  const double extinction_pm = ExtinctionOf(visibility_m);
   return test::CrossoverRange_m(lidar::FindFogPeak(optics, extinction_pm).strength_pm, reflectivity,
                                 kBackscatterFactor / visibility_m, extinction_pm);
 }
@@ -65,11 +65,11 @@ TEST(FogBeamTest, AttenuationAloneLeavesTheTabulatedRanges) {
   const std::vector<double> of_120_m{80, 64, 47, 38, 33, 26, 22, 19, 14};
   const std::vector<double> of_200_m{113, 85, 60, 48, 40, 31, 27, 22, 17};
   for (std::size_t i = 0; i < kVisibilities_m.size(); ++i) {
-    const double extinction_pm = models::ExtinctionOf(kVisibilities_m[i]);
-    EXPECT_NEAR(lidar::AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
-    EXPECT_NEAR(lidar::AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
+    const double extinction_pm = ExtinctionOf(kVisibilities_m[i]);
+    EXPECT_NEAR(test::AttenuatedRange_m(120.0, extinction_pm), of_120_m[i], kTableTolerance_m);
+    EXPECT_NEAR(test::AttenuatedRange_m(200.0, extinction_pm), of_200_m[i], kTableTolerance_m);
   }
-  EXPECT_EQ(lidar::AttenuatedRange_m(120.0, 0.0), 120.0);
+  EXPECT_EQ(test::AttenuatedRange_m(120.0, 0.0), 120.0);
 }
 
 TEST(FogBeamTest, TheFogsPeakLiesInTheNearFieldAndComesNearerInDenserFog) {
@@ -81,7 +81,7 @@ TEST(FogBeamTest, TheFogsPeakLiesInTheNearFieldAndComesNearerInDenserFog) {
 
 TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
   for (const double visibility_m : kVisibilities_m) {
-    const double extinction_pm = models::ExtinctionOf(visibility_m);
+    const double extinction_pm = ExtinctionOf(visibility_m);
     const double backscatter_pmsr = kBackscatterFactor / visibility_m;
     const double strength_pm = lidar::FindFogPeak(kPhysical, extinction_pm).strength_pm;
     const double range_m =

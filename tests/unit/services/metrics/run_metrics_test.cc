@@ -117,7 +117,7 @@ TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
 }
 
 TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
-  const metrics::RunMeasures m = metrics::Measure({});
+  const metrics::RunMetrics m = metrics::Measure({});
   EXPECT_EQ(m.steps, 0);
   EXPECT_EQ(m.duration_s, 0);
   EXPECT_EQ(m.min_host_gap_m, std::nullopt);
@@ -126,7 +126,7 @@ TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
 }
 
 TEST(MeasureTest, CountsStepsAndTheTimeBetweenTheFirstAndTheLast) {
-  const metrics::RunMeasures m = metrics::Measure(QuietRun(5));
+  const metrics::RunMetrics m = metrics::Measure(QuietRun(5));
   EXPECT_EQ(m.steps, 5);
   EXPECT_EQ(m.duration_s, 2.0);
 }
@@ -135,7 +135,7 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
   auto run = QuietRun(3);
   run[1].host_gap_m = 12;
   run[2].follower_gap_m = 7;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_host_gap_m, 12);
   EXPECT_EQ(m.min_follower_gap_m, 7);
 }
@@ -143,7 +143,7 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
 TEST(MeasureTest, MeasuresCompromisedSafetyEverywhereAndItsMeanInFog) {
   auto run = FoggyRun({0, 1, 3, 8});
   run[3].fog_present = false;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.max_compromised_safety_m, 8);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 4.0 / 3);
 }
@@ -152,7 +152,7 @@ TEST(MeasureTest, WithoutAFollowingCarItsMeasuresHaveNoValue) {
   auto run = FoggyRun({0, 0});
   for (metrics::Sample& sample : run)
     sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_follower_gap_m, std::nullopt);
   EXPECT_EQ(m.max_compromised_safety_m, std::nullopt);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, std::nullopt);
@@ -187,7 +187,7 @@ TEST(MeasureTest, RedundantEngagementIsTheHumansShareOfClearAir) {
 TEST(MeasureTest, CountsHandOversInBothDirectionsAndTheHumansTime) {
   auto run = QuietRun(10);
   for (std::size_t k : {2, 3, 4, 8, 9}) run[k].lambda_human = 1;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.transfers, 3);
   EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // no car carries out the command of the last step
 }
@@ -206,7 +206,7 @@ TEST(MeasureTest, CountsHandOversPerMinuteAndTheLeastTimeBetweenTwo) {
   auto run = QuietRun(13);  // 6 s
   EXPECT_EQ(metrics::Measure(run).transfers_pmin, 0);
   for (std::size_t k : {2, 3, 4, 5, 10, 11, 12}) run[k].lambda_human = 1;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.transfers_pmin, 30);        // 3 in 6 s
   EXPECT_EQ(m.min_dwell_s, 4 * kStep_s);  // steps 2 to 6
   for (std::size_t k = 0; k < 10; ++k) run[k].lambda_human = 0;
@@ -239,7 +239,7 @@ TEST(MeasureTest, MeasuresBothPairsOfCars) {
   }
   run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind it
   run[2].preceding_speed_mps = 10;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
   EXPECT_EQ(m.host.min_ttc_s, 3);
   EXPECT_EQ(m.host.min_headway_s, 1.5);
@@ -251,7 +251,7 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   auto run = QuietRun(5);
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 do not follow an applied
   // acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
@@ -275,7 +275,7 @@ TEST(MeasureTest, ConflictInClearAirLeavesTheFogOut) {
     run[k].doc = conflict[k] / 2;
   }
   run[1].fog_present = true;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_conflict_clear_m, 0.9);
   EXPECT_EQ(m.max_conflict_clear_m, 0.95);
   EXPECT_EQ(m.max_doc, 0.7);
@@ -291,17 +291,17 @@ TEST(MeasureTest, FusionErrorCountsTheStepsWithATrack) {
 
 TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
   auto run = FoggyRun({1, 2, 3});
-  metrics::MeasureAccumulator accumulator;
+  metrics::MetricsAccumulator accumulator;
   for (std::size_t k = 0; k < run.size(); ++k) {
     accumulator.Add(run[k]);
-    const metrics::RunMeasures so_far = accumulator.Result();
-    const metrics::RunMeasures whole = metrics::Measure(std::span(run).first(k + 1));
+    const metrics::RunMetrics so_far = accumulator.Result();
+    const metrics::RunMetrics whole = metrics::Measure(std::span(run).first(k + 1));
     EXPECT_EQ(so_far.steps, whole.steps);
     EXPECT_EQ(so_far.mean_compromised_safety_fog_m, whole.mean_compromised_safety_fog_m);
   }
 }
 
-TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
+TEST(VisitMetricsTest, NamesEveryMeasureOnceWithItsUnit) {
   const std::map<std::string_view, std::string_view> suffixes{
       {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"},
       {"m/s2", "_mps2"}, {"m/s3", "_mps3"}, {"1/min", "_pmin"}, {"1/h", "_ph"}};
@@ -317,11 +317,11 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
       EXPECT_TRUE(name.ends_with(suffixes.at(unit))) << name << " in " << unit;
     }
   };
-  metrics::VisitMeasures(metrics::RunMeasures(), check);
+  metrics::VisitMetrics(metrics::RunMetrics(), check);
   EXPECT_EQ(names.size(), 42U);
 }
 
-TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
+TEST(VisitMetricsTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
   constexpr std::string_view kHost = "host: ";
   constexpr std::string_view kFollower = "following car: ";
   std::map<std::string, std::string, std::less<>> host;
@@ -330,16 +330,15 @@ TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
     const std::size_t at = name.find(car);
     return std::string(name.substr(0, at)) + std::string(name.substr(at + car.size()));
   };
-  metrics::VisitMeasures(
-      metrics::RunMeasures(),
-      [&](std::string_view name, const auto&, std::string_view, std::string_view description) {
-        if (description.starts_with(kHost)) {
-          host[without(name, "host")] = description.substr(kHost.size());
-        } else if (name.find("follower") != name.npos) {
-          ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
-          follower[without(name, "follower")] = description.substr(kFollower.size());
-        }
-      });
+  metrics::VisitMetrics(metrics::RunMetrics(), [&](std::string_view name, const auto&,
+                                                   std::string_view, std::string_view description) {
+    if (description.starts_with(kHost)) {
+      host[without(name, "host")] = description.substr(kHost.size());
+    } else if (name.find("follower") != name.npos) {
+      ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
+      follower[without(name, "follower")] = description.substr(kFollower.size());
+    }
+  });
   EXPECT_EQ(host.size(), 9U);
   EXPECT_EQ(host, follower);
 }

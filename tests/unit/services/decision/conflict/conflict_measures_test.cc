@@ -213,13 +213,6 @@ TEST(MeasureTableTest, HasNoNameTwiceAndNoCellEmpty) {
   ExpectWhole(conflict::BlameMeasures());
 }
 
-TEST(MeasureTableTest, FindsRowsByName) {
-  EXPECT_EQ(conflict::FindConflictMeasure("cusum")->name, "cusum");
-  EXPECT_EQ(conflict::FindBlameMeasure("deng")->name, "deng");
-  EXPECT_EQ(conflict::FindConflictMeasure("cusun"), nullptr);
-  EXPECT_EQ(conflict::FindBlameMeasure(""), nullptr);
-}
-
 TEST(MeasureTableTest, IsTheTableOfTheReadme) {
   const std::string readme = ReadFile("/services/decision/conflict/README.md");
   const auto expect_row = [&](std::string_view name, std::string_view source) {

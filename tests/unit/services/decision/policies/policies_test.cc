@@ -16,6 +16,7 @@
 #include "scenario/io/loader.h"
 #include "scenario/sections/decision.h"
 #include "services/decision/policies/availability.h"
+#include "tests/support/find_row.h"
 #include "tests/unit/services/decision/policies/example_policy.h"
 
 namespace fogline {
@@ -49,14 +50,12 @@ struct Situation {
 
 policies::EngagementRequest Decide(std::string_view policy, const Situation& situation,
                                    const Scenario& scenario = {}) {
-  return policies::RowOf(policies::FindPolicy(policy).value())
-      .make(scenario)
-      ->Decide(situation.View());
+  return policies::RowOf(test::FindPolicy(policy).value()).make(scenario)->Decide(situation.View());
 }
 
 policies::SensorSelection SelectSensors(std::string_view policy, const policies::FusionView& view,
                                         const Scenario& scenario = {}) {
-  return policies::RowOf(policies::FindPolicy(policy).value()).make(scenario)->SelectSensors(view);
+  return policies::RowOf(test::FindPolicy(policy).value()).make(scenario)->SelectSensors(view);
 }
 
 constexpr policies::SensorSelection kBoth{.radar = true, .lidar = true};
@@ -73,7 +72,7 @@ TEST(PoliciesTest, EveryRowIsAChoiceOfTheScenarioWithItsNameAndText) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     const Scenario scenario = ParseScenario(WithPolicy(row.name), "test");
     EXPECT_EQ(&policies::RowOf(scenario.arbitrator.policy), &row);
-    EXPECT_EQ(policies::FindPolicy(row.name), scenario.arbitrator.policy);
+    EXPECT_EQ(test::FindPolicy(row.name), scenario.arbitrator.policy);
     const std::string quoted = '"' + std::string(row.name) + '"';
     EXPECT_THAT(PrintScenario(scenario), HasSubstr("\"policy\": " + quoted));
     EXPECT_THAT(schema, HasSubstr(quoted));
@@ -99,7 +98,7 @@ TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
        {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
-    const policies::PolicyRow& row = policies::RowOf(policies::FindPolicy(name).value());
+    const policies::PolicyRow& row = policies::RowOf(test::FindPolicy(name).value());
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
     };
@@ -286,7 +285,7 @@ TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
 // The fusion and the arbitrator each have an instance of the policy. Neither knows the decisions of
 // the other about the driver.
 TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
-  const auto policy = policies::RowOf(policies::FindPolicy("availability").value()).make({});
+  const auto policy = policies::RowOf(test::FindPolicy("availability").value()).make({});
   Situation available;
   Situation late;
   late.surroundings = {.followed = true, .follower_gap_m = 5, .follower_speed_mps = 30};
@@ -312,7 +311,7 @@ TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
     Scenario scenario;
     scenario.arbitrator.blame = static_cast<BlameChoice>(&row - conflict::BlameMeasures().data());
     scenario.arbitrator.blame_threshold = 0.6;
-    const auto policy = policies::RowOf(policies::FindPolicy("isolate").value()).make(scenario);
+    const auto policy = policies::RowOf(test::FindPolicy("isolate").value()).make(scenario);
     policies::SensorSelection selection;
     for (int i = 0; i < 5; ++i) selection = policy->SelectSensors({kLidarShort, {}});
     EXPECT_EQ(selection, kRadarAlone) << row.name;

@@ -8,7 +8,7 @@
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
-#include "services/models/minimal_risk/modes.h"
+#include "services/host_modes.h"
 
 namespace fogline {
 namespace {
@@ -23,7 +23,7 @@ arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_m
   command.header.utime = step * 100'000;
   command.mode = mode;
   command.acceleration_mps2 = acceleration_mps2;
-  command.lambda_human = models::HumanDrives(mode) ? 1 : 0;
+  command.lambda_human = HumanDrives(mode) ? 1 : 0;
   return command;
 }
 

@@ -56,13 +56,6 @@ TEST(ConsonantConflictTest, IsTheSameWhicheverSensorIsThePreciseOne) {
             conflict::ConsonantConflict(Differing(-0.7, 0.05, 0.4)));
 }
 
-TEST(ConsonantPlausibilityTest, IsWhatTheIntervalsBeyondAPointHave) {
-  EXPECT_EQ(conflict::ConsonantPlausibility(0), 1);
-  for (double y = 0; y < 6; y += 0.25) {
-    EXPECT_NEAR(conflict::ConsonantPlausibility(y), 1 - conflict::MaxwellBelow(y), 1e-15) << y;
-  }
-}
-
 TEST(ConsonantPignisticTest, IsTheTotalVariationOfTheGaussians) {
   // Half of the integral of |p1 - p2|, from the differences of the distributions in small cells.
   constexpr double kCell_m = 1e-3;
@@ -90,14 +83,15 @@ TEST(ConsonantPignisticTest, IsContinuousWhereThePrecisionsAreEqual) {
 }
 
 TEST(ConsonantBeliefsTest, LevelsStandForTheDensity) {
-  // The test integrates the plausibilities directly.
+  // The test integrates the plausibilities pl(x) = 1 - F(|x - mu|/s) directly.
+  const auto plausibility = [](double y) { return 1 - conflict::MaxwellBelow(y); };
   const conflict::ConsonantBeliefs beliefs(kLevels);
   for (const double d : {0.0, 0.5, 1.0}) {
     double integral = 0;
     constexpr double kCell_m = 1e-3;
     for (double x = -4; x < 5; x += kCell_m) {
-      integral += kCell_m * conflict::ConsonantPlausibility(std::abs(x) / kRadarStd_m) *
-                  conflict::ConsonantPlausibility(std::abs(x - d) / kLidarStd_m);
+      integral += kCell_m * plausibility(std::abs(x) / kRadarStd_m) *
+                  plausibility(std::abs(x - d) / kLidarStd_m);
     }
     EXPECT_NEAR(beliefs.ContourProduct(d, kRadarStd_m, kLidarStd_m), integral, 0.02 * integral);
   }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "services/decision/conflict/conflict_measures.h"
+#include "tests/support/find_row.h"
 #include "tests/unit/services/decision/conflict/evidence.h"
 
 namespace fogline {
@@ -18,7 +19,7 @@ constexpr double kEven = 1e-12;
 
 std::unique_ptr<conflict::BlameMeasure> Make(std::string_view name,
                                              const conflict::ConflictParameters& parameters = {}) {
-  return conflict::FindBlameMeasure(name)->make(parameters);
+  return test::FindBlameMeasure(name)->make(parameters);
 }
 
 class EveryBlameTest : public testing::TestWithParam<std::string_view> {};

@@ -1,15 +1,13 @@
-#include "services/decision/conflict/one_step/doc.h"
+#include "services/decision/conflict/over_time/doc.h"
 
-#include <cstddef>
 #include <optional>
 
 namespace fogline::conflict {
 
 Doc::Doc(const ConflictParameters& parameters)
     : source_(parameters, DisagreementSource::Offset::kKept),
-      window_(static_cast<std::size_t>(parameters.window_steps)),
+      window_(parameters.window_steps),
       reading_(parameters.doc_reading),
-      window_steps_(parameters.window_steps),
       slope_pm_(parameters.doc_slope_pm),
       centre_m_(parameters.doc_centre_m) {}
 
@@ -25,7 +23,7 @@ double Doc::Step(const Evidence& evidence) {
 
 void Doc::Reset() {
   source_.Reset();
-  for (int i = 0; i < window_steps_; ++i) window_.Push(std::nullopt);
+  window_.Clear();
 }
 
 }  // namespace fogline::conflict

@@ -1,11 +1,11 @@
-// The side that drives in each mode of a host command.
+// Who drives the host: what the mode and the authorities of its command say.
 #pragma once
 
 #include <cstdint>
 
 #include "fogline/arbitration_t.hpp"
 
-namespace fogline::models {
+namespace fogline {
 
 /// Whether the host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs
 /// of a run in real time, or a request that the driver did not answer in time.
@@ -33,4 +33,4 @@ constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }
 
-}  // namespace fogline::models
+}  // namespace fogline

@@ -4,7 +4,7 @@
 
 #include "scenario/sections/decision.h"
 #include "tests/property/services/acc/draw.h"
-#include "tests/property/services/metrics/closed_loop/shipped.h"
+#include "tests/property/services/closed_loop/shipped.h"
 
 namespace fogline::test {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 std::vector<Shipped> Scenarios() { return ShippedScenarios(FOGLINE_SOURCE_DIR "/scenario"); }
 
 std::string FreshDigest(const Scenario& scenario) {
-  metrics::ClosedLoop loop(scenario);
+  closed_loop::ClosedLoop loop(scenario);
   return DigestOf(loop);
 }
 
@@ -56,7 +56,7 @@ TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {
   // GIVEN a loop that has computed a different run each time
   Draw draw(1);
   Scenario scenario;
-  metrics::ClosedLoop loop(scenario);
+  closed_loop::ClosedLoop loop(scenario);
   std::vector<std::string> digests;
   for (int i = 0; i < 60; ++i) {
     // WHEN it restarts with the same or with other parameters, after a run or without one
@@ -75,7 +75,7 @@ TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {
 TEST(ClosedLoopProperty, RepeatsEveryShippedScenarioBitByBit) {
   const std::vector<Shipped> shipped = Scenarios();
   ASSERT_GE(shipped.size(), 2U);
-  metrics::ClosedLoop loop(shipped.front().scenario);
+  closed_loop::ClosedLoop loop(shipped.front().scenario);
   for (int round = 0; round < 2; ++round) {
     for (const Shipped& one : shipped) {
       loop.Restart(one.scenario);
@@ -86,7 +86,7 @@ TEST(ClosedLoopProperty, RepeatsEveryShippedScenarioBitByBit) {
 
 TEST(ClosedLoopProperty, RefusesAnAccWithoutAWellConditionedProblemAndGoesOnWithTheNext) {
   Scenario scenario;
-  metrics::ClosedLoop loop(scenario);
+  closed_loop::ClosedLoop loop(scenario);
   Scenario impossible;
   impossible.step_s = 1;
   impossible.acc.horizon_steps = 60;

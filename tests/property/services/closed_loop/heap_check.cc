@@ -16,7 +16,8 @@
 #include "services/models/follower/safety_response.h"
 #include "services/models/vehicle/longitudinal_vehicle.h"
 #include "tests/property/services/acc/draw.h"
-#include "tests/property/services/metrics/closed_loop/shipped.h"
+#include "tests/property/services/closed_loop/shipped.h"
+#include "tests/support/find_row.h"
 
 // Functions of the C library, which the replacements below call.
 extern "C" void* __libc_malloc(std::size_t size);                       // NOLINT
@@ -103,14 +104,14 @@ bool CheckModels() {
 
 // The number of allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
-  metrics::ClosedLoop loop(scenario);
-  metrics::MeasureAccumulator measures;
+  closed_loop::ClosedLoop loop(scenario);
+  metrics::MetricsAccumulator measures;
   metrics::FollowerAccumulator followers;
   metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
   long after_first = 0;
   long after_last = 0;
   steps = 0;
-  loop.Run(1, [&](const metrics::StepView& step) {
+  loop.Run(1, [&](const closed_loop::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
@@ -179,7 +180,7 @@ bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.absent_probability = 0.3;
   bool clean = true;
   for (const char* policy : {"traded", "blend"}) {
-    scenario.arbitrator.policy = policies::FindPolicy(policy).value();
+    scenario.arbitrator.policy = test::FindPolicy(policy).value();
     for (scenario.seed = 1; scenario.seed <= 10; ++scenario.seed) {
       std::int64_t steps = 0;
       clean = LoopAllocations(scenario, steps) == 0 && steps > 100 && clean;

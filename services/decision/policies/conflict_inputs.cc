@@ -1,4 +1,4 @@
-#include "services/decision/policies/evidence.h"
+#include "services/decision/policies/conflict_inputs.h"
 
 #include <cmath>
 #include <cstddef>

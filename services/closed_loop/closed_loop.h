@@ -3,6 +3,9 @@
 // distributed run.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc.h"
 #include "services/algorithm.h"
@@ -15,7 +18,7 @@
 #include "services/radar/radar.h"
 #include "services/world/world.h"
 
-namespace fogline::metrics {
+namespace fogline::closed_loop {
 
 /// The messages of one step; they belong to the algorithms and are valid until the next step.
 struct StepView {
@@ -43,8 +46,8 @@ struct StepView {
     visit(follower);
   }
 
-  Sample ToSample() const {
-    return MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
+  metrics::Sample ToSample() const {
+    return metrics::MakeSample(truth, radar, lidar, track, acc, driver, host, follower);
   }
 };
 
@@ -116,4 +119,30 @@ class ClosedLoop {
   follower::Follower follower_;
 };
 
-}  // namespace fogline::metrics
+/// Runs one scenario after the other. For use by one thread.
+class ReusedLoop {
+ public:
+  /// One run; `visit` as of ClosedLoop::Run(). @throws as the constructor of ClosedLoop
+  template <class Visit>
+  void Run(const Scenario& scenario, Visit&& visit) {
+    if (loop_) {
+      loop_->Restart(scenario);
+    } else {
+      loop_.emplace(scenario);
+    }
+    loop_->Run(0, visit);
+  }
+  /// The same with this seed.
+  template <class Visit>
+  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
+    scenario_ = scenario;
+    scenario_.seed = seed;
+    Run(scenario_, visit);
+  }
+
+ private:
+  std::optional<ClosedLoop> loop_;
+  Scenario scenario_;
+};
+
+}  // namespace fogline::closed_loop

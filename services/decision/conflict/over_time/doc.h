@@ -2,12 +2,12 @@
 #pragma once
 
 #include "services/decision/conflict/disagreement.h"
-#include "services/decision/conflict/one_step/degree_of_conflict.h"
+#include "services/decision/conflict/over_time/degree_of_conflict.h"
 
 namespace fogline::conflict {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
-/// services/decision/conflict/one_step/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi)
+/// services/decision/conflict/over_time/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi)
 /// with the mean of absolutes: only this measure has a scale in metres. The offset of the sensors
 /// is not subtracted. Skipped steps leave their place in the window empty.
 class Doc final : public ConflictMeasure {
@@ -26,7 +26,6 @@ class Doc final : public ConflictMeasure {
   DisagreementSource source_;
   ConflictWindow window_;
   ConflictReading reading_;
-  int window_steps_;
   double slope_pm_;
   double centre_m_;
 };

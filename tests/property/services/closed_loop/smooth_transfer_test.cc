@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 
 namespace fogline::test {
@@ -23,8 +23,8 @@ Scenario DenseFog() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/dense_fo
 
 std::vector<metrics::Sample> SamplesOf(const Scenario& scenario) {
   std::vector<metrics::Sample> samples;
-  metrics::ClosedLoop(scenario).Run(
-      0, [&](const metrics::StepView& step) { samples.push_back(step.ToSample()); });
+  closed_loop::ClosedLoop(scenario).Run(
+      0, [&](const closed_loop::StepView& step) { samples.push_back(step.ToSample()); });
   return samples;
 }
 
@@ -106,7 +106,7 @@ struct Step {
 
 std::vector<Step> StepsOf(const Scenario& scenario) {
   std::vector<Step> steps;
-  metrics::ClosedLoop(scenario).Run(0, [&](const metrics::StepView& step) {
+  closed_loop::ClosedLoop(scenario).Run(0, [&](const closed_loop::StepView& step) {
     steps.push_back({.human_wanted = step.host.doc >= scenario.arbitrator.threshold,
                      .automation_mps2 = step.acc.acceleration_mps2,
                      .human_mps2 = step.driver.acceleration_mps2,

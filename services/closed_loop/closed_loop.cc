@@ -1,6 +1,6 @@
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 
-namespace fogline::metrics {
+namespace fogline::closed_loop {
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
     : on_demand_(scenario),
@@ -25,4 +25,4 @@ void ClosedLoop::Restart(const Scenario& scenario) {
   arbitrator_ = arbitrator::Arbitrator(scenario);
 }
 
-}  // namespace fogline::metrics
+}  // namespace fogline::closed_loop

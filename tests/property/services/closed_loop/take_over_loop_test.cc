@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "services/decision/take_over/take_over_log.h"
-#include "tests/property/services/metrics/closed_loop/shipped.h"
+#include "tests/property/services/closed_loop/shipped.h"
 
 namespace fogline::test {
 namespace {
@@ -26,8 +26,8 @@ struct Driven {
 
 Driven Drive(const Scenario& scenario) {
   Driven driven;
-  metrics::ClosedLoop loop(scenario);
-  loop.Run(0, [&](const metrics::StepView& step) {
+  closed_loop::ClosedLoop loop(scenario);
+  loop.Run(0, [&](const closed_loop::StepView& step) {
     driven.commands.push_back(step.host);
     driven.automation_mps2.push_back(step.acc.acceleration_mps2);
     driven.human_mps2.push_back(step.driver.acceleration_mps2);
@@ -192,9 +192,9 @@ TEST_F(TakeOverLoopTest, StandsAtTheEndIfTheDriverDoesNotCome) {
 
 TEST_F(TakeOverLoopTest, ChangesNothingWhereTheDriverIsAlwaysAtIt) {
   Scenario scenario = Paper();
-  metrics::ClosedLoop asked(scenario);
+  closed_loop::ClosedLoop asked(scenario);
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
-  metrics::ClosedLoop plain(scenario);
+  closed_loop::ClosedLoop plain(scenario);
   const std::string digest = DigestOf(plain);
   scenario.arbitrator.take_over.lead_s = 20;
   scenario.arbitrator.take_over.absent_probability = 1;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenario/io/loader.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/runtime/wire/digest.h"
 
 namespace fogline::test {
@@ -37,10 +37,10 @@ inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder
 }
 
 /// Runs to the end. @return the digest. @pre `loop` is new or restarted
-inline std::string DigestOf(metrics::ClosedLoop& loop) {
+inline std::string DigestOf(closed_loop::ClosedLoop& loop) {
   runtime::Digest digest;
   std::vector<std::uint8_t> buffer;
-  loop.Run(0, [&](const metrics::StepView& step) {
+  loop.Run(0, [&](const closed_loop::StepView& step) {
     step.ForEachMessage([&](const auto& message) {
       runtime::Encode(message, buffer);
       digest.Add(buffer);

@@ -1,4 +1,4 @@
-#include "services/decision/conflict/one_step/doc.h"
+#include "services/decision/conflict/over_time/doc.h"
 
 #include <array>
 #include <cmath>

@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"
+#include "services/closed_loop/closed_loop.h"
 #include "services/decision/policies/policies.h"
 #include "services/decision/take_over/take_over_log.h"
-#include "services/metrics/closed_loop/closed_loop.h"
+#include "services/host_modes.h"
 #include "services/metrics/run_metrics.h"
-#include "services/models/minimal_risk/modes.h"
 
 namespace fogline {
 namespace {
@@ -26,13 +26,12 @@ struct Counted {
 
 Counted CountTransfers(const Scenario& scenario) {
   Counted counted;
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   take_over::TakeOverLog log;
-  metrics::ClosedLoop(scenario).Run(0, [&](const metrics::StepView& step) {
+  closed_loop::ClosedLoop(scenario).Run(0, [&](const closed_loop::StepView& step) {
     measures.Add(step.ToSample());
     log.Add(step.host, step.driver.acceleration_mps2);
-    counted.shared |=
-        models::HumanDrives(step.host.mode) && !models::HumanDrives(step.host.lambda_human);
+    counted.shared |= HumanDrives(step.host.mode) && !HumanDrives(step.host.lambda_human);
   });
   for (const take_over::TakeOverEntry& entry : log.entries()) {
     if (entry.transfer) counted.by_events.push_back(entry.step);

@@ -1,7 +1,7 @@
 // Definition of visibility in fog, for all models that use it.
 #pragma once
 
-namespace fogline::models {
+namespace fogline {
 
 /// ln 20. At the meteorological optical range 5 % of a contrast remain (WMO-No. 8; Koschmieder).
 inline constexpr double kContrastLog = 2.995732273553991;
@@ -12,4 +12,4 @@ constexpr double ExtinctionOf(double visibility_m) { return kContrastLog / visib
 /// Meteorological optical range in m of air with this extinction coefficient in 1/m.
 constexpr double VisibilityOf(double extinction_pm) { return kContrastLog / extinction_pm; }
 
-}  // namespace fogline::models
+}  // namespace fogline

@@ -1,4 +1,4 @@
-#include "services/decision/conflict/one_step/degree_of_conflict.h"
+#include "services/decision/conflict/over_time/degree_of_conflict.h"
 
 #include <array>
 #include <cmath>

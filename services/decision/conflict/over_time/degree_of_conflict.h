@@ -1,0 +1,24 @@
+// The windowed conflict z of radar and LiDAR, and the Degree of Conflict that is computed from it
+// (Sourav & Cheng 2024).
+#pragma once
+
+#include "scenario/sections/control.h"
+#include "services/decision/conflict/window.h"
+
+namespace fogline::conflict {
+
+/// DoC = 1 / (1 + exp(-slope (z - centre))), in [0, 1].
+double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m);
+
+/// The differences radar - LiDAR of the last W steps; z >= 0 is their average. Before step W, the
+/// average is over the steps so far. A step without a difference has an empty place.
+class ConflictWindow : public Window {
+ public:
+  using Window::Window;
+
+  /// z according to `reading`: the mean of the absolute differences, or the absolute value of their
+  /// mean; 0 if no step in the window has a difference.
+  double Conflict(ConflictReading reading) const;
+};
+
+}  // namespace fogline::conflict

@@ -1,0 +1,25 @@
+// Normalised squares and means of the difference over a window, for chi-square and Gauss tests
+// (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
+#pragma once
+
+#include "services/decision/conflict/one_step/divergence.h"
+#include "services/decision/conflict/over_time/windowed.h"
+
+namespace fogline::conflict {
+
+/// Mean of the n values of a window; 0 if it is empty.
+double Mean(const Window& window);
+/// sum / sqrt(n) of the n values of a window; 0 if it is empty.
+double StandardisedMean(const Window& window);
+
+/// Mean over the window of NIS, at least 0: N times it is chi-square with N degrees of freedom.
+using WindowedNis = Windowed<NormalisedSquare, Mean, &ConflictParameters::window_steps>;
+
+/// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number.
+/// Without a fault T is standard normal; it is mean(d) sqrt(n/S) while S is constant. T is above 0
+/// if the LiDAR's range is too short; a range that is too long counts as the opposite of conflict.
+/// T is best for a constant bias.
+using SignedNis =
+    Windowed<&Disagreement::standardised, StandardisedMean, &ConflictParameters::window_steps>;
+
+}  // namespace fogline::conflict

@@ -1,0 +1,36 @@
+// Measures of the last steps.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "services/decision/conflict/disagreement.h"
+#include "services/decision/conflict/window.h"
+
+namespace fogline::conflict {
+
+/// A measure of the disagreements of the last steps: double kScore(Window) over the values
+/// double kValue(Disagreement). `kSteps` is the parameter with the length of the window. A skipped
+/// step leaves its place empty; an empty window scores 0.
+template <auto kValue, auto kScore, int ConflictParameters::*kSteps>
+class Windowed final : public ConflictMeasure {
+ public:
+  explicit Windowed(const ConflictParameters& parameters)
+      : source_(parameters), values_(parameters.*kSteps) {}
+
+  double Step(const Evidence& evidence) override {
+    const std::optional<Disagreement> disagreement = source_.Next(evidence);
+    values_.Push(disagreement ? std::optional(std::invoke(kValue, *disagreement)) : std::nullopt);
+    return kScore(values_);
+  }
+  void Reset() override {
+    source_.Reset();
+    values_.Clear();
+  }
+
+ private:
+  DisagreementSource source_;
+  Window values_;
+};
+
+}  // namespace fogline::conflict
