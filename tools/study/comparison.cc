@@ -29,6 +29,14 @@ std::vector<ComparedMeasure> AllMeasures() {
   return all;
 }
 
+/// Index of the element of this name.
+template <class Named>
+std::size_t PlaceOf(const std::vector<Named>& all, std::string_view name, std::string_view kind) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  if (found == all.end()) throw std::out_of_range(fmt::format("no {} {}", kind, name));
+  return static_cast<std::size_t>(found - all.begin());
+}
+
 /// The scenario of every cell, case by case. Each case begins with its run without traded control.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
@@ -162,11 +170,12 @@ std::int64_t Comparison::PairsCutShort(Cell a, Cell b) const {
   return pairs;
 }
 
+std::size_t Comparison::CaseNamed(std::string_view name) const {
+  return PlaceOf(cases_, name, "case");
+}
+
 std::size_t Comparison::VariantNamed(std::string_view name) const {
-  for (std::size_t i = 0; i < variants_.size(); ++i) {
-    if (variants_[i].name == name) return i;
-  }
-  throw std::out_of_range("no variant " + std::string(name));
+  return PlaceOf(variants_, name, "variant");
 }
 
 std::string Comparison::Csv(std::size_t reference) const {
@@ -235,19 +244,21 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
   return figure;
 }
 
-report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows,
-                                       bool name_cases,
+report::StudyTable Comparison::TableOf(std::string caption, std::string kind,
+                                       std::span<const NamedCell> rows,
                                        std::span<const std::string_view> measures) const {
-  report::StudyTable table{.caption = std::move(caption),
-                           .columns = {name_cases ? "case" : "variant"}};
+  report::StudyTable table{
+      .caption = fmt::format("{}: means over {} seeds [95 % confidence intervals]",
+                             std::move(caption), seeds_),
+      .columns = {std::move(kind)}};
   for (const std::string_view measure : measures) {
     const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
     table.columns.push_back(info.unit.empty() ? info.name
                                               : fmt::format("{} ({})", info.name, info.unit));
   }
-  for (const Cell cell : rows) {
+  for (const auto& [name, cell] : rows) {
     std::vector<std::string>& row = table.rows.emplace_back();
-    row.push_back(name_cases ? cases_[cell.test_case].name : variants_[cell.variant].name);
+    row.push_back(name);
     for (const std::string_view measure : measures) {
       row.push_back(measure == "collided" ? Text(Collisions(cell)) : Text(Mean(cell, measure)));
     }
@@ -257,20 +268,18 @@ report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell
 
 report::StudyTable Comparison::TableOfCase(std::size_t test_case,
                                            std::span<const std::string_view> measures) const {
-  std::vector<Cell> rows;
-  for (std::size_t v = 0; v < variants_.size(); ++v) rows.push_back({test_case, v});
-  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
-                             cases_[test_case].name, seeds_),
-                 rows, false, measures);
+  std::vector<NamedCell> rows;
+  for (std::size_t v = 0; v < variants_.size(); ++v) {
+    rows.push_back({variants_[v].name, {test_case, v}});
+  }
+  return TableOf(cases_[test_case].name, "variant", rows, measures);
 }
 
 report::StudyTable Comparison::TableOfVariant(std::size_t variant,
                                               std::span<const std::string_view> measures) const {
-  std::vector<Cell> rows;
-  for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({c, variant});
-  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
-                             variants_[variant].name, seeds_),
-                 rows, true, measures);
+  std::vector<NamedCell> rows;
+  for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({cases_[c].name, {c, variant}});
+  return TableOf(variants_[variant].name, "case", rows, measures);
 }
 
 std::string NameForReaders(std::string_view measure) {

@@ -51,6 +51,12 @@ struct Cell {
   std::size_t variant = 0;
 };
 
+/// A cell with its name in a table.
+struct NamedCell {
+  std::string name;
+  Cell cell;
+};
+
 class Comparison {
  public:
   /// Runs all cells. @throws InputError, StudyStopped
@@ -82,7 +88,8 @@ class Comparison {
   /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
   /// differ in length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
-  /// Index of the variant of this name. @throws std::out_of_range
+  /// Index of the case, or of the variant, of this name. @throws std::out_of_range
+  std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;
 
   /// A summary of every measure of every cell, and its difference from variant `reference`.
@@ -91,8 +98,10 @@ class Comparison {
   /// other way round.
   report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                                bool cases_on_axis = false) const;
-  /// One row for each variant (or, if there is a single variant, for each case) with means and
-  /// intervals.
+  /// A row with means and intervals for each of these cells.
+  report::StudyTable TableOf(std::string caption, std::string kind, std::span<const NamedCell> rows,
+                             std::span<const std::string_view> measures) const;
+  /// One row for each variant of a case, or for each case of a variant.
   report::StudyTable TableOfCase(std::size_t test_case,
                                  std::span<const std::string_view> measures) const;
   report::StudyTable TableOfVariant(std::size_t variant,
@@ -101,8 +110,6 @@ class Comparison {
  private:
   /// All values of a cell, measure by measure.
   std::span<const double> AllOf(Cell cell) const;
-  report::StudyTable TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
-                             std::span<const std::string_view> measures) const;
 
   std::vector<StudyCase> cases_;
   std::vector<StudyVariant> variants_;

@@ -1,16 +1,19 @@
 // Study `policy`: compares hand-over with other policies.
 #include <array>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "services/decision/policies/policies.h"
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 
 namespace fogline::study {
 namespace {
+
+constexpr std::string_view kBias = "bias fog";
+constexpr std::string_view kCalibrated = "bias fog with calibrated radar";
+constexpr std::string_view kBeam = "beam fog";
 
 /// Every policy of the table.
 std::vector<StudyVariant> Variants() {
@@ -24,11 +27,11 @@ std::vector<StudyVariant> Variants() {
 /// Three fogs: the paper's; the paper's with a radar whose mounting offset is calibrated out and a
 /// DoC that knows the offset; and fog as a physical model.
 std::vector<StudyCase> Cases() {
-  return {{"bias fog", "paper.json", {}},
-          {"bias fog with calibrated radar",
+  return {{std::string(kBias), "paper.json", {}},
+          {std::string(kCalibrated),
            "paper.json",
            {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054", "/acc/standstill_m=4.4445"}},
-          {"beam fog", "dense_fog.json", {}}};
+          {std::string(kBeam), "dense_fog.json", {}}};
 }
 
 constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
@@ -42,54 +45,34 @@ constexpr std::array<std::string_view, 10> kTableMeasures{"si_pct",
                                                           "wrong_human_s",
                                                           "wrong_automation_s"};
 
-/// The policies that can change the driver, by variant: all except those whose rule is
-/// Rule::kNever.
-std::vector<std::size_t> HandOvers() {
-  std::vector<std::size_t> handovers;
-  for (std::size_t v = 0; v < policies::Policies().size(); ++v) {
-    if (policies::Policies()[v].rule != policies::Rule::kNever) handovers.push_back(v);
-  }
-  return handovers;
-}
+constexpr std::string_view kAnswer =
+    "It depends on how the LiDAR fails. If fog biases its range a little, handing over to a "
+    "perfect "
+    "human is safer than any automation that does not know the bias. If fog makes a false echo, an "
+    "automation that ignores the deceived sensor is safer and smoother than handing over.";
+constexpr std::string_view kWouldChange =
+    "A driver who errs or needs time (studies driver and takeover), a filter that refuses "
+    "outliers, "
+    "or a LiDAR that fails in another way.";
 
-/// Compares every policy that hands over with `isolate`, which never does.
-std::string AgainstIsolation(const Comparison& comparison, std::size_t test_case) {
-  const std::vector<std::size_t> handovers = Distinct(comparison, test_case, HandOvers());
-  const std::size_t isolate = comparison.VariantNamed("isolate");
-  std::vector<std::string> lose;
-  std::vector<std::string> win;
-  for (const std::size_t v : handovers) {
-    const Verdict verdict = VerdictOf(comparison.Difference({test_case, v}, {test_case, isolate},
-                                                            "mean_compromised_safety_fog_m"));
-    const std::string& name = comparison.variants()[v].name;
-    if (verdict == Verdict::kMore) lose.push_back(name);
-    if (verdict == Verdict::kLess) win.push_back(name);
-  }
-  std::string text;
-  const auto verb = [](const std::vector<std::string>& names, std::string_view one,
-                       std::string_view many) { return names.size() == 1 ? one : many; };
-  if (!lose.empty()) {
-    text += fmt::format("{} {} to isolate. ", Capital(ListText(lose)), verb(lose, "loses", "lose"));
-  }
-  if (!win.empty()) {
-    text += fmt::format("{} {} isolate. ", Capital(ListText(win)), verb(win, "beats", "beat"));
-  }
-  if (lose.empty() && win.empty()) text += "No hand-over differs significantly from isolate. ";
-  return text + fmt::format("Mean compromised safety in fog against isolate: {}.",
-                            AgainstText(comparison, test_case, handovers, isolate,
-                                        "mean_compromised_safety_fog_m", "m", 4));
-}
-
-std::string FindingOf(const Comparison& comparison, std::size_t c) {
-  const std::vector<std::size_t> all = AllVariants(comparison);
-  const std::string same = SameRunsText(comparison, c);
-  const std::size_t none = comparison.VariantNamed("none");
-  return fmt::format("{}: {}{}{} {} {} Largest jerk against none: {}. {}",
-                     comparison.cases()[c].name, same, same.empty() ? "" : " ",
-                     RankingText(comparison, c, "si_pct", 1, Better::kMore),
-                     CollisionText(comparison, c), AgainstIsolation(comparison, c),
-                     AgainstText(comparison, c, all, none, "max_abs_jerk_mps3", "m/s3", 2),
-                     RankingText(comparison, c, "rhe_pct", 1, Better::kLess));
+std::vector<Claim> Claims(const Comparison& comparison) {
+  constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+  const auto less = [&](std::string says, std::string_view fog, std::string_view a,
+                        std::string_view b, std::string_view measure) {
+    return ClaimOf(comparison, std::move(says), {fog, a}, {fog, b}, measure, Sign::kLess);
+  };
+  return {
+      less("In bias fog traded control is safer than none.", kBias, "traded", "none", kShortfall),
+      less("There it is safer than isolation.", kBias, "traded", "isolate", kShortfall),
+      less("There shared control is safer still.", kBias, "blend", "traded", kShortfall),
+      ClaimOf(comparison, "There isolation is worse than none.", {kBias, "isolate"},
+              {kBias, "none"}, kShortfall, Sign::kMore),
+      less("With a calibrated radar, ignoring the deceived LiDAR at the right time is the safest.",
+           kCalibrated, "oracle", "blend", kShortfall),
+      less("In beam fog traded control is safer than none.", kBeam, "traded", "none", kShortfall),
+      less("There isolation is safer than traded control.", kBeam, "isolate", "traded", kShortfall),
+      less("There it is smoother, too.", kBeam, "isolate", "traded", "max_abs_jerk_mps3"),
+  };
 }
 
 }  // namespace
@@ -99,8 +82,10 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
+  section.answer = kAnswer;
+  section.would_change = kWouldChange;
+  result.claims = Claims(comparison);
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    section.findings.push_back(FindingOf(comparison, c));
     section.tables.push_back(comparison.TableOfCase(c, kTableMeasures));
   }
   section.figures = {

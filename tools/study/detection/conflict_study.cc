@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "services/decision/conflict/conflict_measures.h"
 #include "tools/study/bootstrap.h"
+#include "tools/study/claims.h"
 #include "tools/study/detection/conflict_runs.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 
 namespace fogline::study {
 namespace {
@@ -37,143 +37,56 @@ std::vector<std::size_t> Rank(const ConflictSet& set) {
   return ranked;
 }
 
-/// Measures without those that are the same test as an earlier one: a twin is named with that
-/// measure and counts once.
-std::vector<std::size_t> WithoutTwins(std::span<const std::size_t> ranked) {
-  std::vector<std::size_t> own;
-  for (const std::size_t m : ranked) {
-    const std::string_view twin = TwinOf(NameOfMeasure(m));
-    const bool is_told = std::ranges::any_of(
-        ranked, [&](std::size_t other) { return NameOfMeasure(other) == twin; });
-    if (!is_told) own.push_back(m);
-  }
-  return own;
+constexpr std::string_view kAnswer =
+    "Those that look at several steps at once and know in which direction fog deceives the LiDAR. "
+    "The paper's Degree of Conflict is one of them, and its formula adds nothing to that: the "
+    "signed "
+    "normalised innovation alarms in the same steps. Where fog makes a false echo, nearly all "
+    "measures are equally fast.";
+constexpr std::string_view kWouldChange =
+    "A deception that grows slowly, or sensors whose noise is not white.";
+
+/// Index of a measure. @throws std::out_of_range
+std::size_t MeasureNamed(std::string_view name) {
+  const auto rows = conflict::ConflictMeasures();
+  const auto found = std::ranges::find(rows, name, &conflict::ConflictMeasureRow::name);
+  if (found == rows.end()) throw std::out_of_range(fmt::format("no measure {}", name));
+  return static_cast<std::size_t>(found - rows.begin());
 }
 
-/// Name of a measure with its twin, such as "cusum (sprt is the same test)".
-std::string NameWithTwin(std::size_t measure) {
-  std::string name(NameOfMeasure(measure));
-  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
-    if (TwinOf(row.name) == name) name += fmt::format(" ({} is the same test)", row.name);
-  }
-  return name;
+/// The claim on a measure's mean delay against that of the Degree of Conflict.
+Claim AgainstDoc(const ConflictSet& set, std::string says, std::string_view measure, Sign sign,
+                 double margin = 0) {
+  const std::size_t m = MeasureNamed(measure);
+  const bool ranked = set.thresholds[m].is_determined() && set.thresholds[0].is_determined();
+  return {.says = std::move(says),
+          .compared = fmt::format("{}: {} against doc, delay from fog to alarm (s)", NameOfSet(set),
+                                  measure),
+          .sign = sign,
+          .difference = set.means[m].delay_minus_doc_s,
+          .margin = margin,
+          .p = {},
+          .hindrance = ranked ? "" : "no threshold for this rate of false alarms"};
 }
 
-/// Measures without a determined threshold, of two kinds.
-struct Unranked {
-  std::vector<std::string> never;   // without an alarm in clear air
-  std::vector<std::string> seldom;  // with too few alarms
-};
-
-Unranked UnrankedOf(const ConflictSet& set) {
-  Unranked unranked;
-  for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
-    const DetectorThreshold& threshold = set.thresholds[m];
-    if (threshold.is_determined()) continue;
-    (threshold.calibrated.alarms == 0 ? unranked.never : unranked.seldom)
-        .emplace_back(NameOfMeasure(m));
-  }
-  return unranked;
-}
-
-std::string UnrankedText(const ConflictSet& set) {
-  const auto [never, seldom] = UnrankedOf(set);
-  std::string text;
-  if (!never.empty()) {
-    text += fmt::format(
-        " Not ranked: {}. At their smallest quiet threshold they never alarm in clear air, and "
-        "below it they alarm too often.",
-        ListText(never));
-  }
-  if (!seldom.empty()) {
-    text += fmt::format(
-        " Not ranked: {}. At their smallest quiet threshold, alarms are more than {:g} times as "
-        "rare as required.",
-        ListText(seldom), kLoosest);
-  }
-  return text;
-}
-
-/// The names as text, shortened if there are many.
-std::string Listed(std::vector<std::string> names) {
-  constexpr std::size_t kMost = 6;
-  if (names.size() <= kMost) return ListText(names);
-  const std::size_t more = names.size() - kMost;
-  names.resize(kMost);
-  names.push_back(fmt::format("{} more", more));
-  return ListText(names);
-}
-
-/// Compares the other measures with the Degree of Conflict, which is measure 0.
-std::string AgainstDoc(const ConflictSet& set, std::span<const std::size_t> ranked) {
-  std::vector<std::string> sooner;
-  std::vector<std::string> later;
-  std::vector<std::string> undecided;
-  std::vector<std::string> too_few;
-  for (const std::size_t m : ranked) {
-    if (m == 0) continue;
-    const std::string name = NameWithTwin(m);
-    switch (VerdictOf(set.means[m].delay_minus_doc_s)) {
-      case Verdict::kLess:
-        sooner.push_back(name);
-        break;
-      case Verdict::kMore:
-        later.push_back(name);
-        break;
-      case Verdict::kUndecided:
-        undecided.push_back(name);
-        break;
-      case Verdict::kTooFew:
-        too_few.push_back(name);
-        break;
+std::vector<Claim> Claims(std::span<const ConflictSet> sets) {
+  constexpr double kStep_s = 0.1;
+  std::vector<Claim> claims;
+  for (const ConflictSet& set : sets) {
+    if (set.noise != kUsualNoise) continue;
+    if (set.fog == "beam") {
+      claims.push_back(AgainstDoc(set, "In beam fog a window makes no difference.", "nis",
+                                  Sign::kEqual, kStep_s));
+      continue;
     }
+    claims.push_back(AgainstDoc(set, "A measure of a single step is slower.", "nis", Sign::kMore));
+    claims.push_back(
+        AgainstDoc(set, "A window without the known sign is slower.", "nis_window", Sign::kMore));
+    claims.push_back(AgainstDoc(set, "A window with the known sign is as fast.", "nis_signed",
+                                Sign::kEqual, kStep_s));
+    claims.push_back(AgainstDoc(set, "A sum over all steps is faster.", "cusum", Sign::kLess));
   }
-  std::string text;
-  const auto add = [&](const std::vector<std::string>& names, std::string_view one,
-                       std::string_view many) {
-    if (names.empty()) return;
-    text += fmt::format(" {} other {}: {}.", names.size(), names.size() == 1 ? one : many,
-                        Listed(names));
-  };
-  add(sooner, "measure is sooner", "measures are sooner");
-  add(later, "measure is later", "measures are later");
-  add(undecided, "measure does not differ significantly", "measures do not differ significantly");
-  add(too_few, "measure has too few runs for an interval",
-      "measures have too few runs for an interval");
-  return text;
-}
-
-std::string FindingOf(const ConflictSet& set, std::span<const std::size_t> ranked) {
-  std::string text = fmt::format("Fog model {}:", NameOfSet(set));
-  if (ranked.empty()) {
-    return text + fmt::format(
-                      " no measure has a threshold: {} runs of {:g} s in clear air have too few "
-                      "alarms for a mean time of {:g} s between them.",
-                      set.seeds, kClearRun_s, kArlZero_s);
-  }
-  text += fmt::format(" {} is first with a mean delay from fog to alarm of {} s",
-                      NameWithTwin(ranked.front()), Text(set.means[ranked.front()].delay_s, 2));
-  const auto doc = std::ranges::find(ranked, std::size_t{0});
-  if (doc == ranked.end()) {
-    text += "; the Degree of Conflict has no threshold.";
-  } else {
-    text += fmt::format("; the Degree of Conflict needs {} s and is number {} of {}.{}",
-                        Text(set.means[0].delay_s, 2), doc - ranked.begin() + 1, ranked.size(),
-                        AgainstDoc(set, ranked));
-  }
-  return text + UnrankedText(set);
-}
-
-/// Whether a measure alarms as often in other runs in clear air as in those from which its
-/// threshold was found. Given the alarms in both sets, those in the other runs have a binomial
-/// distribution.
-bool AlarmsAsCalibrated(const DetectorThreshold& threshold) {
-  const AlarmCount& found = threshold.calibrated;
-  const AlarmCount& other = threshold.clear;
-  const metrics::EventShare share =
-      metrics::ClopperPearson(other.alarms, found.alarms + other.alarms);
-  const double expected = other.time_s / (found.time_s + other.time_s);
-  return share.lower <= expected && expected <= share.upper;
+  return claims;
 }
 
 std::string ArlText(const AlarmCount& clear) {
@@ -225,6 +138,25 @@ report::StudyTable TableOf(const ConflictSet& set, std::span<const std::size_t> 
   for (const std::size_t m : ranked) add(m);
   for (std::size_t m = 0; m < set.thresholds.size(); ++m) {
     if (!set.thresholds[m].is_determined()) add(m);
+  }
+  return table;
+}
+
+/// Mean delays of some measures in every set.
+report::StudyTable MainTable(std::span<const ConflictSet> sets) {
+  report::StudyTable table{
+      .caption = "Delay from fog to alarm (s), mean over visibilities [95 % confidence interval]",
+      .columns = {"measure"}};
+  for (const ConflictSet& set : sets) table.columns.push_back(NameOfSet(set));
+  for (const std::string_view name :
+       {"doc", "nis", "nis_window", "nis_signed", "cusum", "glr", "lidar_modes"}) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row.emplace_back(name);
+    const std::size_t m = MeasureNamed(name);
+    for (const ConflictSet& set : sets) {
+      row.push_back(set.thresholds[m].is_determined() ? Text(set.means[m].delay_s, 2)
+                                                      : "no threshold");
+    }
   }
   return table;
 }
@@ -386,13 +318,9 @@ StudyResult RunConflictStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = ConflictRuns(context);
   report::StudySection& section = result.section;
-  std::vector<std::string> arl_zero;
   for (const ConflictSet& set : sets) {
     const std::vector<std::size_t> ranked = Rank(set);
-    const std::vector<std::size_t> own = WithoutTwins(ranked);
-    section.findings.push_back(FindingOf(set, own));
     section.tables.push_back(TableOf(set, ranked));
-    arl_zero.push_back(FindingOfArlZero(set, own));
     if (set.noise != kUsualNoise) continue;
     section.figures.push_back(
         OverVisibility(set, ranked, fmt::format("conflict-delay-{}", set.fog),
@@ -405,12 +333,10 @@ StudyResult RunConflictStudy(const StudyContext& context) {
     section.figures.push_back(RocOf(set.outcomes[set.outcomes.size() / 2], ranked,
                                     fmt::format("conflict-roc-{}", set.fog)));
   }
-  section.findings.push_back(
-      fmt::format("Do thresholds keep an ARL0 of {:g} s in other runs in clear air? Number of "
-                  "measures with a threshold whose 95 % interval of the ARL0 contains it: {}. A "
-                  "threshold is an estimate, too, from as many runs. So even without any flaw, "
-                  "more than one in twenty of these intervals would not contain it.",
-                  kArlZero_s, fmt::join(arl_zero, "; ")));
+  section.answer = kAnswer;
+  section.would_change = kWouldChange;
+  result.claims = Claims(sets);
+  section.tables.insert(section.tables.begin(), MainTable(sets));
   section.method = MethodOf(context);
   result.files = {{"conflict.csv", CsvOf(sets)}, {"conflict-roc.csv", RocCsvOf(sets)}};
   return result;

@@ -1,13 +1,13 @@
 // Study `followers`: drivers of the cars behind the host.
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
-#include "tools/study/case_findings.h"
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/followers/string_runs.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 
 namespace fogline::study {
 namespace {
@@ -85,39 +85,71 @@ std::vector<StudyCase> Strings() {
 const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
-/// Describes the course of a disturbance along one string.
-std::string FindingOf(const StringOutcome& string) {
-  const CarInString& first = string.cars[1];
-  const CarInString& last = string.cars[kStringCars];
-  std::vector<std::string> ratios;
-  for (std::size_t place = 1; place <= kStringCars; ++place) {
-    ratios.push_back(Text(EstimateOf(string.cars[place].amplification), 2));
+constexpr std::string_view kAnswer =
+    "Traded control helps an ACC that follows the host. It does not help a human follower, whose "
+    "own "
+    "fluctuations are larger than the effect, and a follower with a safety model needs no help. "
+    "Behind a host in beam fog it spares every string of cars the hard braking.";
+constexpr std::string_view kWouldChange =
+    "Followers with automatic emergency braking, or a host that brakes harder.";
+
+constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+
+std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
+  const auto claim = [&](std::string says, std::string_view name, Sign sign, double margin = 0) {
+    return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,
+                   margin);
+  };
+  // A centimetre is less than any driver notices.
+  constexpr double kNothing_m = 0.01;
+  return {claim("In bias fog it helps an ACC.", "bias fog: acc", Sign::kLess),
+          claim("In beam fog it helps an ACC.", "beam fog: acc", Sign::kLess),
+          claim("In bias fog it does nothing for a normal human.", "bias fog: normal human",
+                Sign::kEqual, kNothing_m),
+          claim("In bias fog it does nothing for a cautious human.", "bias fog: cautious human",
+                Sign::kEqual, kNothing_m),
+          claim("In beam fog it does harm with an aggressive human.", "beam fog: aggressive human",
+                Sign::kMore),
+          claim("With RSS nothing is left to improve.", "beam fog: normal human with RSS",
+                Sign::kEqual, kNothing_m)};
+}
+
+/// For each kind of string: the last car brakes less hard behind a host with traded control.
+std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
+  std::vector<Claim> claims;
+  for (const StringOutcome& traded : strings) {
+    if (traded.variant != "traded") continue;
+    const auto none = std::ranges::find_if(strings, [&](const StringOutcome& other) {
+      return other.kind == traded.kind && other.variant == "none";
+    });
+    claims.push_back(
+        {.says = fmt::format("The last car of a string brakes less hard: {}.", traded.kind),
+         .compared = fmt::format("string of {}: traded against none, largest "
+                                 "deceleration of follower {} (m/s2)",
+                                 traded.kind, kStringCars),
+         .sign = Sign::kLess,
+         .difference = PairedDifference(traded.cars[kStringCars].max_deceleration_mps2,
+                                        none->cars[kStringCars].max_deceleration_mps2),
+         .margin = 0,
+         .p = {},
+         .hindrance = {}});
   }
-  const Estimate growth = PairedDifference(last.max_deceleration_mps2, first.max_deceleration_mps2);
-  std::string_view verdict;
-  switch (VerdictOf(growth)) {
-    case Verdict::kMore:
-      verdict = "the disturbance grows along the string";
-      break;
-    case Verdict::kLess:
-      verdict = "the disturbance decreases along the string";
-      break;
-    case Verdict::kUndecided:
-      verdict = "the disturbance does not change significantly along the string";
-      break;
-    case Verdict::kTooFew:
-      verdict = "too few runs for an interval";
-      break;
+  return claims;
+}
+
+/// The followers with the largest difference between their kinds, without and with traded control.
+report::StudyTable MainTable(const Comparison& comparison) {
+  std::vector<NamedCell> rows;
+  for (const std::string_view name :
+       {"beam fog: acc", "beam fog: aggressive human", "beam fog: normal human",
+        "beam fog: cautious human", "beam fog: five cars drawn"}) {
+    for (const std::string_view variant : {"none", "traded"}) {
+      rows.push_back({fmt::format("{}, {}", name, variant),
+                      {comparison.CaseNamed(name), comparison.VariantNamed(variant)}});
+    }
   }
-  return fmt::format(
-      "String of {}, {}: the host brakes with at most {} m/s2, follower 1 with {}, follower {} "
-      "with {}: {} (last minus first {} m/s2). Ratio to the car ahead, place by place: {}. "
-      "Smallest time to collision: follower 1 {} s, follower {} {} s.",
-      string.kind, string.variant, Text(EstimateOf(string.cars[0].max_deceleration_mps2), 2),
-      Text(EstimateOf(first.max_deceleration_mps2), 2), kStringCars,
-      Text(EstimateOf(last.max_deceleration_mps2), 2), verdict, Text(growth, 2),
-      fmt::join(ratios, ", "), Text(EstimateOf(first.min_ttc_s), 1), kStringCars,
-      Text(EstimateOf(last.min_ttc_s), 1));
+  return comparison.TableOf("First car behind the host in beam fog", "follower", rows,
+                            kTableMeasures);
 }
 
 /// A quantity as a function of the place in the string, for the strings behind one variant of the
@@ -206,7 +238,6 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   report::StudySection& section = result.section;
   result.runs += static_cast<std::int64_t>(strings.size()) * context.seeds.count();
   for (const StringOutcome& string : strings) {
-    section.findings.push_back(FindingOf(string));
     section.tables.push_back(TableOf(string, context.seeds.count()));
   }
   for (const StudyVariant& variant : kVariants) {
@@ -245,7 +276,10 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
-  section.findings = CaseFindings(comparison, 1);
+  section.answer = kAnswer;
+  section.would_change = kWouldChange;
+  result.claims = ClaimsOnFirst(comparison);
+  for (Claim& claim : ClaimsOnStrings(strings)) result.claims.push_back(std::move(claim));
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "followers-cs",
                                          "Compromised safety by follower", true),
                      comparison.FigureOf("max_follower_drac_mps2", "followers-drac",
@@ -253,7 +287,7 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
                      comparison.FigureOf("min_follower_ttc_s", "followers-ttc",
                                          "Smallest time to collision of the follower", true),
                      comparison.FigureOf("collided", "followers-collisions", "Collisions", true)};
-  section.tables = {comparison.TableOfVariant(0, kTableMeasures),
+  section.tables = {MainTable(comparison), comparison.TableOfVariant(0, kTableMeasures),
                     comparison.TableOfVariant(1, kTableMeasures)};
   section.method = fmt::format(
       "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
