@@ -71,6 +71,9 @@ void MeasureAccumulator::AddAuthority(const Sample& sample) {
   if (!sample.fog_present)
     human_in_clear_air_.Add(models::HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
+  if (previous_->lambda_automation == 0 && previous_->lambda_human == 0) {
+    measures_.minimal_risk_s += sample.time_s - previous_->time_s;
+  }
   if (models::HumanIsEngaged(previous_->lambda_human)) {
     measures_.human_time_s += sample.time_s - previous_->time_s;
   }

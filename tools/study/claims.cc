@@ -4,17 +4,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 
 #include <fmt/format.h>
+
+#include "tools/stats/holm.h"
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 namespace fogline::study {
 namespace {
 
 constexpr double kLevel = 0.05;
-constexpr double kHalfLevel = kLevel / 2;
 
 std::string NameWithUnit(std::string_view measure) {
   const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
@@ -135,39 +134,14 @@ Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
 }
 
 double PValueOf(const Claim& claim) {
-  if (claim.p && claim.sign != Sign::kEqual) return *claim.p;
-  const Estimate& difference = claim.difference;
-  if (!difference.has_interval() || difference.infinite > 0 || difference.n < 2) return 1;
-  const boost::math::students_t t(static_cast<double>(difference.n - 1));
-  const double error = (difference.high - difference.low) / 2 /
-                       boost::math::quantile(boost::math::complement(t, kHalfLevel));
-  const auto above = [&](double distance) {  // P(T > distance / error)
-    if (error > 0) return boost::math::cdf(boost::math::complement(t, distance / error));
-    return distance > 0 ? 0.0 : 1.0;
-  };
-  const double size = std::abs(difference.mean);
-  if (claim.sign == Sign::kEqual) return above(claim.margin - size);
-  return std::min(1.0, 2 * above(size));
-}
-
-std::vector<double> Holm(std::span<const double> p) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p[i]; });
-  std::vector<double> adjusted(p.size());
-  double largest = 0;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const auto left = static_cast<double>(order.size() - rank);
-    largest = std::max(largest, std::min(1.0, left * p[order[rank]]));
-    adjusted[order[rank]] = largest;
-  }
-  return adjusted;
+  if (claim.sign == Sign::kEqual) return PValueOfEqual(claim.difference, claim.margin);
+  return claim.p.value_or(PValueOfSign(claim.difference));
 }
 
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs) {
   std::vector<double> p;
   for (const Claim& claim : claims) p.push_back(PValueOf(claim));
-  const std::vector<double> adjusted = Holm(p);
+  const std::vector<double> adjusted = stats::Holm(p);
   std::vector<report::StudyClaim> checked;
   for (std::size_t i = 0; i < claims.size(); ++i) {
     const Claim& claim = claims[i];

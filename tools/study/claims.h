@@ -31,14 +31,8 @@ Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellNa
 Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
                  std::string_view measure, Sign sign, double level, double margin = 0);
 
-/// p-value of the claim: of the two-sided t test for a sign; of two one-sided t tests for kEqual
-/// (Schuirmann 1987). The standard error is that of the estimate's interval, so that the interval
-/// may also come from a bootstrap. 1 without an interval.
+/// p-value of the claim, not adjusted.
 double PValueOf(const Claim& claim);
-
-/// Adjusts p-values for their number (Holm 1979): the probability of any false claim among true
-/// null hypotheses stays below the level.
-std::vector<double> Holm(std::span<const double> p);
 
 /// Checks the claims of one study together. A claim holds if the difference has its sign and the
 /// p-value adjusted by Holm is below 5 %. It fails if it does not hold. With `few_runs`, a claim

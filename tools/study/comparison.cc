@@ -10,6 +10,7 @@
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/report/measure_text.h"
+#include "tools/stats/holm.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
@@ -178,10 +179,38 @@ std::size_t Comparison::VariantNamed(std::string_view name) const {
   return PlaceOf(variants_, name, "variant");
 }
 
+std::vector<Estimate> Comparison::Differences(std::size_t reference) const {
+  std::vector<Estimate> differences;
+  for (std::size_t c = 0; c < cases_.size(); ++c) {
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      for (const ComparedMeasure& measure : ComparedMeasures()) {
+        differences.push_back(v == reference
+                                  ? Estimate{}
+                                  : Difference({c, v}, {c, reference}, measure.name));
+      }
+    }
+  }
+  return differences;
+}
+
+std::int64_t Comparison::Comparisons(std::size_t reference) const {
+  return std::ranges::count_if(Differences(reference), &Estimate::has_interval);
+}
+
 std::string Comparison::Csv(std::size_t reference) const {
   std::string csv =
       "case,variant,measure,unit,n,infinite,mean,std,ci95_low,ci95_high,reference,difference_n,"
-      "difference_infinite,difference,difference_ci95_low,difference_ci95_high\n";
+      "difference_infinite,difference,difference_ci95_low,difference_ci95_high,effect_size,p,"
+      "p_holm\n";
+  const std::vector<Estimate> differences = Differences(reference);
+  // Only differences with an interval are tests, and count.
+  std::vector<double> p;
+  for (const Estimate& difference : differences) {
+    if (difference.has_interval()) p.push_back(PValueOfSign(difference));
+  }
+  const std::vector<double> adjusted = stats::Holm(p);
+  auto difference = differences.begin();
+  std::size_t test = 0;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMeasure& measure : ComparedMeasures()) {
@@ -191,13 +220,20 @@ std::string Comparison::Csv(std::size_t reference) const {
           mean.low = share.lower;
           mean.high = share.upper;
         }
-        const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cases_[c].name,
                            variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
                            CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
-                           CsvText(mean.high), variants_[reference].name, difference.n,
-                           difference.infinite, CsvText(difference.mean), CsvText(difference.low),
-                           CsvText(difference.high));
+                           CsvText(mean.high), variants_[reference].name, difference->n,
+                           difference->infinite, CsvText(difference->mean),
+                           CsvText(difference->low), CsvText(difference->high),
+                           CsvText(difference->mean / difference->deviation));
+        if (difference->has_interval()) {
+          csv += fmt::format(",{},{}\n", CsvText(p[test]), CsvText(adjusted[test]));
+          ++test;
+        } else {
+          csv += ",,\n";
+        }
+        ++difference;
       }
     }
   }

@@ -92,7 +92,11 @@ class Comparison {
   std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;
 
-  /// A summary of every measure of every cell, and its difference from variant `reference`.
+  /// Number of differences from variant `reference` that have an interval.
+  std::int64_t Comparisons(std::size_t reference) const;
+  /// A summary of every measure of every cell, and its difference from variant `reference`: with
+  /// its interval, its effect size (mean by standard deviation of the paired differences, Cohen's
+  /// d_z), and its p-value, also adjusted by Holm for all differences of the file.
   std::string Csv(std::size_t reference) const;
   /// Points with intervals: either the variants are on the x axis and each case is a series, or the
   /// other way round.
@@ -108,6 +112,9 @@ class Comparison {
                                     std::span<const std::string_view> measures) const;
 
  private:
+  /// The differences from variant `reference`, by case, variant and measure; those of the reference
+  /// itself are empty.
+  std::vector<Estimate> Differences(std::size_t reference) const;
   /// All values of a cell, measure by measure.
   std::span<const double> AllOf(Cell cell) const;
 

@@ -71,6 +71,7 @@ const Study* FindStudy(std::string_view name);
 // Each of these functions has a file of its own.
 StudyResult RunConflictStudy(const StudyContext& context);
 StudyResult RunPolicyStudy(const StudyContext& context);
+StudyResult RunTakeOverStudy(const StudyContext& context);
 StudyResult RunTransferStudy(const StudyContext& context);
 StudyResult RunThresholdStudy(const StudyContext& context);
 StudyResult RunDriverStudy(const StudyContext& context);

@@ -11,8 +11,6 @@
 namespace fogline {
 namespace {
 
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr std::int64_t kSeeds = 20;
@@ -146,16 +144,6 @@ TEST(ClaimsTest, ANameThatIsNotThereIsRefused) {
   EXPECT_THROW(claim({"mist", "none"}, "steps"), std::out_of_range);
   EXPECT_THROW(claim({"fog", "traded"}, "steps"), std::out_of_range);
   EXPECT_THROW(claim({"fog", "none"}, "beauty"), std::out_of_range);
-}
-
-// The values of R's p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm").
-TEST(HolmTest, AdjustsForTheNumberOfTestsStepByStep) {
-  constexpr double kSame = 1e-12;
-  EXPECT_THAT(study::Holm(std::array{0.01, 0.04, 0.03, 0.005}),
-              ElementsAre(DoubleNear(0.03, kSame), DoubleNear(0.06, kSame), DoubleNear(0.06, kSame),
-                          DoubleNear(0.02, kSame)));
-  EXPECT_THAT(study::Holm(std::array{0.6, 0.9}), ElementsAre(1.0, 1.0));
-  EXPECT_TRUE(study::Holm({}).empty());
 }
 
 TEST(ClaimsTest, ManyClaimsNeedMoreEvidenceThanOne) {
