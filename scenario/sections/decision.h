@@ -21,6 +21,7 @@ constexpr auto ChoicesOf(Policy) {
       {"adaptive", "as traded, with a threshold that moves with the situation"},
       {"bayes", "as traded, with the threshold of least expected cost"},
       {"availability", "as isolate, and as traded if the driver can be there in time"},
+      {"traded_isolating", "as traded; the automation drives without the sensor that is to blame"},
   });
 }
 static_assert(ChoiceNames<Policy>::kNames[static_cast<std::size_t>(Policy::kNone)] == "none");

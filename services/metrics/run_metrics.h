@@ -85,6 +85,8 @@ struct RunMetrics {
   std::optional<double> max_conflict_clear_m;
   /// Root of the mean square of fused distance minus true gap over the steps with a track, m.
   std::optional<double> rms_fusion_error_m;
+  /// Time in a minimal risk manoeuvre, in which neither automation nor human drives, s.
+  double minimal_risk_s = 0;
 };
 
 /// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
@@ -240,6 +242,8 @@ void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
   number("max_conflict_clear_m", m.max_conflict_clear_m, "m", "largest conflict z in clear air");
   number("rms_fusion_error_m", m.rms_fusion_error_m, "m",
          "root mean square of fused distance minus true gap");
+  number("minimal_risk_s", m.minimal_risk_s, "s",
+         "time in a minimal risk manoeuvre, in which neither automation nor human drives");
 }
 
 }  // namespace fogline::metrics

@@ -363,7 +363,16 @@ function build() {
   for (const {chart} of charts) chart.destroy();
   charts = [];
   readTheme();
-  figures.forEach(makeChart);
+  figures.filter(isUnfolded).forEach(makeChart);
+}
+
+/** Whether a figure has a width: the content of a closed <details> has none. */
+function isUnfolded({id}) {
+  return document.getElementById(id).closest("details:not([open])") == null;
+}
+
+for (const folded of document.querySelectorAll("details.more-figures")) {
+  folded.addEventListener("toggle", () => { if (folded.open) build(); });
 }
 
 new ResizeObserver(() => {

@@ -1,5 +1,7 @@
 #include "tools/report/study_page.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -65,34 +67,94 @@ std::string Row(const std::vector<std::string>& cells, std::string_view first,
   return row + "</tr>\n";
 }
 
+std::string ScrollingTable(std::string_view caption, const std::string& head,
+                           const std::string& body) {
+  return fmt::format(
+      "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\"><table><thead>{}"
+      "</thead><tbody>\n{}</tbody></table></div>\n",
+      EscapeHtml(caption), head, body);
+}
+
 std::string TableElement(const StudyTable& table) {
   std::string body;
   for (const std::vector<std::string>& row : table.rows) body += Row(row, "th scope=\"row\"", "td");
-  return fmt::format(
-      "<details class=\"values\"><summary>{0}</summary>\n<div class=\"scroll\" role=\"region\" "
-      "tabindex=\"0\" aria-label=\"{0}\"><table><thead>{1}</thead><tbody>\n{2}</tbody></table>"
-      "</div></details>\n",
-      EscapeHtml(table.caption), Row(table.columns, "th scope=\"col\"", "th scope=\"col\""), body);
+  return ScrollingTable(table.caption, Row(table.columns, "th scope=\"col\"", "th scope=\"col\""),
+                        body);
+}
+
+std::string Folded(std::string_view kind, std::string_view summary, std::string_view content) {
+  return fmt::format("<details class=\"{}\"><summary>{}</summary>\n{}</details>\n", kind,
+                     EscapeHtml(summary), content);
+}
+
+/// "9 of 9 claims hold"; names those that fail or are open.
+std::string ClaimsText(const std::vector<StudyClaim>& claims) {
+  const auto count = [&](ClaimState state) {
+    return std::ranges::count(claims, state, &StudyClaim::state);
+  };
+  std::string text = fmt::format("{} of {} claims hold", count(ClaimState::kHolds), claims.size());
+  if (const auto fail = count(ClaimState::kFails)) text += fmt::format(", {} fail", fail);
+  if (const auto open = count(ClaimState::kOpen)) {
+    text += fmt::format(", {} are open because of too few runs", open);
+  }
+  return text;
+}
+
+constexpr std::array<std::string_view, 5> kClaimColumns{"claim", "compared", "expected", "found",
+                                                        "state"};
+
+std::vector<std::string> CellsOf(const StudyClaim& claim) {
+  return {claim.says, claim.compared, claim.expected, claim.found, std::string(Text(claim.state))};
+}
+
+std::string ClaimsElement(const std::vector<StudyClaim>& claims) {
+  if (claims.empty()) return "";
+  std::string body;
+  for (const StudyClaim& claim : claims) {
+    std::string row = Row(CellsOf(claim), "th scope=\"row\"", "td");
+    row.insert(std::string_view("<tr").size(),
+               fmt::format(" class=\"claim-{}\"", Text(claim.state)));
+    body += row;
+  }
+  const std::vector<std::string> columns(kClaimColumns.begin(), kClaimColumns.end());
+  const std::string text = ClaimsText(claims);
+  return Folded("claims", text,
+                ScrollingTable(text, Row(columns, "th scope=\"col\"", "th scope=\"col\""), body));
 }
 
 std::string SectionElement(const StudySection& section) {
-  std::string findings;
-  for (const std::string& finding : section.findings) {
-    findings += fmt::format("<p>{}</p>\n", EscapeHtml(finding));
-  }
+  std::string first;
   std::string figures;
   for (const StudyFigure& figure : section.figures) {
-    figures += FigureElement(figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption),
-                             EscapeHtml(figure.y_label) + ScaleText(figure));
+    (first.empty() ? first : figures) +=
+        FigureElement(figure.id, EscapeHtml(figure.title), EscapeHtml(figure.caption),
+                      EscapeHtml(figure.y_label) + ScaleText(figure));
   }
+  std::string main_table;
   std::string tables;
-  for (const StudyTable& table : section.tables) tables += TableElement(table);
+  for (const StudyTable& table : section.tables) {
+    if (main_table.empty()) {
+      main_table = fmt::format("<p class=\"caption\">{}</p>\n{}", EscapeHtml(table.caption),
+                               TableElement(table));
+    } else {
+      tables += Folded("values", table.caption, TableElement(table));
+    }
+  }
+  if (!figures.empty()) {
+    figures = Folded("more-figures", "More figures",
+                     fmt::format("<div class=\"figures\">\n{}</div>\n", figures));
+  }
   return fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n"
-      "<p class=\"question\">{2}</p>\n<div class=\"finding\">\n{3}</div>\n"
-      "<p class=\"note\">{4}</p>\n<div class=\"figures\">\n{5}</div>\n{6}</section>\n",
-      section.name, EscapeHtml(section.title), EscapeHtml(section.question), findings,
-      EscapeHtml(section.method), figures, tables);
+      "<p class=\"question\">{2}</p>\n<div class=\"finding\">\n<p>{3}</p>\n{4}</div>\n"
+      "<div class=\"figures\">\n{5}</div>\n{6}<p class=\"note\"><b>What would change this "
+      "answer?</b> {7}</p>\n{8}{9}{10}</section>\n",
+      section.name, EscapeHtml(section.title), EscapeHtml(section.question),
+      EscapeHtml(section.answer), ClaimsElement(section.claims), first, main_table,
+      EscapeHtml(section.would_change), figures,
+      Folded("method", "Method",
+             fmt::format("<p class=\"note\">{}</p>\n", EscapeHtml(section.method))),
+      tables);
 }
 
 /// A row of a Markdown table.
@@ -103,7 +165,28 @@ std::string TextRow(const std::vector<std::string>& cells) {
   return row + "\n";
 }
 
+std::string TextTable(const std::vector<std::string>& columns,
+                      const std::vector<std::vector<std::string>>& rows, bool numbers) {
+  std::string text = TextRow(columns) + "|";
+  for (std::size_t i = 0; i < columns.size(); ++i) text += i > 0 && numbers ? "---:|" : "---|";
+  text += "\n";
+  for (const std::vector<std::string>& row : rows) text += TextRow(row);
+  return text;
+}
+
 }  // namespace
+
+std::string_view Text(ClaimState state) {
+  switch (state) {
+    case ClaimState::kHolds:
+      return "holds";
+    case ClaimState::kFails:
+      return "fails";
+    case ClaimState::kOpen:
+      return "open";
+  }
+  return "";
+}
 
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections) {
   std::string content;
@@ -129,17 +212,25 @@ std::string MakeStudyPage(const std::string& command, std::span<const StudySecti
 }
 
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections) {
-  std::string text = fmt::format("# Studies\n\nMade by `{}`.\n", command);
+  std::string text = fmt::format(
+      "# Studies\n\nMade by `{}`. The same command writes all rows as CSV, and a page with "
+      "figures.\n",
+      command);
   for (const StudySection& section : sections) {
-    text += fmt::format("\n## {}\n\n*{}*\n", section.title, section.question);
-    for (const std::string& finding : section.findings) text += fmt::format("\n{}\n", finding);
-    text += fmt::format("\n{}\n", section.method);
-    for (const StudyTable& table : section.tables) {
-      text += fmt::format("\n{}:\n\n{}|", table.caption, TextRow(table.columns));
-      for (std::size_t i = 0; i < table.columns.size(); ++i) text += i == 0 ? "---|" : "---:|";
-      text += "\n";
-      for (const std::vector<std::string>& row : table.rows) text += TextRow(row);
+    text += fmt::format("\n## {}\n\n*{}*\n\n{}\n\n**What would change this answer?** {}\n",
+                        section.title, section.question, section.answer, section.would_change);
+    if (!section.tables.empty()) {
+      const StudyTable& table = section.tables.front();
+      text += fmt::format("\n{}:\n\n{}", table.caption, TextTable(table.columns, table.rows, true));
     }
+    if (!section.claims.empty()) {
+      std::vector<std::vector<std::string>> rows;
+      for (const StudyClaim& claim : section.claims) rows.push_back(CellsOf(claim));
+      text += fmt::format("\n{}:\n\n{}", ClaimsText(section.claims),
+                          TextTable({kClaimColumns.begin(), kClaimColumns.end()}, rows, false));
+    }
+    text +=
+        fmt::format("\n<details><summary>Method</summary>\n\n{}\n\n</details>\n", section.method);
   }
   return text;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fogline::report {
@@ -42,12 +43,32 @@ struct StudyTable {
   std::vector<std::vector<std::string>> rows;  // the first cell is the name of the row
 };
 
-/// Content of one study. Every text may contain any characters; it is escaped.
+enum class ClaimState {
+  kHolds,
+  kFails,
+  kOpen,  // too few runs to decide
+};
+
+/// A statement on which an answer rests, and what the runs say of it.
+struct StudyClaim {
+  std::string says;
+  std::string compared;
+  std::string expected;
+  std::string found;
+  ClaimState state = ClaimState::kOpen;
+};
+/// "holds", "fails" or "open".
+std::string_view Text(ClaimState state);
+
+/// Content of one study. Every text may contain any characters; it is escaped. A reader sees
+/// question, answer, claims, first figure and first table at once, and unfolds the rest.
 struct StudySection {
   std::string name;  // such as "policy"
   std::string title;
   std::string question;
-  std::vector<std::string> findings;  // a paragraph each
+  std::string answer;
+  std::string would_change;  // what would change the answer
+  std::vector<StudyClaim> claims;
   std::string method;
   std::vector<StudyFigure> figures;
   std::vector<StudyTable> tables;
@@ -56,7 +77,8 @@ struct StudySection {
 /// The page. @param command that makes it, such as "fogline study all"
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections);
 
-/// The same in Markdown without figures, for places that do not show HTML.
+/// The same in Markdown without figures, for places that do not show HTML. It has the first table
+/// of each study only.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 
 }  // namespace fogline::report

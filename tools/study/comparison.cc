@@ -10,6 +10,7 @@
 #include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/report/metric_text.h"
+#include "tools/stats/holm.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
@@ -27,6 +28,14 @@ std::vector<ComparedMetric> AllMetrics() {
         all.push_back({std::string(name), std::string(unit), std::string(description)});
       });
   return all;
+}
+
+/// Index of the element of this name.
+template <class Named>
+std::size_t PlaceOf(const std::vector<Named>& all, std::string_view name, std::string_view kind) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  if (found == all.end()) throw std::out_of_range(fmt::format("no {} {}", kind, name));
+  return static_cast<std::size_t>(found - all.begin());
 }
 
 /// The scenario of every cell, case by case. Each case begins with its run without traded control.
@@ -169,27 +178,63 @@ std::int64_t Comparison::PairsCutShort(Cell a, Cell b) const {
   return pairs;
 }
 
+std::size_t Comparison::CaseNamed(std::string_view name) const {
+  return PlaceOf(cases_, name, "case");
+}
+
 std::size_t Comparison::VariantNamed(std::string_view name) const {
-  for (std::size_t i = 0; i < variants_.size(); ++i) {
-    if (variants_[i].name == name) return i;
+  return PlaceOf(variants_, name, "variant");
+}
+
+std::vector<Estimate> Comparison::Differences(std::size_t reference) const {
+  std::vector<Estimate> differences;
+  for (std::size_t c = 0; c < cases_.size(); ++c) {
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      for (const ComparedMeasure& measure : ComparedMetrics()) {
+        differences.push_back(v == reference
+                                  ? Estimate{}
+                                  : Difference({c, v}, {c, reference}, measure.name));
+      }
+    }
   }
-  throw std::out_of_range("no variant " + std::string(name));
+  return differences;
+}
+
+std::int64_t Comparison::Comparisons(std::size_t reference) const {
+  return std::ranges::count_if(Differences(reference), &Estimate::has_interval);
 }
 
 std::string Comparison::Csv(std::size_t reference) const {
   std::string csv =
       "case,variant,measure,unit,n,infinite,mean,std,ci95_low,ci95_high,reference,difference_n,"
-      "difference_infinite,difference,difference_ci95_low,difference_ci95_high\n";
+      "difference_infinite,difference,difference_ci95_low,difference_ci95_high,effect_size,p,"
+      "p_holm\n";
+  const std::vector<Estimate> differences = Differences(reference);
+  // Only differences with an interval are tests, and count.
+  std::vector<double> p;
+  for (const Estimate& difference : differences) {
+    if (difference.has_interval()) p.push_back(PValueOfSign(difference));
+  }
+  const std::vector<double> adjusted = stats::Holm(p);
+  auto difference = differences.begin();
+  std::size_t test = 0;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMetric& measure : ComparedMetrics()) {
         const Estimate mean = Point({c, v}, measure.name);
-        const Estimate difference = Difference({c, v}, {c, reference}, measure.name);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cases_[c].name,
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cases_[c].name,
                            variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
                            CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
-                           CsvText(mean.high), variants_[reference].name, difference.n,
-                           difference.infinite, CsvText(difference));
+                           CsvText(mean.high), variants_[reference].name, difference->n,
+                           difference->infinite, CsvText(*difference),
+                           CsvText(difference->mean / difference->deviation));
+        if (difference->has_interval()) {
+          csv += fmt::format(",{},{}\n", CsvText(p[test]), CsvText(adjusted[test]));
+          ++test;
+        } else {
+          csv += ",,\n";
+        }
+        ++difference;
       }
     }
   }
@@ -227,19 +272,21 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
   return figure;
 }
 
-report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell> rows,
-                                       bool name_cases,
+report::StudyTable Comparison::TableOf(std::string caption, std::string kind,
+                                       std::span<const NamedCell> rows,
                                        std::span<const std::string_view> measures) const {
-  report::StudyTable table{.caption = std::move(caption),
-                           .columns = {name_cases ? "case" : "variant"}};
+  report::StudyTable table{
+      .caption = fmt::format("{}: means over {} seeds [95 % confidence intervals]",
+                             std::move(caption), seeds_),
+      .columns = {std::move(kind)}};
   for (const std::string_view measure : measures) {
     const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
     table.columns.push_back(info.unit.empty() ? info.name
                                               : fmt::format("{} ({})", info.name, info.unit));
   }
-  for (const Cell cell : rows) {
+  for (const auto& [name, cell] : rows) {
     std::vector<std::string>& row = table.rows.emplace_back();
-    row.push_back(name_cases ? cases_[cell.test_case].name : variants_[cell.variant].name);
+    row.push_back(name);
     for (const std::string_view measure : measures) {
       row.push_back(measure == "collided" ? Text(Collisions(cell)) : Text(Mean(cell, measure)));
     }
@@ -249,20 +296,18 @@ report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell
 
 report::StudyTable Comparison::TableOfCase(std::size_t test_case,
                                            std::span<const std::string_view> measures) const {
-  std::vector<Cell> rows;
-  for (std::size_t v = 0; v < variants_.size(); ++v) rows.push_back({test_case, v});
-  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
-                             cases_[test_case].name, seeds_),
-                 rows, false, measures);
+  std::vector<NamedCell> rows;
+  for (std::size_t v = 0; v < variants_.size(); ++v) {
+    rows.push_back({variants_[v].name, {test_case, v}});
+  }
+  return TableOf(cases_[test_case].name, "variant", rows, measures);
 }
 
 report::StudyTable Comparison::TableOfVariant(std::size_t variant,
                                               std::span<const std::string_view> measures) const {
-  std::vector<Cell> rows;
-  for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({c, variant});
-  return TableOf(fmt::format("{}: means over {} seeds [95 % confidence intervals]",
-                             variants_[variant].name, seeds_),
-                 rows, true, measures);
+  std::vector<NamedCell> rows;
+  for (std::size_t c = 0; c < cases_.size(); ++c) rows.push_back({cases_[c].name, {c, variant}});
+  return TableOf(variants_[variant].name, "case", rows, measures);
 }
 
 void AddPoint(report::StudySeries& series, double x, const Estimate& estimate) {

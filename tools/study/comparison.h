@@ -54,6 +54,12 @@ struct Cell {
   std::size_t variant = 0;
 };
 
+/// A cell with its name in a table.
+struct NamedCell {
+  std::string name;
+  Cell cell;
+};
+
 class Comparison {
  public:
   /// Runs all cells. @throws InputError, StudyStopped
@@ -88,27 +94,35 @@ class Comparison {
   /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
   /// differ in length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
-  /// Index of the variant of this name. @throws std::out_of_range
+  /// Index of the case, or of the variant, of this name. @throws std::out_of_range
+  std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;
 
-  /// A summary of every measure of every cell, and its difference from variant `reference`.
+  /// Number of differences from variant `reference` that have an interval.
+  std::int64_t Comparisons(std::size_t reference) const;
+  /// A summary of every measure of every cell, and its difference from variant `reference`: with
+  /// its interval, its effect size (mean by standard deviation of the paired differences, Cohen's
+  /// d_z), and its p-value, also adjusted by Holm for all differences of the file.
   std::string Csv(std::size_t reference) const;
   /// Points with intervals: either the variants are on the x axis and each case is a series, or the
   /// other way round.
   report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                                bool cases_on_axis = false) const;
-  /// One row for each variant (or, if there is a single variant, for each case) with means and
-  /// intervals.
+  /// A row with means and intervals for each of these cells.
+  report::StudyTable TableOf(std::string caption, std::string kind, std::span<const NamedCell> rows,
+                             std::span<const std::string_view> measures) const;
+  /// One row for each variant of a case, or for each case of a variant.
   report::StudyTable TableOfCase(std::size_t test_case,
                                  std::span<const std::string_view> measures) const;
   report::StudyTable TableOfVariant(std::size_t variant,
                                     std::span<const std::string_view> measures) const;
 
  private:
+  /// The differences from variant `reference`, by case, variant and measure; those of the reference
+  /// itself are empty.
+  std::vector<Estimate> Differences(std::size_t reference) const;
   /// All values of a cell, measure by measure.
   std::span<const double> AllOf(Cell cell) const;
-  report::StudyTable TableOf(std::string caption, std::span<const Cell> rows, bool name_cases,
-                             std::span<const std::string_view> measures) const;
 
   std::vector<StudyCase> cases_;
   std::vector<StudyVariant> variants_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
 #include "tools/report/html.h"
@@ -39,6 +40,17 @@ class Collection {
   std::int64_t infinite_ = 0;
 };
 
+/// P(T > distance / standard error) with Student's t.
+double ProbabilityAbove(const Estimate& estimate, double distance) {
+  constexpr double kHalfLevel = 0.025;  // of the interval
+  if (!estimate.has_interval() || estimate.infinite > 0 || estimate.n < 2) return 1;
+  const boost::math::students_t t(static_cast<double>(estimate.n - 1));
+  const double error = (estimate.high - estimate.low) / 2 /
+                       boost::math::quantile(boost::math::complement(t, kHalfLevel));
+  if (error > 0) return boost::math::cdf(boost::math::complement(t, distance / error));
+  return distance > 0 ? 0.0 : 1.0;
+}
+
 }  // namespace
 
 Estimate EstimateOf(std::span<const double> values) {
@@ -62,6 +74,14 @@ Verdict VerdictOf(const Estimate& difference) {
   if (difference.low > 0) return Verdict::kMore;
   if (difference.high < 0) return Verdict::kLess;
   return Verdict::kUndecided;
+}
+
+double PValueOfSign(const Estimate& estimate) {
+  return std::min(1.0, 2 * ProbabilityAbove(estimate, std::abs(estimate.mean)));
+}
+
+double PValueOfEqual(const Estimate& estimate, double margin) {
+  return ProbabilityAbove(estimate, margin - std::abs(estimate.mean));
 }
 
 std::string Text(double value, int decimals) { return report::Decimal(value, decimals); }

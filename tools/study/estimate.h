@@ -45,6 +45,12 @@ enum class Verdict {
 };
 Verdict VerdictOf(const Estimate& difference);
 
+/// p-value that a mean has its sign by chance: the two-sided t test. The standard error is that of
+/// the interval, so that the interval may also come from a bootstrap. 1 without an interval.
+double PValueOfSign(const Estimate& estimate);
+/// p-value that a mean lies farther from 0 than `margin`: two one-sided t tests (Schuirmann 1987).
+double PValueOfEqual(const Estimate& estimate, double margin);
+
 /// "12.3 [12.0, 12.6]"; "–" without a mean; "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
 /// The same with 2 to 6 decimals, so that the interval has two digits.

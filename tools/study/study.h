@@ -1,4 +1,5 @@
-// A study: a question, runs that answer it, and the answer in words, figures and files.
+// A study: a question, runs that answer it, and the answer in words, claims, figures and files. A
+// person writes the answer, without numbers. The claims tie it to the numbers (claims.h).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "tools/report/study_page.h"
+#include "tools/study/claim.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline::study {
@@ -45,7 +47,8 @@ struct StudyFile {
 
 /// Result of a study. It does not depend on the number of threads, the clock or the machine.
 struct StudyResult {
-  report::StudySection section;
+  report::StudySection section;  // without its claims, until they are checked
+  std::vector<Claim> claims;
   std::vector<StudyFile> files;
   std::int64_t runs = 0;
 };
@@ -69,6 +72,7 @@ const Study* FindStudy(std::string_view name);
 // Each of these functions has a file of its own.
 StudyResult RunConflictStudy(const StudyContext& context);
 StudyResult RunPolicyStudy(const StudyContext& context);
+StudyResult RunTakeOverStudy(const StudyContext& context);
 StudyResult RunTransferStudy(const StudyContext& context);
 StudyResult RunThresholdStudy(const StudyContext& context);
 StudyResult RunDriverStudy(const StudyContext& context);

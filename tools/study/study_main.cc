@@ -12,6 +12,7 @@
 #include "common/atomic_file.h"
 #include "common/errors.h"
 #include "common/interrupt.h"
+#include "common/process/console.h"
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
@@ -19,6 +20,7 @@
 #include "tools/cli/own_program.h"
 #include "tools/cli/verb_program.h"
 #include "tools/report/study_page.h"
+#include "tools/study/claims.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline::study {
@@ -102,6 +104,7 @@ Made Make(const Study& study, const StudyArguments& arguments) {
         fmt::format("interrupted in study {}; its files are not written", study.name));
   }
   report::StudySection& section = made.result.section;
+  section.claims = CheckClaims(made.result.claims, seeds.count() < study.seeds.count());
   section.name = study.name;
   section.title = study.title;
   section.question = study.question;
@@ -122,6 +125,18 @@ std::string CommandOf(const StudyArguments& arguments) {
   return command;
 }
 
+nlohmann::ordered_json ClaimsJson(const std::vector<report::StudyClaim>& claims) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const report::StudyClaim& claim : claims) {
+    json.push_back({{"says", claim.says},
+                    {"compared", claim.compared},
+                    {"expected", claim.expected},
+                    {"found", claim.found},
+                    {"state", report::Text(claim.state)}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json ToJson(const StudyArguments& arguments, const std::vector<Made>& all,
                               const std::filesystem::path& page,
                               const std::filesystem::path& text) {
@@ -137,7 +152,8 @@ nlohmann::ordered_json ToJson(const StudyArguments& arguments, const std::vector
     json["studies"].push_back({{"name", made.study->name},
                                {"seeds", fmt::format("{}:{}", made.seeds.first, made.seeds.last)},
                                {"runs", made.result.runs},
-                               {"findings", made.result.section.findings},
+                               {"answer", made.result.section.answer},
+                               {"claims", ClaimsJson(made.result.section.claims)},
                                {"files", std::move(files)}});
   }
   return json;
@@ -145,7 +161,10 @@ nlohmann::ordered_json ToJson(const StudyArguments& arguments, const std::vector
 
 void PrintText(const StudyArguments& arguments, const Made& made) {
   fmt::print("{} ({} runs)\n", made.study->title, made.result.runs);
-  for (const std::string& finding : made.result.section.findings) fmt::print("  {}\n", finding);
+  fmt::print("  {}\n", made.result.section.answer);
+  for (const report::StudyClaim& claim : made.result.section.claims) {
+    fmt::print("  {:5} {}\n", report::Text(claim.state), claim.says);
+  }
   for (const StudyFile& file : made.result.files) {
     fmt::print("{}\n", PathText(arguments.out / file.name));
   }
@@ -196,7 +215,14 @@ int RunStudy(const StudyArguments& arguments) {
   } else {
     fmt::print("{}\n{}\n", PathText(page), PathText(text));
   }
-  return kDone;
+  int exit_code = kDone;
+  for (const Made& made : all) {
+    const std::string failed = FailedText(made.study->name, made.result.section.claims);
+    if (failed.empty()) continue;
+    Complain(failed);
+    exit_code = kCheckFailed;
+  }
+  return exit_code;
 }
 
 void AddStudy(CLI::App& app, cli::Action& action) {
@@ -213,20 +239,21 @@ void AddStudy(CLI::App& app, cli::Action& action) {
   verb->add_option("--scenarios", arguments->scenarios,
                    "Folder with paper.json and dense_fog.json, which the studies vary")
       ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "Print findings and files as JSON");
+  verb->add_flag("--json", arguments->json, "Print answers, claims and files as JSON");
   std::string table;
   for (const Study& study : Studies()) {
     table += fmt::format("  {:<11}{} ({} seeds)\n", study.name, study.title, study.seeds.count());
   }
-  cli::ShowExitCodes(*verb, {.interruptible = true});
+  cli::ShowExitCodes(*verb, {.check_failed = "a claim fails", .interruptible = true});
   verb->footer(fmt::format(
       "Studies:\n{}\n"
-      "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with findings, figures and tables (of "
-      "all:\n"
-      "studies.html, studies.md). Findings are made from the numbers. Equal seeds have equal "
-      "noise\n"
-      "in all variants, and differences are paired; intervals are those of 95 %. The files do not\n"
-      "depend on --jobs.\n\n"
+      "Writes FOLDER/NAME.csv, and NAME.html and NAME.md with answer, claims, figures and tables\n"
+      "(of all: studies.html, studies.md). Each answer rests on claims. The study checks them "
+      "against its\n"
+      "numbers, and ends with 1 if one of them fails. With fewer seeds than the study's own "
+      "number,\n"
+      "a claim can stay open. Equal seeds have equal noise in all variants, and differences are\n"
+      "paired; intervals are those of 95 %. The files do not depend on --jobs.\n\n"
       "Examples:\n  fogline study policy\n"
       "  fogline study conflict --seeds 1:20 --out /tmp/conflict\n"
       "  fogline study all --out docs/studies",

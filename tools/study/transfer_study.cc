@@ -1,21 +1,22 @@
 // Study `transfer`: ways to hand over the control of the car.
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <fmt/format.h>
 
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 
 namespace fogline::study {
 namespace {
 
 /// Limit of ISO 15622 above 20 m/s, and the limit of comfort: m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
-/// Largest tolerable loss of safety by a smooth transfer, points of SI.
+/// A loss of safety that does not matter, points of SI.
 constexpr double kTolerableLoss = 3;
+
+constexpr std::string_view kPaperFog = "bias fog";
+constexpr std::string_view kDenseFog = "beam fog";
 
 std::vector<StudyVariant> WaysToTransfer() {
   std::vector<StudyVariant> variants;
@@ -34,108 +35,54 @@ constexpr std::array<std::string_view, 8> kTransferTable{
     "max_handover_jerk_mps3", "max_handover_jump_mps2", "si_pct",         "rhe_pct",
     "max_abs_jerk_mps3",      "rms_jerk_mps3",          "transfers_pmin", "collided"};
 
-double Greatest(std::span<const double> values) {
-  double greatest = -1;
-  for (const double value : values) {
-    if (!std::isnan(value)) greatest = std::max(greatest, value);
-  }
-  return greatest;
-}
+constexpr std::string_view kTransferAnswer =
+    "In the paper's scenario the plain step is comfortable, so a smooth transfer only costs safety "
+    "there. In dense fog the step jerks more than is comfortable. There the gate is comfortable "
+    "and "
+    "costs no safety.";
+constexpr std::string_view kTransferWouldChange =
+    "A driver who needs time to take over (study takeover), a car whose engine smooths each "
+    "command "
+    "(study vehicle), or another limit of comfort.";
 
-/// Compares jerk and safety of one variant with those of the step.
-std::string FindingOfVariant(const Comparison& comparison, std::size_t c, std::size_t v) {
-  const Estimate jerk = comparison.Mean({c, v}, "max_handover_jerk_mps3");
-  if (jerk.n == 0) {
-    return fmt::format("{} has no hand-over", comparison.variants()[v].name);
-  }
-  const metrics::EventShare comfortable =
-      comparison.AtMost({c, v}, "max_handover_jerk_mps3", kComfortableJerk_mps3);
-  const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
-  return fmt::format("{} has {} m/s3 (at most {:g} in {} of {} runs, worst {}), and its SI is {}",
-                     comparison.variants()[v].name, Text(jerk, 2), kComfortableJerk_mps3,
-                     comfortable.events, comfortable.runs,
-                     Text(Greatest(comparison.Values({c, v}, "max_handover_jerk_mps3")), 2),
-                     DifferenceText(si, "points", 2));
-}
-
-bool IsComfortable(const Comparison& comparison, Cell cell) {
-  const double worst = Greatest(comparison.Values(cell, "max_handover_jerk_mps3"));
-  return worst >= 0 && worst <= kComfortableJerk_mps3;
-}
-
-/// "0.31 [0.31, 0.32] m/s3, worst 0.40".
-std::string JerkText(const Comparison& comparison, Cell cell) {
-  const Estimate jerk = comparison.Mean(cell, "max_handover_jerk_mps3");
-  if (jerk.n == 0) return "no hand-over";
-  return fmt::format("{} m/s3, worst {}", Text(jerk, 2),
-                     Text(Greatest(comparison.Values(cell, "max_handover_jerk_mps3")), 2));
-}
-
-/// Lists the cases in which the step leaves room for an improvement.
-std::string FindingOfStep(const Comparison& comparison) {
-  std::vector<std::string> matters;
-  std::vector<std::string> enough;
-  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    const bool is_comfortable = IsComfortable(comparison, {c, 0});
-    (is_comfortable ? enough : matters)
-        .push_back(
-            fmt::format("{} ({})", comparison.cases()[c].name, JerkText(comparison, {c, 0})));
-  }
-  std::string text = "Where does a smooth transfer matter? The plain step";
-  if (!enough.empty()) {
-    text += fmt::format(" already stays within {:g} m/s3 in every run of {}", kComfortableJerk_mps3,
-                        ListText(enough));
-  }
-  if (!enough.empty() && !matters.empty()) text += "; it";
-  if (!matters.empty()) {
-    text += fmt::format(" does not in {}, so jerk can be reduced there", ListText(matters));
-  }
-  return text + ".";
-}
-
-/// Lists the variants, including the step, that are comfortable in every run and lose no more
-/// safety than is tolerable.
-std::string VerdictText(const Comparison& comparison, std::size_t c) {
-  std::vector<std::string> meet;
-  std::vector<std::string> fail;
-  for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
-    const Estimate si = comparison.Difference({c, v}, {c, 0}, "si_pct");
-    const bool met = IsComfortable(comparison, {c, v}) && si.mean >= -kTolerableLoss;
-    (met ? meet : fail).push_back(comparison.variants()[v].name);
-  }
-  std::string text =
-      fmt::format("At most {:g} m/s3 in every run, and a mean loss of SI of at most {:g} points: ",
-                  kComfortableJerk_mps3, kTolerableLoss);
-  text += meet.empty() ? "none" : ListText(meet);
-  return text + (fail.empty() ? "." : fmt::format("; not {}.", ListText(fail)));
-}
-
-std::string FindingOfScenario(const Comparison& comparison, std::size_t c) {
-  const Estimate step = comparison.Mean({c, 0}, "max_handover_jerk_mps3");
-  std::string text = fmt::format(
-      "{}: the paper's step has a largest jerk at a hand-over of {} m/s3 and an SI of "
-      "{} %. Compared with it, ",
-      comparison.cases()[c].name, Text(step, 2), Text(comparison.Mean({c, 0}, "si_pct"), 2));
-  std::vector<std::string> parts;
-  for (std::size_t v = 1; v < comparison.variants().size(); ++v) {
-    parts.push_back(FindingOfVariant(comparison, c, v));
-  }
-  return fmt::format("{}{}. {}", text, fmt::join(parts, "; "), VerdictText(comparison, c));
+std::vector<Claim> TransferClaims(const Comparison& comparison) {
+  constexpr std::string_view kJerk = "max_handover_jerk_mps3";
+  const CellName step{kPaperFog, "step"};
+  const CellName step_in_dense_fog{kDenseFog, "step"};
+  const CellName gate_in_dense_fog{kDenseFog, "gate"};
+  return {
+      LevelClaim(comparison, "In the paper's scenario the step is comfortable.", step, kJerk,
+                 Sign::kLess, kComfortableJerk_mps3),
+      ClaimOf(comparison, "A linear ramp costs safety there.", {kPaperFog, "linear"}, step, "si_pct",
+              Sign::kLess),
+      ClaimOf(comparison, "So does a sigmoid ramp.", {kPaperFog, "sigmoid"}, step, "si_pct",
+              Sign::kLess),
+      ClaimOf(comparison, "A jerk limit costs no safety there.", {kPaperFog, "jerk_limited"}, step,
+              "si_pct", Sign::kEqual, kTolerableLoss),
+      LevelClaim(comparison, "In dense fog the step is not comfortable.", step_in_dense_fog, kJerk,
+                 Sign::kMore, kComfortableJerk_mps3),
+      LevelClaim(comparison, "The gate is comfortable there.", gate_in_dense_fog, kJerk,
+                 Sign::kLess, kComfortableJerk_mps3),
+      ClaimOf(comparison, "The gate costs no safety there.", gate_in_dense_fog, step_in_dense_fog,
+              "si_pct", Sign::kEqual, kTolerableLoss),
+  };
 }
 
 }  // namespace
 
 StudyResult RunTransferStudy(const StudyContext& context) {
   const Comparison comparison(
-      context, {{"paper.json", "paper.json", {}}, {"dense_fog.json", "dense_fog.json", {}}},
+      context,
+      {{std::string(kPaperFog), "paper.json", {}}, {std::string(kDenseFog), "dense_fog.json", {}}},
       WaysToTransfer());
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
-  section.findings.push_back(FindingOfStep(comparison));
-  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
-    section.findings.push_back(FindingOfScenario(comparison, c));
-    section.tables.push_back(comparison.TableOfCase(c, kTransferTable));
+  section.answer = kTransferAnswer;
+  section.would_change = kTransferWouldChange;
+  result.claims = TransferClaims(comparison);
+  for (const std::string_view name : {kDenseFog, kPaperFog}) {
+    section.tables.push_back(comparison.TableOfCase(comparison.CaseNamed(name), kTransferTable));
   }
   section.figures = {
       comparison.FigureOf("max_handover_jerk_mps3", "transfer-jerk", "Jerk at hand-overs"),

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "services/models/vehicle/vehicle_parameters.h"
-#include "tools/study/case_findings.h"
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
 
@@ -52,8 +52,8 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose
-/// limits are never reached give equal runs, so they are left out; VehicleMethod() names them.
+/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose limits are
+/// never reached give equal runs, so they are left out; VehicleMethod() names them.
 std::vector<StudyCase> VehicleCases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {
@@ -77,19 +77,61 @@ std::vector<StudyCase> VehicleCases() {
   return cases;
 }
 
-// Indices of the variants.
-constexpr std::size_t kNone = 0;
-constexpr std::size_t kTraded = 1;
-constexpr std::size_t kJerkLimited = 2;
-
 constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
-                                                        "mean_compromised_safety_fog_m",
-                                                        "collided",
-                                                        "min_host_gap_m",
-                                                        "min_follower_gap_m",
-                                                        "max_follower_drac_mps2",
-                                                        "max_handover_jerk_mps3",
-                                                        "rms_jerk_mps3"};
+                                                         "mean_compromised_safety_fog_m",
+                                                         "collided",
+                                                         "min_host_gap_m",
+                                                         "min_follower_gap_m",
+                                                         "max_follower_drac_mps2",
+                                                         "max_handover_jerk_mps3",
+                                                         "rms_jerk_mps3"};
+
+constexpr std::string_view kVehicleAnswer =
+    "Yes, but less than for a point mass, and least for a truck. Behind a leader that brakes hard "
+    "in "
+    "the fog, handing over does harm with every car. There a jerk limit on the transfer lets "
+    "trucks "
+    "collide.";
+constexpr std::string_view kVehicleWouldChange =
+    "An ACC and a driver that are tuned to the car, or automatic emergency braking.";
+
+std::vector<Claim> VehicleClaims(const Comparison& comparison) {
+  std::vector<Claim> claims;
+  const auto add = [&](std::string says, std::string_view name, std::string_view a,
+                       std::string_view b, std::string_view measure, Sign sign) {
+    claims.push_back(ClaimOf(comparison, std::move(says), {name, a}, {name, b}, measure, sign));
+  };
+  for (const std::string_view car : {"sedan", "truck", "truck behind a sedan"}) {
+    for (const std::string_view fog : {"bias fog", "beam fog"}) {
+      const std::string name = fmt::format("{}: {}", fog, car);
+      add(fmt::format("It helps: {}.", name), name, "traded", "none", kShortfall, Sign::kLess);
+    }
+  }
+  claims.push_back(ClaimOf(comparison, "A sedan has less safety improvement than a point mass.",
+                           {"beam fog: sedan", "traded"}, {"beam fog: point mass", "traded"},
+                           "si_pct", Sign::kLess));
+  claims.push_back(ClaimOf(comparison, "A truck has less than a sedan.",
+                           {"beam fog: truck", "traded"}, {"beam fog: sedan", "traded"}, "si_pct",
+                           Sign::kLess));
+  for (const std::string_view car : {"point mass", "sedan", "truck", "compact"}) {
+    const std::string name = fmt::format("hard braking in beam fog: {}", car);
+    add(fmt::format("It does harm: {}.", name), name, "traded", "none", kShortfall, Sign::kMore);
+  }
+  add("There a jerk limit lets trucks collide.", "hard braking in beam fog: truck",
+      "traded jerk-limited", "traded", "collided", Sign::kMore);
+  return claims;
+}
+
+/// Each kind of car with traded control, where its limits matter.
+report::StudyTable VehicleMainTable(const Comparison& comparison) {
+  std::vector<NamedCell> rows;
+  for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
+    const StudyCase& one = comparison.cases()[c];
+    if (one.group == "bias fog" || one.name.ends_with("uphill 2 %")) continue;
+    rows.push_back({one.name, {c, comparison.VariantNamed("traded")}});
+  }
+  return comparison.TableOf("Traded control", "case", rows, kVehicleTable);
+}
 
 /// Largest magnitude of a host's acceleration in any run.
 double HardestOf(const Comparison& comparison) {
@@ -133,9 +175,9 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
-  section.findings = CaseFindings(comparison, kTraded);
-  section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kNone));
-  section.findings.push_back(VerdictFinding(comparison, kJerkLimited, kTraded));
+  section.answer = kVehicleAnswer;
+  section.would_change = kVehicleWouldChange;
+  result.claims = VehicleClaims(comparison);
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "vehicle-cs",
                                          "Compromised safety by vehicle", true),
                      comparison.FigureOf("max_handover_jerk_mps3", "vehicle-jerk",
@@ -143,6 +185,7 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
                      comparison.FigureOf("max_follower_drac_mps2", "vehicle-drac",
                                          "How hard the follower has to brake", true),
                      comparison.FigureOf("collided", "vehicle-collisions", "Collisions", true)};
+  section.tables = {VehicleMainTable(comparison)};
   for (std::size_t v = 0; v < comparison.variants().size(); ++v) {
     section.tables.push_back(comparison.TableOfVariant(v, kVehicleTable));
   }

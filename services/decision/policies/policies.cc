@@ -13,6 +13,7 @@
 #include "services/decision/policies/none.h"
 #include "services/decision/policies/oracle.h"
 #include "services/decision/policies/traded.h"
+#include "services/decision/policies/traded_isolating.h"
 
 namespace fogline::policies {
 namespace {
@@ -28,6 +29,7 @@ constexpr std::array kPolicies{
     RowFor<Adaptive>("adaptive"),
     RowFor<Bayes>("bayes"),
     RowFor<Availability>("availability"),
+    RowFor<TradedIsolating>("traded_isolating"),
 };
 // clang-format on
 

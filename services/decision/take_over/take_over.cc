@@ -117,7 +117,8 @@ double TakeOver::Acceleration(const TakeOverInputs& inputs) {
       return inputs.automation_mps2;
     case Authority::kEasing:
       return std::min(inputs.automation_mps2,
-                      std::max(0.0, inputs.applied_mps2 - section_.jerk_mps3 * step_s_));
+                      std::max(0.0 - section_.slow_down_mps2,
+                               inputs.applied_mps2 - section_.jerk_mps3 * step_s_));
     case Authority::kHuman:
       return inputs.human_mps2;
     case Authority::kComfort:

@@ -9,6 +9,7 @@
 
 #include "tests/campaign/browser/browser.h"
 #include "tools/report/study_page.h"
+#include "tools/study/claims.h"
 #include "tools/study/study.h"
 
 namespace fogline {
@@ -33,6 +34,7 @@ const std::vector<report::StudySection>& Sections() {
       section.name = study.name;
       section.title = study.title;
       section.question = study.question;
+      section.claims = study::CheckClaims(result.claims, /*few_runs=*/true);
     }
     return sections;
   }();
@@ -48,8 +50,12 @@ std::size_t CountFigures() {
 class StudyInBrowserTest : public BrowserTest {
  protected:
   json Show(ViewSize window, std::string_view script, Scheme scheme = Scheme::kLight) {
-    return BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), window, script,
-                             scheme);
+    // The figures in a folded part are drawn when the part is unfolded.
+    const std::string unfold =
+        "document.querySelectorAll(\"details.more-figures\").forEach((e) => { e.open = true; });\n"
+        "await settled();\n";
+    return BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), window,
+                             unfold + std::string(script), scheme);
   }
 };
 
@@ -57,7 +63,8 @@ TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
   const json found = Show(kDesktop, R"(
     found.sections = [...document.querySelectorAll("main > section")].map(({id}) => id);
     found.links = [...document.querySelectorAll("nav a")].map((a) => a.getAttribute("href"));
-    found.findings = [...document.querySelectorAll(".finding")].map((e) => e.children.length);
+    found.answers = [...document.querySelectorAll(".finding > p")].map((e) => e.textContent.length);
+    found.claims = [...document.querySelectorAll(".claims")].length;
     found.drawn = canvases().map(isDrawn);
     found.titles = [...document.querySelectorAll("figure h3")].map((e) => e.textContent);
     found.values = charts.map(({chart}) => chart.data.slice(1).flat().filter(Number.isFinite).length);
@@ -72,7 +79,9 @@ TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
   }
   EXPECT_EQ(found["sections"], json(names));
   EXPECT_EQ(found["links"], json(links));
-  EXPECT_THAT(found["findings"], Each(Ge(1)));
+  EXPECT_THAT(found["answers"], SizeIs(names.size()));
+  EXPECT_THAT(found["answers"], Each(Ge(40)));
+  EXPECT_EQ(found["claims"], names.size());
   EXPECT_THAT(found["drawn"], SizeIs(CountFigures()));
   EXPECT_THAT(found["drawn"], Each(true));
   EXPECT_THAT(found["titles"], Each(::testing::Ne("")));

@@ -1,13 +1,13 @@
 // Study `followers`: drivers of the cars behind the host.
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
-#include "tools/study/case_findings.h"
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/followers/string_runs.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 
 namespace fogline::study {
 namespace {
@@ -52,14 +52,14 @@ std::vector<StudyCase> FollowerCases() {
   return cases;
 }
 
-constexpr std::array<std::string_view, 8> kFollowersTable{"si_pct",
-                                                          "mean_compromised_safety_fog_m",
-                                                          "collided",
-                                                          "min_follower_gap_m",
-                                                          "min_follower_ttc_s",
-                                                          "min_follower_headway_s",
-                                                          "max_follower_drac_mps2",
-                                                          "min_follower_rss_margin_m"};
+constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
+                                                         "mean_compromised_safety_fog_m",
+                                                         "collided",
+                                                         "min_follower_gap_m",
+                                                         "min_follower_ttc_s",
+                                                         "min_follower_headway_s",
+                                                         "max_follower_drac_mps2",
+                                                         "min_follower_rss_margin_m"};
 
 // Overrides with which a string settles before the fog, whatever the headways are. The fog is as
 // long as in the file.
@@ -85,39 +85,70 @@ std::vector<StudyCase> Strings() {
 const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
-/// Describes the course of a disturbance along one string.
-std::string FindingOfString(const StringOutcome& string) {
-  const CarInString& first = string.cars[1];
-  const CarInString& last = string.cars[kStringCars];
-  std::vector<std::string> ratios;
-  for (std::size_t place = 1; place <= kStringCars; ++place) {
-    ratios.push_back(Text(EstimateOf(string.cars[place].amplification), 2));
+constexpr std::string_view kFollowersAnswer =
+    "Traded control helps an ACC that follows the host. It does not help a human follower, whose "
+    "own "
+    "fluctuations are larger than the effect, and a follower with a safety model needs no help. "
+    "Behind a host in beam fog it spares every string of cars the hard braking.";
+constexpr std::string_view kFollowersWouldChange =
+    "Followers with automatic emergency braking, or a host that brakes harder.";
+
+
+std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
+  const auto claim = [&](std::string says, std::string_view name, Sign sign, double margin = 0) {
+    return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,
+                   margin);
+  };
+  // A centimetre is less than any driver notices.
+  constexpr double kNothing_m = 0.01;
+  return {claim("In bias fog it helps an ACC.", "bias fog: acc", Sign::kLess),
+          claim("In beam fog it helps an ACC.", "beam fog: acc", Sign::kLess),
+          claim("In bias fog it does nothing for a normal human.", "bias fog: normal human",
+                Sign::kEqual, kNothing_m),
+          claim("In bias fog it does nothing for a cautious human.", "bias fog: cautious human",
+                Sign::kEqual, kNothing_m),
+          claim("In beam fog it does harm with an aggressive human.", "beam fog: aggressive human",
+                Sign::kMore),
+          claim("With RSS nothing is left to improve.", "beam fog: normal human with RSS",
+                Sign::kEqual, kNothing_m)};
+}
+
+/// For each kind of string: the last car brakes less hard behind a host with traded control.
+std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
+  std::vector<Claim> claims;
+  for (const StringOutcome& traded : strings) {
+    if (traded.variant != "traded") continue;
+    const auto none = std::ranges::find_if(strings, [&](const StringOutcome& other) {
+      return other.kind == traded.kind && other.variant == "none";
+    });
+    claims.push_back(
+        {.says = fmt::format("The last car of a string brakes less hard: {}.", traded.kind),
+         .compared = fmt::format("string of {}: traded against none, largest "
+                                 "deceleration of follower {} (m/s2)",
+                                 traded.kind, kStringCars),
+         .sign = Sign::kLess,
+         .difference = PairedDifference(traded.cars[kStringCars].max_deceleration_mps2,
+                                        none->cars[kStringCars].max_deceleration_mps2),
+         .margin = 0,
+         .p = {},
+         .hindrance = {}});
   }
-  const Estimate growth = PairedDifference(last.max_deceleration_mps2, first.max_deceleration_mps2);
-  std::string_view verdict;
-  switch (VerdictOf(growth)) {
-    case Verdict::kMore:
-      verdict = "the disturbance grows along the string";
-      break;
-    case Verdict::kLess:
-      verdict = "the disturbance decreases along the string";
-      break;
-    case Verdict::kUndecided:
-      verdict = "the disturbance does not change significantly along the string";
-      break;
-    case Verdict::kTooFew:
-      verdict = "too few runs for an interval";
-      break;
+  return claims;
+}
+
+/// The followers with the largest difference between their kinds, without and with traded control.
+report::StudyTable FollowersMainTable(const Comparison& comparison) {
+  std::vector<NamedCell> rows;
+  for (const std::string_view name :
+       {"beam fog: acc", "beam fog: aggressive human", "beam fog: normal human",
+        "beam fog: cautious human", "beam fog: five cars drawn"}) {
+    for (const std::string_view variant : {"none", "traded"}) {
+      rows.push_back({fmt::format("{}, {}", name, variant),
+                      {comparison.CaseNamed(name), comparison.VariantNamed(variant)}});
+    }
   }
-  return fmt::format(
-      "String of {}, {}: the host brakes with at most {} m/s2, follower 1 with {}, follower {} "
-      "with {}: {} (last minus first {} m/s2). Ratio to the car ahead, place by place: {}. "
-      "Smallest time to collision: follower 1 {} s, follower {} {} s.",
-      string.kind, string.variant, Text(EstimateOf(string.cars[0].max_deceleration_mps2), 2),
-      Text(EstimateOf(first.max_deceleration_mps2), 2), kStringCars,
-      Text(EstimateOf(last.max_deceleration_mps2), 2), verdict, Text(growth, 2),
-      fmt::join(ratios, ", "), Text(EstimateOf(first.min_ttc_s), 1), kStringCars,
-      Text(EstimateOf(last.min_ttc_s), 1));
+  return comparison.TableOf("First car behind the host in beam fog", "follower", rows,
+                            kFollowerTable);
 }
 
 /// A quantity as a function of the place in the string, for the strings behind one variant of the
@@ -141,23 +172,26 @@ report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_
     for (std::size_t place = 0; place <= kStringCars; ++place) {
       const Estimate mean = EstimateOf(string.cars[place].*values);
       if (mean.n == 0) continue;
-      AddPoint(series, static_cast<double>(place), mean);
+      series.x.push_back(static_cast<double>(place));
+      series.y.push_back(mean.mean);
+      series.low.push_back(mean.low);
+      series.high.push_back(mean.high);
     }
   }
   return figure;
 }
 
 /// A measure that the study reports for each place.
-struct StringMetric {
+struct StringMeasure {
   std::string_view name;
   std::vector<double> CarInString::*values;
   int decimals;
 };
-constexpr std::array kStringMetrics{
-    StringMetric{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
-    StringMetric{"amplification", &CarInString::amplification, 2},
-    StringMetric{"min_ttc_s", &CarInString::min_ttc_s, 1},
-    StringMetric{"min_gap_m", &CarInString::min_gap_m, 2}};
+constexpr std::array kStringMeasures{
+    StringMeasure{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
+    StringMeasure{"amplification", &CarInString::amplification, 2},
+    StringMeasure{"min_ttc_s", &CarInString::min_ttc_s, 1},
+    StringMeasure{"min_gap_m", &CarInString::min_gap_m, 2}};
 
 report::StudyTable TableOfString(const StringOutcome& string, std::int64_t seeds) {
   report::StudyTable table{
@@ -165,32 +199,33 @@ report::StudyTable TableOfString(const StringOutcome& string, std::int64_t seeds
           fmt::format("String of {}, {}: by place; collisions in {}", string.kind, string.variant,
                       Text(metrics::ClopperPearson(string.collisions, seeds))),
       .columns = {"place"}};
-  for (const StringMetric& measure : kStringMetrics) table.columns.emplace_back(measure.name);
+  for (const StringMeasure& measure : kStringMeasures) table.columns.emplace_back(measure.name);
   for (std::size_t place = 0; place <= kStringCars; ++place) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(place == 0 ? "host" : fmt::format("follower {}", place));
-    for (const StringMetric& measure : kStringMetrics) {
+    for (const StringMeasure& measure : kStringMeasures) {
       row.push_back(Text(EstimateOf(string.cars[place].*measure.values), measure.decimals));
     }
   }
   return table;
 }
 
-std::string StringsCsv(std::span<const StringOutcome> strings) {
+std::string StringCsv(std::span<const StringOutcome> strings) {
   std::string csv =
       "string,variant,place,measure,n,infinite,mean,std,ci95_low,ci95_high,minus_first,"
       "minus_first_ci95_low,minus_first_ci95_high\n";
   for (const StringOutcome& string : strings) {
     for (std::size_t place = 0; place <= kStringCars; ++place) {
-      for (const StringMetric& measure : kStringMetrics) {
+      for (const StringMeasure& measure : kStringMeasures) {
         const std::vector<double>& values = string.cars[place].*measure.values;
         if (values.empty()) continue;
         const Estimate mean = EstimateOf(values);
         const Estimate difference = PairedDifference(values, string.cars[1].*measure.values);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", string.kind, string.variant, place,
-                           measure.name, mean.n, mean.infinite, CsvText(mean.mean),
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", string.kind, string.variant,
+                           place, measure.name, mean.n, mean.infinite, CsvText(mean.mean),
                            CsvText(mean.deviation), CsvText(mean.low), CsvText(mean.high),
-                           CsvText(difference));
+                           CsvText(difference.mean), CsvText(difference.low),
+                           CsvText(difference.high));
       }
     }
   }
@@ -202,7 +237,6 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   report::StudySection& section = result.section;
   result.runs += static_cast<std::int64_t>(strings.size()) * context.seeds.count();
   for (const StringOutcome& string : strings) {
-    section.findings.push_back(FindingOfString(string));
     section.tables.push_back(TableOfString(string, context.seeds.count()));
   }
   for (const StudyVariant& variant : kVariants) {
@@ -215,7 +249,7 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
                                       "Smallest time to collision along a string",
                                       "Smallest time to collision (s)", &CarInString::min_ttc_s));
   }
-  result.files.push_back({"followers-string.csv", StringsCsv(strings)});
+  result.files.push_back({"followers-string.csv", StringCsv(strings)});
 }
 
 /// The context of one part of a study, whose progress counts `all` units in total.
@@ -241,7 +275,10 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
-  section.findings = CaseFindings(comparison, 1);
+  section.answer = kFollowersAnswer;
+  section.would_change = kFollowersWouldChange;
+  result.claims = ClaimsOnFirst(comparison);
+  for (Claim& claim : ClaimsOnStrings(strings)) result.claims.push_back(std::move(claim));
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "followers-cs",
                                          "Compromised safety by follower", true),
                      comparison.FigureOf("max_follower_drac_mps2", "followers-drac",
@@ -249,8 +286,8 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
                      comparison.FigureOf("min_follower_ttc_s", "followers-ttc",
                                          "Smallest time to collision of the follower", true),
                      comparison.FigureOf("collided", "followers-collisions", "Collisions", true)};
-  section.tables = {comparison.TableOfVariant(0, kFollowersTable),
-                    comparison.TableOfVariant(1, kFollowersTable)};
+  section.tables = {FollowersMainTable(comparison), comparison.TableOfVariant(0, kFollowerTable),
+                    comparison.TableOfVariant(1, kFollowerTable)};
   section.method = fmt::format(
       "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
       "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC. Other "

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <tuple>
 
 #include <fmt/format.h>
 
-#include "tools/stats/pareto.h"
 #include "tools/study/bootstrap.h"
+#include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
-#include "tools/study/study_findings.h"
 #include "tools/study/thresholds/equal_engagement.h"
 #include "tools/study/thresholds/threshold_mix.h"
 
@@ -53,7 +54,9 @@ Beside BesideFixed(const MixedRuns& mixed) {
   beside.si = compare([&](std::size_t i) { return std::span(mixed.members[i].si_pct); });
   beside.shortfall = compare([&](std::size_t i) { return std::span(spared[i]); });
   for (AtEqualEngagement& one : beside.shortfall) {
-    one.difference = Turned(one.difference);
+    Estimate& difference = one.difference;
+    difference.mean = -difference.mean;
+    std::tie(difference.low, difference.high) = std::pair(-difference.high, -difference.low);
     if (one.place) one.place->gain = -one.place->gain;
   }
   return beside;
@@ -68,109 +71,65 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
   return fmt::format("fixed {:.3g}", threshold);
 }
 
-/// Verdict on one family by the intervals, and whether it agrees with the expectation.
-std::string FindingOfFamily(const MixedRuns& mixed, const Beside& beside, std::size_t family) {
-  std::map<Verdict, std::vector<std::string>> by_verdict;
-  std::vector<std::string> equal;
-  std::vector<std::string> beyond;
-  std::vector<std::string> dominated;  // among the members that are better at equal RHE
-  for (std::size_t i = 0; i < mixed.members.size(); ++i) {
-    const RuleMember& member = mixed.members[i];
-    if (member.family != family) continue;
-    const AtEqualEngagement& one = beside.si[i];
-    const auto& place = one.place;
-    const Estimate& difference = one.difference;
-    if (!place) {
-      beyond.push_back(fmt::format("{} (RHE {} %)", member.name, Text(member.rhe(), 2)));
-      continue;
-    }
-    const std::string text = fmt::format("{} ({} points against {} ± {} at RHE {} %)", member.name,
-                                         Text(difference, 2), ThresholdText(mixed, *place),
-                                         Text(one.interpolation_error, 2), Text(member.rhe(), 3));
-    if (difference.low == 0 && difference.high == 0) {
-      equal.push_back(member.name);
-      continue;
-    }
-    by_verdict[one.verdict()].push_back(text);
-    if (one.verdict() == Verdict::kMore && one.cheaper &&
-        VerdictOf(one.against_cheaper) == Verdict::kLess) {
-      dominated.push_back(fmt::format("{} ({} points less than {})", member.name,
-                                      Text(Turned(one.against_cheaper), 2),
-                                      mixed.members[*one.cheaper].name));
-    }
-  }
-  const std::vector<std::string>& above = by_verdict[Verdict::kMore];
-  const std::vector<std::string>& below = by_verdict[Verdict::kLess];
-  const std::vector<std::string>& undecided = by_verdict[Verdict::kUndecided];
-  const auto part = [](std::string_view what, const std::vector<std::string>& of) {
-    return of.empty() ? std::string() : fmt::format(" {}: {}.", what, ListText(of));
-  };
-  const std::size_t compared = above.size() + below.size() + equal.size() + undecided.size();
-  std::string answer;
-  if (compared > 0) {
-    answer = fmt::format(
-        " So at equal RHE its SI is at least that of the best fixed threshold for {} of {} values "
-        "of its parameter. It is less for {}. For {} the difference is not decided.",
-        above.size() + equal.size(), compared, below.size(), undecided.size());
-    if (!above.empty()) {
-      answer += fmt::format(
-          " Of the {} values with more SI, {} are dominated: a fixed threshold engages the human "
-          "no more and has more SI{}{}.",
-          above.size(), dominated.size(), dominated.empty() ? "" : ": ", ListText(dominated));
-    }
-  }
-  return fmt::format(
-      "{} against the best fixed threshold of the same RHE, by SI.{}{}{}{}{}{}{}",
-      Capital(mixed.families[family].name), part("More", above), part("Equal", equal),
-      part("Less", below), part("Not decided", undecided),
-      part("Too few runs for an interval", by_verdict[Verdict::kTooFew]),
-      part("Not compared, because their RHE is beyond that of every fixed threshold", beyond),
-      answer);
+constexpr std::string_view kThresholdAnswer =
+    "No. In a mix of situations, whatever engages the human less in clear air is also safer, so "
+    "the "
+    "best rule hardly ever hands over. At equal engagement no rule that follows the situation is "
+    "clearly better than a fixed threshold, except that dropping the deceived sensor gains a "
+    "little.";
+constexpr std::string_view kThresholdWouldChange =
+    "Situations in which the automation is deceived for longer, or humans who never err.";
+
+/// Index of the rule of this name. @throws std::out_of_range
+std::size_t RuleNamed(const MixedRuns& mixed, std::string_view name) {
+  const auto found = std::ranges::find(mixed.members, name, &RuleMember::name);
+  if (found == mixed.members.end()) throw std::out_of_range(fmt::format("no rule {}", name));
+  return static_cast<std::size_t>(found - mixed.members.begin());
 }
 
-/// Describes the Pareto front of all rules, and lists the rules that cannot be told apart from a
-/// rule on it.
-std::string FrontText(const MixedRuns& mixed) {
-  std::vector<stats::TradeOff> points;
-  for (const RuleMember& member : mixed.members) points.push_back({member.rhe(), member.si()});
-  const std::vector<std::size_t> front = stats::ParetoFront(points);
-  std::vector<std::string> names;
-  for (const std::size_t i : front) {
-    const RuleMember& member = mixed.members[i];
-    names.push_back(fmt::format("{} (RHE {} %, SI {} %)", member.name, Text(member.rhe(), 2),
-                                Text(member.si(), 1)));
-  }
-  std::vector<std::string> like;
-  for (std::size_t f = 0; f < mixed.families.size(); ++f) {
-    std::vector<std::string> close;
-    for (const RuleMember& member : mixed.members) {
-      if (member.family != f) continue;
-      const bool is_close = std::ranges::any_of(front, [&](std::size_t i) {
-        const RuleMember& best = mixed.members[i];
-        return &best != &member &&
-               VerdictOf(PairedDifference(member.si_pct, best.si_pct)) == Verdict::kUndecided &&
-               VerdictOf(PairedDifference(member.rhe_pct, best.rhe_pct)) == Verdict::kUndecided;
-      });
-      if (is_close) close.push_back(member.name);
-    }
-    if (close.empty()) continue;
-    like.push_back(close.size() == 1 ? close.front()
-                                     : fmt::format("{} values from {} to {}", close.size(),
-                                                   close.front(), close.back()));
-  }
-  std::string text = fmt::format("The Pareto front of all rules in mean RHE and mean SI is {}{}.",
-                                 front.size() == 1 ? "a single point: " : "", ListText(names));
-  if (front.size() == 1) {
-    text +=
-        " A rule that engages the human least in clear air is also the safest, so there is no "
-        "trade-off between the two.";
-  }
-  if (!like.empty()) {
-    text += fmt::format(
-        " Without a significant difference from it in both RHE and SI, by paired differences: {}.",
-        ListText(like));
-  }
-  return text;
+/// The claim that one rule has more or less SI than another one, situation by situation.
+Claim Against(const MixedRuns& mixed, std::string says, std::string_view a, std::string_view b,
+              Sign sign, double margin = 0) {
+  return {.says = std::move(says),
+          .compared = fmt::format("{} against {}, safety improvement (SI) (%)", a, b),
+          .sign = sign,
+          .difference = PairedDifference(mixed.members[RuleNamed(mixed, a)].si_pct,
+                                         mixed.members[RuleNamed(mixed, b)].si_pct),
+          .margin = margin,
+          .p = {},
+          .hindrance = {}};
+}
+
+/// The claim that a rule has more SI than the fixed threshold of equal RHE.
+Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
+                 std::string_view rule, Sign sign, double margin = 0) {
+  const AtEqualEngagement& one = beside.si[RuleNamed(mixed, rule)];
+  return {.says = std::move(says),
+          .compared = fmt::format("{} against the fixed threshold of equal RHE, SI (points)", rule),
+          .sign = sign,
+          .difference = one.difference,
+          .margin = margin,
+          .p = {},
+          .hindrance = one.place ? "" : "its RHE is beyond that of every fixed threshold"};
+}
+
+std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside) {
+  constexpr double kNothing = 3;  // points of SI, as in study transfer
+  return {
+      Against(mixed, "Hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
+              "fixed 0.5", Sign::kMore),
+      Against(mixed, "The paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3",
+              Sign::kMore),
+      Against(mixed, "It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5",
+              Sign::kMore),
+      Against(mixed, "It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
+      Against(mixed, "It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",
+              "availability 0.98", Sign::kEqual, kNothing),
+      AtEqualRhe(mixed, beside, "At equal engagement, dropping the deceived sensor gains a little.",
+                 "availability 0.5", Sign::kMore),
+      AtEqualRhe(mixed, beside, "An eager adaptive rule loses at equal engagement.",
+                 "adaptive 0.35", Sign::kLess),
+  };
 }
 
 /// The members of a family in order of RHE.
@@ -222,7 +181,7 @@ report::StudyFigure DifferenceFigure(const MixedRuns& mixed, const Beside& besid
   return figure;
 }
 
-std::string RulesCsv(const MixedRuns& mixed, const Beside& beside) {
+std::string ThresholdCsv(const MixedRuns& mixed, const Beside& beside) {
   std::string csv =
       "family,member,situations,rhe_n,rhe_pct,rhe_ci95_low,rhe_ci95_high,si_n,si_pct,si_ci95_low,"
       "si_ci95_high,compromised_n,compromised_safety_fog_m,compromised_ci95_low,"
@@ -237,26 +196,35 @@ std::string RulesCsv(const MixedRuns& mixed, const Beside& beside) {
     for (const auto values :
          {&RuleMember::rhe_pct, &RuleMember::si_pct, &RuleMember::shortfall_m}) {
       const Estimate mean = EstimateOf(member.*values);
-      csv += fmt::format(",{},{}", mean.n, CsvText(mean));
+      csv += fmt::format(",{},{},{},{}", mean.n, CsvText(mean.mean), CsvText(mean.low),
+                         CsvText(mean.high));
     }
     csv += fmt::format(",{}", member.collisions);
     const std::optional<CurvePlace>& place = beside.si[i].place;
     csv += fmt::format(",{}", place ? ThresholdText(mixed, *place) : "");
     for (const AtEqualEngagement* one : {&beside.si[i], &beside.shortfall[i]}) {
       const std::optional<CurvePlace>& at = one->place;
-      csv += fmt::format(",{},{}", at ? CsvText(at->gain) : "", CsvText(one->difference));
+      const Estimate& difference = one->difference;
+      csv += fmt::format(",{},{},{},{}", at ? CsvText(at->gain) : "", CsvText(difference.mean),
+                         CsvText(difference.low), CsvText(difference.high));
     }
     csv += "\n";
   }
   return csv;
 }
 
-report::StudyTable TableOfRules(const MixedRuns& mixed, const Beside& beside) {
+/// The rules of the first table.
+constexpr std::array<std::string_view, 9> kTelling{
+    "fixed 0.3",    "fixed 0.5", "fixed 0.8",        "fixed 0.99",       "adaptive 0.5",
+    "adaptive 0.7", "bayes 1",   "availability 0.5", "availability 0.98"};
+
+report::StudyTable TableOfRules(const MixedRuns& mixed, const Beside& beside, std::string_view name,
+                           std::span<const std::size_t> rules) {
   report::StudyTable table{
-      .caption = "Every rule: means over the situations [95 % confidence intervals]",
+      .caption = fmt::format("{}: means over the situations [95 % confidence intervals]", name),
       .columns = {"rule", "RHE (%)", "SI (%)", "fixed threshold of equal RHE",
                   "difference of SI (points)", "compromised safety in fog (m)", "collisions"}};
-  for (std::size_t i = 0; i < mixed.members.size(); ++i) {
+  for (const std::size_t i : rules) {
     const RuleMember& member = mixed.members[i];
     const std::optional<CurvePlace>& place = beside.si[i].place;
     const Estimate& difference = beside.si[i].difference;
@@ -300,19 +268,23 @@ StudyResult RunThresholdStudy(const StudyContext& context) {
   StudyResult result;
   result.runs = mixed.situations * static_cast<std::int64_t>(mixed.members.size() + 1);
   report::StudySection& section = result.section;
-  for (std::size_t f = 1; f < mixed.families.size(); ++f) {
-    section.findings.push_back(FindingOfFamily(mixed, beside, f));
-  }
-  section.findings.push_back(FrontText(mixed));
+  section.answer = kThresholdAnswer;
+  section.would_change = kThresholdWouldChange;
+  result.claims = ThresholdClaims(mixed, beside);
   section.figures = {
       DifferenceFigure(mixed, beside),
       FrontFigure(mixed, "threshold-front", "The price of safety in a mix of situations",
                   "Safety improvement (SI, %)", &RuleMember::si_pct),
       FrontFigure(mixed, "threshold-cs", "The same in metres", "Mean compromised safety in fog (m)",
                   &RuleMember::shortfall_m)};
-  section.tables = {TableOfRules(mixed, beside)};
+  std::vector<std::size_t> all(mixed.members.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<std::size_t> telling;
+  for (const std::string_view name : kTelling) telling.push_back(RuleNamed(mixed, name));
+  section.tables = {TableOfRules(mixed, beside, "Some rules", telling),
+                    TableOfRules(mixed, beside, "Every rule", all)};
   section.method = ThresholdMethod(mixed, beside);
-  result.files = {{"threshold.csv", RulesCsv(mixed, beside)}};
+  result.files = {{"threshold.csv", ThresholdCsv(mixed, beside)}};
   return result;
 }
 

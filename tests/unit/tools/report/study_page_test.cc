@@ -16,7 +16,9 @@ using ::testing::Not;
 
 report::StudySection Hostile() {
   const std::string evil = "</script><script>alert(1)</script>|\"&";
-  report::StudySection section{.name = "evil", .title = evil, .question = evil, .findings = {evil}};
+  report::StudySection section{.name = "evil", .title = evil, .question = evil};
+  section.answer = section.would_change = evil;
+  section.claims = {{.says = evil, .compared = evil, .expected = evil, .found = evil}};
   section.method = evil;
   section.figures = {{.id = "evil-1",
                       .title = evil,

@@ -97,12 +97,14 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
 TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   // Only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name :
-       {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability"}) {
+       {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability",
+        "traded_isolating"}) {
     const policies::PolicyRow& row = policies::RowOf(test::FindPolicy(name).value());
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
     };
-    EXPECT_EQ(row.selects_sensors, is({"isolate", "oracle", "availability"})) << row.name;
+    EXPECT_EQ(row.selects_sensors, is({"isolate", "oracle", "availability", "traded_isolating"}))
+        << row.name;
     EXPECT_EQ(row.needs_true_gap, is({"oracle"})) << row.name;
     EXPECT_EQ(row.needs_surroundings, is({"adaptive", "bayes", "availability"})) << row.name;
     EXPECT_EQ(row.shares, is({"blend"})) << row.name;
@@ -128,7 +130,7 @@ TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
       EXPECT_EQ(decided.firm, rule.firm) << row.name;
     }
   }
-  EXPECT_GE(simple, 4);
+  EXPECT_GE(simple, 5);
 }
 
 TEST(PoliciesTest, ThePapersIsTheDefault) {
@@ -274,8 +276,8 @@ constexpr conflict::Evidence kRadarLong{
 constexpr conflict::Evidence kAgreeing{
     .radar = {true, 40.05, 0.1}, .lidar = {true, 40.01, 0.02}, .prediction = {true, 40, 0.05}};
 
-TEST(PoliciesTest, IsolateAndAvailabilityDropTheSensorThatThePredictionBlames) {
-  for (const char* policy : {"isolate", "availability"}) {
+TEST(PoliciesTest, ThreePoliciesDropTheSensorThatThePredictionBlames) {
+  for (const char* policy : {"isolate", "availability", "traded_isolating"}) {
     EXPECT_EQ(SelectSensors(policy, {kLidarShort, {}}), kRadarAlone) << policy;
     EXPECT_EQ(SelectSensors(policy, {kRadarLong, {}}), kLidarAlone) << policy;
     EXPECT_EQ(SelectSensors(policy, {kAgreeing, {}}), kBoth) << policy;

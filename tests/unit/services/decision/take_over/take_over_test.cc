@@ -245,6 +245,20 @@ TEST_F(TakeOverTest, DoesNotAccelerateWhileARequestStands) {
   EXPECT_EQ(Step().acceleration_mps2, -2) << "but it brakes as it likes";
 }
 
+TEST_F(TakeOverTest, SlowsDownWhileARequestStandsIfTheScenarioSaysSo) {
+  Scenario scenario = Absent();
+  scenario.arbitrator.take_over.slow_down_mps2 = 0.6;
+  Begin(scenario);
+  inputs_.human_wanted = true;
+  inputs_.automation_mps2 = 0;
+  // The deceleration grows at 2.5 m/s3.
+  for (const double expected : {-0.25, -0.5, -0.6, -0.6}) {
+    EXPECT_NEAR(Step().acceleration_mps2, expected, 1e-12);
+  }
+  inputs_.automation_mps2 = -2;
+  EXPECT_EQ(Step().acceleration_mps2, -2) << "but it brakes as it likes";
+}
+
 TEST_F(TakeOverTest, BrakesNoLessThanTheAutomationWould) {
   Begin(Absent());
   inputs_.automation_mps2 = -2.5;

@@ -1,0 +1,28 @@
+// Policy `traded_isolating`: traded control whose automation does not use the sensor that is wrong.
+#pragma once
+
+#include "services/decision/policies/isolation.h"
+
+namespace fogline::policies {
+
+/// The paper's rule, and as long as the automation drives, it drives without the sensor that is to
+/// blame, as with Isolate. With a driver who must be asked, this is the request together with the
+/// best automation until he is there.
+class TradedIsolating final : public EngagementPolicy {
+ public:
+  static constexpr Rule kRule = Rule::kThreshold;
+
+  explicit TradedIsolating(const Scenario& scenario) : isolation_(scenario.arbitrator) {}
+
+  SensorSelection SelectSensors(const FusionView& view) override {
+    return isolation_.Judge(view.evidence);
+  }
+  EngagementRequest Decide(const ArbitratorView& view) override {
+    return Compare(view.doc, view.threshold);
+  }
+
+ private:
+  Isolation isolation_;
+};
+
+}  // namespace fogline::policies

@@ -1,0 +1,172 @@
+#include "tools/study/claims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "tools/stats/holm.h"
+#include <boost/math/distributions/binomial.hpp>
+
+namespace fogline::study {
+namespace {
+
+constexpr double kLevel = 0.05;
+
+std::string NameWithUnit(std::string_view measure) {
+  const ComparedMeasure& info = ComparedMetrics()[PlaceOfMetric(measure)];
+  return info.unit.empty() ? NameForReaders(measure)
+                           : fmt::format("{} ({})", NameForReaders(measure), info.unit);
+}
+
+/// Two-sided p-value of McNemar's exact test: collisions in only one run of a pair are equally
+/// likely in both.
+double McNemar(std::span<const double> a, std::span<const double> b) {
+  double only_a = 0;
+  double only_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    only_a += a[i] > 0 && !(b[i] > 0) ? 1 : 0;
+    only_b += b[i] > 0 && !(a[i] > 0) ? 1 : 0;
+  }
+  if (only_a + only_b == 0) return 1;
+  constexpr double kEven = 0.5;
+  const boost::math::binomial_distribution<double> pairs(only_a + only_b, kEven);
+  return std::min(1.0, 2 * boost::math::cdf(pairs, std::min(only_a, only_b)));
+}
+
+bool HasSign(const Claim& claim) {
+  const double mean = claim.difference.mean;
+  switch (claim.sign) {
+    case Sign::kLess:
+      return mean < 0;
+    case Sign::kMore:
+      return mean > 0;
+    case Sign::kEqual:
+      return std::abs(mean) <= claim.margin;
+  }
+  return false;
+}
+
+/// Whether the interval excludes what the claim says.
+bool IsContradicted(const Claim& claim) {
+  const Estimate& difference = claim.difference;
+  if (!difference.has_interval()) return false;
+  switch (claim.sign) {
+    case Sign::kLess:
+      return difference.low >= 0;
+    case Sign::kMore:
+      return difference.high <= 0;
+    case Sign::kEqual:
+      return difference.low > claim.margin || difference.high < -claim.margin;
+  }
+  return false;
+}
+
+std::string_view ExpectedText(Sign sign) {
+  switch (sign) {
+    case Sign::kLess:
+      return "less";
+    case Sign::kMore:
+      return "more";
+    case Sign::kEqual:
+      return "equal";
+  }
+  return "";
+}
+
+std::string FoundText(const Claim& claim, double p) {
+  if (!claim.hindrance.empty()) return claim.hindrance;
+  if (!claim.difference.has_interval()) return "too few runs for an interval";
+  constexpr double kSmallest = 0.001;
+  return fmt::format("{}, p {}", Text(claim.difference),
+                     p < kSmallest ? "< 0.001" : fmt::format("= {:.3f}", p));
+}
+
+report::ClaimState StateOf(const Claim& claim, double p, bool few_runs) {
+  if (!claim.hindrance.empty()) return report::ClaimState::kFails;
+  if (HasSign(claim) && p < kLevel) return report::ClaimState::kHolds;
+  return few_runs && !IsContradicted(claim) ? report::ClaimState::kOpen
+                                            : report::ClaimState::kFails;
+}
+
+}  // namespace
+
+Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellName b,
+              std::string_view measure, Sign sign, double margin) {
+  const Cell cell_a{comparison.CaseNamed(a.test_case), comparison.VariantNamed(a.variant)};
+  const Cell cell_b{comparison.CaseNamed(b.test_case), comparison.VariantNamed(b.variant)};
+  const bool one_case = a.test_case == b.test_case;
+  Claim claim{.says = std::move(says),
+              .compared = one_case ? fmt::format("{}: {} against {}, {}", a.test_case, a.variant,
+                                                 b.variant, NameWithUnit(measure))
+                                   : fmt::format("{}: {} against {}, {}", a.variant, a.test_case,
+                                                 b.test_case, NameWithUnit(measure)),
+              .sign = sign,
+              .difference = comparison.Difference(cell_a, cell_b, measure),
+              .margin = margin,
+              .p = {},
+              .hindrance = {}};
+  if (measure == "collided") {
+    claim.p = McNemar(comparison.Values(cell_a, measure), comparison.Values(cell_b, measure));
+  } else if (const std::int64_t cut_short = comparison.PairsCutShort(cell_a, cell_b);
+             cut_short > 0) {
+    claim.hindrance = fmt::format("not comparable: the runs of {} of {} seeds end early", cut_short,
+                                  comparison.seeds());
+  }
+  return claim;
+}
+
+Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
+                 std::string_view measure, Sign sign, double level, double margin) {
+  Estimate difference = comparison.Mean(
+      {comparison.CaseNamed(cell.test_case), comparison.VariantNamed(cell.variant)}, measure);
+  for (double* value : {&difference.mean, &difference.low, &difference.high}) *value -= level;
+  return {.says = std::move(says),
+          .compared = fmt::format("{}: {} against {:g}, {}", cell.test_case, cell.variant, level,
+                                  NameWithUnit(measure)),
+          .sign = sign,
+          .difference = difference,
+          .margin = margin,
+          .p = {},
+          .hindrance = {}};
+}
+
+double PValueOf(const Claim& claim) {
+  if (claim.sign == Sign::kEqual) return PValueOfEqual(claim.difference, claim.margin);
+  return claim.p.value_or(PValueOfSign(claim.difference));
+}
+
+std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs) {
+  std::vector<double> p;
+  for (const Claim& claim : claims) p.push_back(PValueOf(claim));
+  const std::vector<double> adjusted = stats::Holm(p);
+  std::vector<report::StudyClaim> checked;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    const Claim& claim = claims[i];
+    const std::string margin =
+        claim.sign == Sign::kEqual ? fmt::format(" (within {:g})", claim.margin) : "";
+    checked.push_back({.says = claim.says,
+                       .compared = claim.compared,
+                       .expected = fmt::format("{}{}", ExpectedText(claim.sign), margin),
+                       .found = FoundText(claim, adjusted[i]),
+                       .state = StateOf(claim, adjusted[i], few_runs)});
+  }
+  return checked;
+}
+
+std::string FailedText(std::string_view study, std::span<const report::StudyClaim> claims) {
+  const auto failed =
+      std::ranges::count(claims, report::ClaimState::kFails, &report::StudyClaim::state);
+  if (failed == 0) return "";
+  std::string text = fmt::format("study {}: {} of {} claims fail:", study, failed, claims.size());
+  for (const report::StudyClaim& claim : claims) {
+    if (claim.state != report::ClaimState::kFails) continue;
+    text += fmt::format("\n  {} (expected {}: {}; found {})", claim.says, claim.expected,
+                        claim.compared, claim.found);
+  }
+  return text;
+}
+
+}  // namespace fogline::study

@@ -1,0 +1,45 @@
+// Makes claims (claim.h) from comparisons, and checks them against the numbers.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/report/study_page.h"
+#include "tools/study/claim.h"
+#include "tools/study/comparison.h"
+#include "tools/study/estimate.h"
+
+namespace fogline::study {
+
+/// A variant in a case, by their names.
+struct CellName {
+  std::string_view test_case;
+  std::string_view variant;
+};
+
+/// The claim that a measure's mean difference a - b, paired seed by seed, has this sign. For the
+/// measure "collided" its p-value is that of McNemar's exact test (1947). A claim on any other
+/// measure fails if pairs of runs end early, because their sums and means over time lack the rest.
+/// @param margin for kEqual, in the unit of the measure
+/// @throws std::out_of_range if there is no such case, variant or measure
+Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellName b,
+              std::string_view measure, Sign sign, double margin = 0);
+
+/// The claim that a measure's mean differs from `level` with this sign.
+Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
+                 std::string_view measure, Sign sign, double level, double margin = 0);
+
+/// p-value of the claim, not adjusted.
+double PValueOf(const Claim& claim);
+
+/// Checks the claims of one study together. A claim holds if the difference has its sign and the
+/// p-value adjusted by Holm is below 5 %. It fails if it does not hold. With `few_runs`, a claim
+/// that the numbers do not contradict stays open instead.
+std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
+
+/// "policy: 2 of 9 claims fail"; "" if none does.
+std::string FailedText(std::string_view study, std::span<const report::StudyClaim> claims);
+
+}  // namespace fogline::study

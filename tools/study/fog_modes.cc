@@ -1,0 +1,46 @@
+#include "tools/study/fog_modes.h"
+
+#include <fmt/format.h>
+
+namespace fogline::study {
+
+StudyCase FogMode::Case(std::string_view with, const std::vector<std::string>& more) const {
+  StudyCase one{.name = fmt::format("{}, {}", name, with),
+                .file = std::string(file),
+                .overrides = overrides,
+                .group = std::string(name)};
+  one.overrides.insert(one.overrides.end(), more.begin(), more.end());
+  return one;
+}
+
+// Missing echoes are those of a beam whose own fog echo is too weak to be seen, in fog so dense that
+// the car ahead is not seen either. Real data show this mode (RADIATE, Sheeny et al. 2021): beyond
+// 35 m no echo of 65 cars, and none of the fog.
+const std::vector<FogMode>& FogModes() {
+  static const std::vector<FogMode> kModes{
+      {"bias fog", "paper.json", {}},
+      {"near echo fog", "dense_fog.json", {}},
+      {"missing echo fog",
+       "dense_fog.json",
+       {"/fog/visibility_m=40", "/lidar/beam/backscatter_factor=0.001"}}};
+  return kModes;
+}
+
+std::string_view FogModesText() {
+  return "paper.json (fog biases the LiDAR's range), of dense_fog.json (the fog's own echo hides "
+         "the car), and of dense_fog.json with a visibility of 40 m and a weak echo of the fog "
+         "(there is no echo at all)";
+}
+
+const std::vector<std::string>& FallibleHuman() {
+  static const std::vector<std::string> kOverrides{
+      "/human/sight=fog", "/human/misjudges=true", "/human/loses_awareness=true"};
+  return kOverrides;
+}
+
+std::string_view HumansText() {
+  return "The perfect human is the paper's. The fallible human sees only as far as the fog lets "
+         "him, misjudges distances and loses awareness while the automation drives.";
+}
+
+}  // namespace fogline::study

@@ -1,0 +1,36 @@
+// The three ways in which a LiDAR fails in fog, and the two humans, with which studies cross their
+// variants.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/study/comparison.h"
+
+namespace fogline::study {
+
+inline constexpr std::string_view kPerfectHuman = "perfect human";
+inline constexpr std::string_view kFallibleHuman = "fallible human";
+
+/// One way in which a LiDAR fails.
+struct FogMode {
+  std::string_view name;
+  std::string_view file;
+  std::vector<std::string> overrides;
+
+  /// The case of this fog with something more, such as a human: "bias fog, perfect human".
+  StudyCase Case(std::string_view with, const std::vector<std::string>& more = {}) const;
+};
+
+/// Bias (paper.json), near echo (dense_fog.json), missing echo.
+const std::vector<FogMode>& FogModes();
+/// What they are, for the method of a study.
+std::string_view FogModesText();
+
+/// Overrides for a human who sees the fog, misjudges distances and loses awareness.
+const std::vector<std::string>& FallibleHuman();
+/// What the two humans are, for the method of a study.
+std::string_view HumansText();
+
+}  // namespace fogline::study
