@@ -16,7 +16,7 @@ namespace {
 constexpr double kLevel = 0.05;
 
 std::string NameWithUnit(std::string_view measure) {
-  const ComparedMeasure& info = ComparedMetrics()[PlaceOfMetric(measure)];
+  const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
   return info.unit.empty() ? NameForReaders(measure)
                            : fmt::format("{} ({})", NameForReaders(measure), info.unit);
 }

@@ -190,7 +190,7 @@ std::vector<Estimate> Comparison::Differences(std::size_t reference) const {
   std::vector<Estimate> differences;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
-      for (const ComparedMeasure& measure : ComparedMetrics()) {
+      for (const ComparedMetric& measure : ComparedMetrics()) {
         differences.push_back(v == reference
                                   ? Estimate{}
                                   : Difference({c, v}, {c, reference}, measure.name));

@@ -94,22 +94,6 @@ std::string ArlText(const AlarmCount& clear) {
   return fmt::format("{} [{}, {}]", Text(clear.ArlZero_s(), 0), Text(low, 0), Text(high, 0));
 }
 
-/// Says whether thresholds keep their rate of false alarms in runs from which they were not found.
-std::string FindingOfArlZero(const ConflictSet& set, std::span<const std::size_t> ranked) {
-  std::vector<std::string> others;
-  std::int64_t as_calibrated = 0;
-  for (const std::size_t m : ranked) {
-    const DetectorThreshold& threshold = set.thresholds[m];
-    if (!threshold.clear.MayHave(kArlZero_s)) {
-      others.push_back(fmt::format("{} {} s", NameOfMeasure(m), ArlText(threshold.clear)));
-    }
-    as_calibrated += AlarmsAsCalibrated(threshold) ? 1 : 0;
-  }
-  return fmt::format("{}: {} of {}{}{} ({} agree with their calibration, up to chance)",
-                     NameOfSet(set), ranked.size() - others.size(), ranked.size(),
-                     others.empty() ? "" : ", but not ", ListText(others), as_calibrated);
-}
-
 std::string PercentText(const Estimate& share) {
   Estimate percent = share;
   for (double* value : {&percent.mean, &percent.low, &percent.high}) *value *= 100;
