@@ -190,7 +190,7 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
            car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
     number(names[2], of.tit_s2, "s2",
            car + ": integral of TTC* - TTC over that time (Minderhoud & Bovy 2001)");
-    number(names[3], of.min_headway_s, "s", car + ": smallest time headway, bumper to bumper");
+    number(names[3], of.min_time_gap_s, "s", car + ": smallest time gap, bumper to bumper");
     number(names[4], of.max_drac_mps2, "m/s2",
            car + ": largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
     number(names[5], of.min_picud_m, "m",
@@ -201,11 +201,11 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
            car + ": crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
   };
   pair("host",
-       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
+       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_time_gap_s", "max_host_drac_mps2",
         "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
        m.host);
   pair("following car",
-       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
+       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_time_gap_s",
         "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
         "follower_cpi"},
        m.follower);

@@ -57,11 +57,11 @@ constexpr std::array<std::string_view, 8> kTableMeasures{"si_pct",
                                                          "collided",
                                                          "min_follower_gap_m",
                                                          "min_follower_ttc_s",
-                                                         "min_follower_headway_s",
+                                                         "min_follower_time_gap_s",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Overrides with which a string settles before the fog, whatever the headways are. The fog is as
+// Overrides with which a string settles before the fog, whatever the time gaps are. The fog is as
 // long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 

@@ -242,8 +242,8 @@ TEST(MeasureTest, MeasuresBothPairsOfCars) {
   const metrics::RunMeasures m = metrics::Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
   EXPECT_EQ(m.host.min_ttc_s, 3);
-  EXPECT_EQ(m.host.min_headway_s, 1.5);
-  EXPECT_EQ(m.follower.min_headway_s, 1.6);
+  EXPECT_EQ(m.host.min_time_gap_s, 1.5);
+  EXPECT_EQ(m.follower.min_time_gap_s, 1.6);
   EXPECT_EQ(m.follower.tet_s, 0);
 }
 

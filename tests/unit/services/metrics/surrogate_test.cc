@@ -76,7 +76,7 @@ TEST(SurrogateTest, CrashProbabilityHoldsWhereTheLimitsLeaveNothingOfTheDistribu
 TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
   const metrics::PairMeasures m = Collect({kFollowing, kClosing, {40, 20, 20}});
   EXPECT_EQ(m.min_ttc_s, 6);
-  EXPECT_EQ(m.min_headway_s, 30.0 / 25);
+  EXPECT_EQ(m.min_time_gap_s, 30.0 / 25);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
   EXPECT_EQ(m.min_picud_m, metrics::UrgentDecelerationGap({}, kClosing));
 }
@@ -111,7 +111,7 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
 TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
   const metrics::PairMeasures m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
   EXPECT_EQ(m.min_ttc_s, 0);
-  EXPECT_EQ(m.min_headway_s, 0);
+  EXPECT_EQ(m.min_time_gap_s, 0);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
   EXPECT_EQ(m.tet_s, kStep_s);
   EXPECT_EQ(m.cpi, 0.5);
@@ -126,8 +126,8 @@ TEST(PairAccumulatorTest, HasNoValuesWithoutACarAhead) {
   EXPECT_EQ(m.cpi, std::nullopt);
 }
 
-TEST(PairAccumulatorTest, ACarThatStandsHasNoHeadway) {
-  EXPECT_EQ(Collect({{5, 0, 0}}).min_headway_s, std::nullopt);
+TEST(PairAccumulatorTest, ACarThatStandsHasNoTimeGap) {
+  EXPECT_EQ(Collect({{5, 0, 0}}).min_time_gap_s, std::nullopt);
 }
 
 }  // namespace
