@@ -42,8 +42,8 @@ struct MeasuresSection {
   FOGLINE_FIELD(double, picud_reaction_s, 1.0, {0, 5, "s"},
                 "Reaction time of the car behind in PICUD.", "1 s in the literature on PICUD");
   FOGLINE_FIELD(double, rss_response_s, 0.5, {0, 5, "s"}, "RSS: response time of the car behind.",
-                "our choice, because ad-rss-lib's set (1 s; 3.5, 4 and 8 m/s2) demands 66 m at 20 "
-                "m/s, this one 22 m");
+                "our choice, because ad-rss-lib's set demands 66 m at 20 m/s, this one 22 m; the "
+                "measures that end in rss_margin_ad_rss_m have ad-rss-lib's set");
   FOGLINE_FIELD(double, rss_acceleration_mps2, 2.0, {0, 10, "m/s2"},
                 "RSS: acceleration of the car behind until it responds.",
                 "our choice, because it belongs to the set of values that rss_response_s explains");

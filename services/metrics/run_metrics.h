@@ -183,7 +183,7 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "largest shortfall of the following car's safe distance");
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
-  const auto pair = [&](const std::string& car, const std::array<std::string_view, 8>& names,
+  const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,
                         const PairMeasures& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
     number(names[1], of.tet_s, "s",
@@ -197,17 +197,19 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
            car + ": smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
     number(names[6], of.min_rss_margin_m, "m",
            car + ": smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
-    number(names[7], of.cpi, "",
+    number(names[7], of.min_rss_margin_ad_rss_m, "m",
+           car + ": the same margin with the parameters that ad-rss-lib suggests");
+    number(names[8], of.cpi, "",
            car + ": crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
   };
   pair("host",
        {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_time_gap_s", "max_host_drac_mps2",
-        "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
+        "min_host_picud_m", "min_host_rss_margin_m", "min_host_rss_margin_ad_rss_m", "host_cpi"},
        m.host);
   pair("following car",
        {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_time_gap_s",
         "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
-        "follower_cpi"},
+        "min_follower_rss_margin_ad_rss_m", "follower_cpi"},
        m.follower);
   count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
   number("collision_time_s", m.collision_time_s, "s", "time of the first collision");

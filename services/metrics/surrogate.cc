@@ -69,7 +69,8 @@ PairAccumulator::PairAccumulator(const MeasuresSection& section)
       min_time_gap_s_(kInfinite),
       max_drac_mps2_(-kInfinite),
       min_picud_m_(kInfinite),
-      min_rss_margin_m_(kInfinite) {}
+      min_rss_margin_m_(kInfinite),
+      min_rss_margin_ad_rss_m_(kInfinite) {}
 
 void PairAccumulator::Pass(double duration_s) {
   if (!ttc_s_) return;
@@ -96,9 +97,11 @@ void PairAccumulator::Add(const CarPair& pair, double since_s) {
     min_time_gap_s_ = std::min(min_time_gap_s_, std::max(0.0, pair.gap_m) / pair.speed_mps);
   }
   min_picud_m_ = std::min(min_picud_m_, UrgentDecelerationGap(section_, pair));
-  min_rss_margin_m_ =
-      std::min(min_rss_margin_m_,
-               pair.gap_m - models::RssSafeDistance(rss_, pair.speed_mps, pair.lead_speed_mps));
+  const auto margin_m = [&](const models::RssParameters& rss) {
+    return pair.gap_m - models::RssSafeDistance(rss, pair.speed_mps, pair.lead_speed_mps);
+  };
+  min_rss_margin_m_ = std::min(min_rss_margin_m_, margin_m(rss_));
+  min_rss_margin_ad_rss_m_ = std::min(min_rss_margin_ad_rss_m_, margin_m(models::RssParameters{}));
 }
 
 PairMeasures PairAccumulator::Result() const {
@@ -106,7 +109,8 @@ PairMeasures PairAccumulator::Result() const {
                       .min_time_gap_s = IfFinite(min_time_gap_s_),
                       .max_drac_mps2 = IfFinite(max_drac_mps2_),
                       .min_picud_m = IfFinite(min_picud_m_),
-                      .min_rss_margin_m = IfFinite(min_rss_margin_m_)};
+                      .min_rss_margin_m = IfFinite(min_rss_margin_m_),
+                      .min_rss_margin_ad_rss_m = IfFinite(min_rss_margin_ad_rss_m_)};
   if (met_) {
     result.tet_s = tet_s_;
     result.tit_s2 = tit_s2_;

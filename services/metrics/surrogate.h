@@ -57,8 +57,11 @@ struct PairMeasures {
   std::optional<double> max_drac_mps2;
   /// Least PICUD, m.
   std::optional<double> min_picud_m;
-  /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017).
+  /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017), with the
+  /// parameters of the scenario.
   std::optional<double> min_rss_margin_m;
+  /// The same with the parameters that ad-rss-lib suggests: the defaults of models::RssParameters.
+  std::optional<double> min_rss_margin_ad_rss_m;
   /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
   /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).
   std::optional<double> cpi;
@@ -91,6 +94,7 @@ class PairAccumulator {
   double max_drac_mps2_;
   double min_picud_m_;
   double min_rss_margin_m_;
+  double min_rss_margin_ad_rss_m_;
   // Integrals so far.
   double time_s_ = 0;
   double tet_s_ = 0;

@@ -318,7 +318,7 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
     }
   };
   metrics::VisitMeasures(metrics::RunMeasures(), check);
-  EXPECT_EQ(names.size(), 42U);
+  EXPECT_EQ(names.size(), 44U);
 }
 
 TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
@@ -340,7 +340,7 @@ TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
           follower[without(name, "follower")] = description.substr(kFollower.size());
         }
       });
-  EXPECT_EQ(host.size(), 9U);
+  EXPECT_EQ(host.size(), 10U);
   EXPECT_EQ(host, follower);
 }
 

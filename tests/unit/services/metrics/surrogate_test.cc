@@ -86,6 +86,16 @@ TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
   EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_m, 8, 1e-12);
 }
 
+TEST(PairAccumulatorTest, RssMarginWithTheParametersOfAdRssLibDoesNotDependOnTheScenario) {
+  // 20 * 1 + 3.5 * 1/2 + 23.5^2/8 - 20^2/16 = 20 + 1.75 + 69.03125 - 25 = 65.78125 m.
+  EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
+  MeasuresSection section;
+  section.rss_response_s = 0;
+  const metrics::PairMeasures m = Collect({kFollowing, {40, 20, 20}}, section);
+  EXPECT_NEAR(*m.min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
+  EXPECT_GT(*m.min_rss_margin_m, 8);
+}
+
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
   // TTC* is 2 s. The last step has no duration.
   const metrics::PairMeasures m =
@@ -123,6 +133,7 @@ TEST(PairAccumulatorTest, HasNoValuesWithoutACarAhead) {
   EXPECT_EQ(m.tet_s, std::nullopt);
   EXPECT_EQ(m.max_drac_mps2, std::nullopt);
   EXPECT_EQ(m.min_rss_margin_m, std::nullopt);
+  EXPECT_EQ(m.min_rss_margin_ad_rss_m, std::nullopt);
   EXPECT_EQ(m.cpi, std::nullopt);
 }
 
