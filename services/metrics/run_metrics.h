@@ -226,8 +226,7 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   number("wrong_human_s", m.detection.wrong_human_s, "s",
          "time, weighted by authority, in which the human drives although the LiDAR is right");
   number("wrong_automation_s", m.detection.wrong_automation_s, "s",
-         "time, weighted by authority, in which the automation drives although LiDAR and fusion "
-         "are deceived");
+         "time, weighted by authority, in which the automation drives on a wrong track");
   number("deception_to_alarm_s", m.detection.deception_to_alarm_s, "s",
          "time from the first step with a LiDAR error above measures.lidar_tolerance_m until DoC "
          ">= threshold; 0 if DoC had reached it before");

@@ -292,7 +292,7 @@ std::string NameForReaders(std::string_view measure) {
       {"min_follower_gap_m", "follower's smallest gap"},
       {"human_time_s", "driving time of the human"},
       {"wrong_human_s", "driving time of the human while the LiDAR is right"},
-      {"wrong_automation_s", "driving time of a deceived automation"},
+      {"wrong_automation_s", "driving time of the automation on a wrong track"},
       {"rms_fusion_error_m", "RMS error of the fused distance"},
   };
   for (const auto& [name, text] : kNames) {

@@ -111,7 +111,7 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
       comparison.FigureOf("rhe_pct", "policy-rhe", "Redundant human engagement by policy"),
       comparison.FigureOf("max_abs_jerk_mps3", "policy-jerk", "Comfort by policy: largest jerk"),
       comparison.FigureOf("wrong_automation_s", "policy-wrong",
-                          "Driving time of a deceived automation, by policy")};
+                          "Driving time of the automation on a wrong track, by policy")};
   section.method = fmt::format(
       "{} seeds of paper.json, of paper.json with a calibrated radar (without its mounting offset, "
       "which is subtracted from the centre of the DoC), and of dense_fog.json, each with every "
