@@ -13,7 +13,8 @@ namespace fogline {
 
 /// MPC-based ACC, of the host and of the following cars.
 struct AccSection {
-  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"}, "Time gap T_hw, bumper to bumper, in d_r = T_hw v + d_0.",
+  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"},
+                "Time gap T_hw, bumper to bumper, in d_r = T_hw v + d_0.",
                 "ISO 15622 offers 1.5 to 2.2 s");
   FOGLINE_FIELD(double, standstill_m, 3.0, {0, 50, "m"},
                 "Standstill gap d_0 in d_r = T_hw v + d_0.",

@@ -69,10 +69,11 @@ struct MeasuresSection {
       "Time after a change of the authorities in which jerk counts as that of the hand-over.",
       "our choice, because by default the longest ramp or gate is 2 s, and a car responds with a "
       "lag");
-  FOGLINE_FIELD(double, lidar_tolerance_m, 0.1, {1e-3, 100, "m"},
-                "Error from which on a distance counts as wrong: that of the LiDAR, and that of the "
-                "track beyond the error that the sensors' offsets cause.",
-                "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
+  FOGLINE_FIELD(
+      double, lidar_tolerance_m, 0.1, {1e-3, 100, "m"},
+      "Error from which on a distance counts as wrong: that of the LiDAR, and that of the "
+      "track beyond the error that the sensors' offsets cause.",
+      "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
 };
 
 struct Scenario {

@@ -17,9 +17,7 @@ double LidarError(const Sample& sample, const LidarSection& lidar) {
 }
 
 DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)
-    : tolerance_m_(scenario.measures.lidar_tolerance_m),
-      lidar_(scenario.lidar),
-      track_(scenario) {}
+    : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar), track_(scenario) {}
 
 // A missing value (NaN) does not count as deceived.
 bool DetectionAccumulator::IsDeceived(const Sample& sample) const {

@@ -17,9 +17,9 @@ struct DetectionMeasures {
   /// Time under the wrong controller, s: time of the human while the LiDAR is right, weighted by
   /// his authority.
   double wrong_human_s = 0;
-  /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge). So
-  /// a policy that does not use the deceived LiDAR is not blamed for it, and one that returns the
-  /// car to a filter that has not settled is.
+  /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
+  /// So a policy that does not use the deceived LiDAR is not blamed for it, and one that returns
+  /// the car to a filter that has not settled is.
   double wrong_automation_s = 0;
   /// Time from the first step in which the LiDAR is deceived to the first step with an alarm from
   /// then on, s. 0 if the alarm is already there, for example if fog raises the Degree of Conflict

@@ -91,14 +91,18 @@ void MeasureAccumulator::AddTransfer(const Sample& sample) {
 void MeasureAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
   Raise(measures_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
+  const bool in_handover =
+      authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s;
+  if (const auto mean_mps3 = averaged_jerk_.Add(sample.time_s, sample.host_acceleration_mps2)) {
+    Raise(measures_.max_abs_jerk_1s_mps3, *mean_mps3);
+    if (in_handover) Raise(measures_.max_handover_jerk_1s_mps3, *mean_mps3);
+  }
   if (!previous_ || previous_->step == 0) return;
   const double jerk_mps3 = (sample.host_acceleration_mps2 - previous_->host_acceleration_mps2) /
                            (sample.time_s - previous_->time_s);
   Raise(measures_.max_abs_jerk_mps3, std::abs(jerk_mps3));
   squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
-  if (authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s) {
-    Raise(measures_.max_handover_jerk_mps3, std::abs(jerk_mps3));
-  }
+  if (in_handover) Raise(measures_.max_handover_jerk_mps3, std::abs(jerk_mps3));
 }
 
 void MeasureAccumulator::AddSensing(const Sample& sample) {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "scenario/sections/scenario.h"
+#include "services/metrics/averaged_jerk.h"
 #include "services/metrics/detection.h"
 #include "services/metrics/running.h"
 #include "services/metrics/sample.h"
@@ -66,14 +67,21 @@ struct RunMeasures {
   /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
   /// step until `handover_s` after its last step.
   std::optional<double> max_handover_jerk_mps3;
+  /// The same of the jerk averaged over 1 s (AveragedJerk). Its second may begin before the change.
+  std::optional<double> max_handover_jerk_1s_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
   DetectionMeasures detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
   /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
-  /// next, divided by the time between them.
+  /// next, divided by the time between them. So a jump of the acceleration has a jerk that grows as
+  /// the step shrinks.
   std::optional<double> max_abs_jerk_mps3;
+  /// Largest |jerk| of the host, averaged over 1 s as in ISO 15622, m/s3 (AveragedJerk): the
+  /// largest change of the applied acceleration within 1 s. It does not depend on the length of a
+  /// step.
+  std::optional<double> max_abs_jerk_1s_mps3;
   /// Root of the mean square of that jerk, m/s3.
   std::optional<double> rms_jerk_mps3;
 
@@ -125,6 +133,7 @@ class MeasureAccumulator {
   DetectionAccumulator detection_;
   RunMeasures measures_;  // measures without a final division
   Mean compromised_safety_fog_m_;
+  AveragedJerk averaged_jerk_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
   Mean human_in_clear_air_;  // 1 or 0 in each step
@@ -223,6 +232,8 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "largest jump of the commanded acceleration at a hand-over");
   number("max_handover_jerk_mps3", m.max_handover_jerk_mps3, "m/s3",
          "largest jerk of the host within measures.handover_s after a change of the authorities");
+  number("max_handover_jerk_1s_mps3", m.max_handover_jerk_1s_mps3, "m/s3",
+         "the same, averaged over 1 s (ISO 15622)");
   number("wrong_human_s", m.detection.wrong_human_s, "s",
          "time, weighted by authority, in which the human drives although the LiDAR is right");
   number("wrong_automation_s", m.detection.wrong_automation_s, "s",
@@ -235,6 +246,8 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
          "largest acceleration or braking of the host");
   number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");
+  number("max_abs_jerk_1s_mps3", m.max_abs_jerk_1s_mps3, "m/s3",
+         "largest jerk of the host, averaged over 1 s (ISO 15622)");
   number("rms_jerk_mps3", m.rms_jerk_mps3, "m/s3", "root mean square of the host's jerk");
   number("max_doc", m.max_doc, "", "largest Degree of Conflict");
   number("min_conflict_clear_m", m.min_conflict_clear_m, "m", "smallest conflict z in clear air");

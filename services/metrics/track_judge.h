@@ -15,8 +15,8 @@ namespace fogline::metrics {
 /// knows them.
 double ErrorOfOffsets(const Scenario& scenario);
 
-/// In a step the track is *wrong* if its fused distance d_fused lies more than the tolerance outside
-/// the true gap d and the distance d + e_0 of clear air:
+/// In a step the track is *wrong* if its fused distance d_fused lies more than the tolerance
+/// outside the true gap d and the distance d + e_0 of clear air:
 ///
 ///     d_fused - d < min(0, e_0) - tolerance   or   d_fused - d > max(0, e_0) + tolerance
 ///

@@ -1,5 +1,6 @@
 #include "services/metrics/run_metrics.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -259,6 +260,37 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   EXPECT_EQ(m.max_abs_acceleration_mps2, 2.5);
 }
 
+// A run of 10 s: a hand-over at 4 s makes the acceleration jump by 0.6 m/s2. At 8 s, when the
+// hand-over is over, it rises by 1.5 m/s3 for 1 s.
+std::vector<metrics::Sample> RunWithAJump(double step_s) {
+  std::vector<metrics::Sample> run(static_cast<std::size_t>(std::lround(10 / step_s)) + 1);
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    run[k].step = static_cast<std::int64_t>(k);
+    run[k].time_s = static_cast<double>(std::llround(1e6 * step_s * static_cast<double>(k))) * 1e-6;
+    const double time_s = run[k].time_s;
+    run[k].lambda_human = time_s > 4 - 1e-9 ? 1 : 0;
+    run[k].host_acceleration_mps2 =
+        (time_s > 4 + 1e-9 ? 0.4 : -0.2) + 1.5 * std::clamp(time_s - 8, 0.0, 1.0);
+  }
+  return run;
+}
+
+TEST(MeasureTest, JerkOverASecondDoesNotDependOnTheStepButTheJerkOfAJumpDoes) {
+  for (const double step_s : {0.1, 0.05, 0.02}) {
+    const metrics::RunMeasures m = metrics::Measure(RunWithAJump(step_s));
+    EXPECT_NEAR(*m.max_handover_jerk_1s_mps3, 0.6, 1e-9) << step_s;
+    EXPECT_NEAR(*m.max_abs_jerk_1s_mps3, 1.5, 1e-9) << step_s;
+    EXPECT_NEAR(*m.max_handover_jerk_mps3, 0.6 / step_s, 1e-6) << step_s;
+    EXPECT_NEAR(*m.max_abs_jerk_mps3, 0.6 / step_s, 1e-6) << step_s;
+  }
+}
+
+TEST(MeasureTest, JerkOverASecondNeedsASecondAndAHandOver) {
+  EXPECT_EQ(metrics::Measure(QuietRun(3)).max_abs_jerk_1s_mps3, std::nullopt);  // 0.5 s to 1 s
+  EXPECT_EQ(metrics::Measure(QuietRun(4)).max_abs_jerk_1s_mps3, 0);
+  EXPECT_EQ(metrics::Measure(QuietRun(4)).max_handover_jerk_1s_mps3, std::nullopt);
+}
+
 TEST(MeasureTest, BrakingCountsAsAcceleration) {
   auto run = QuietRun(3);
   run[1].host_acceleration_mps2 = 1;
@@ -318,7 +350,7 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
     }
   };
   metrics::VisitMeasures(metrics::RunMeasures(), check);
-  EXPECT_EQ(names.size(), 44U);
+  EXPECT_EQ(names.size(), 46U);
 }
 
 TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {

@@ -15,7 +15,8 @@
 namespace fogline::test {
 namespace {
 
-constexpr double kSmooth_mps3 = 2.5;  // ISO 15622 above 20 m/s
+// ISO 15622 above 20 m/s. It averages over 1 s; here every single step keeps the limit, too.
+constexpr double kSmooth_mps3 = 2.5;
 
 Scenario Paper() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"); }
 
