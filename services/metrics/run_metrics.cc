@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <stdexcept>
-#include <string>
 
 #include "services/models/minimal_risk/modes.h"
 
@@ -32,7 +29,8 @@ MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
     : handover_s_(scenario.measures.handover_s),
       host_(scenario.measures),
       follower_(scenario.measures),
-      detection_(scenario) {}
+      detection_(scenario),
+      track_(scenario) {}
 
 // AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
 // the command of a step is applied only in the next one.
@@ -55,6 +53,11 @@ void MeasureAccumulator::AddSafety(const Sample& sample) {
   Lower(measures_.min_follower_gap_m, sample.follower_gap_m);
   Raise(measures_.max_compromised_safety_m, compromised);
   if (sample.fog_present) compromised_safety_fog_m_.Add(compromised);
+  compromised_safety_until_recovery_m_.Step(sample.fog_present, track_.IsWrong(sample),
+                                            [&](CompromisedSafetySums& sums) {
+                                              Raise(sums.max_m, compromised);
+                                              sums.mean_m.Add(compromised);
+                                            });
   if (sample.collision != truth_t::COLLISION_NONE && !measures_.collision_time_s) {
     measures_.collision = sample.collision;
     measures_.collision_time_s = sample.collision_time_s;
@@ -118,6 +121,9 @@ void MeasureAccumulator::AddSensing(const Sample& sample) {
 RunMeasures MeasureAccumulator::Result() const {
   RunMeasures result = measures_;
   result.mean_compromised_safety_fog_m = compromised_safety_fog_m_.Value();
+  const CompromisedSafetySums& until_recovery = compromised_safety_until_recovery_m_.sums();
+  result.max_compromised_safety_until_recovery_m = until_recovery.max_m;
+  result.mean_compromised_safety_until_recovery_m = until_recovery.mean_m.Value();
   if (const auto share = human_in_clear_air_.Value()) result.rhe_pct = kPercent * *share;
   result.rms_jerk_mps3 = Root(squared_jerk_m2ps6_.Value());
   result.rms_fusion_error_m = Root(squared_fusion_error_m2_.Value());
@@ -135,31 +141,6 @@ RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario) {
   MeasureAccumulator accumulator(scenario);
   for (const Sample& sample : samples) accumulator.Add(sample);
   return accumulator.Result();
-}
-
-void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
-  if (baseline.step != traded.step) {
-    throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
-                                " of the baseline does not pair with step " +
-                                std::to_string(traded.step));
-  }
-  const double without = CompromisedSafety(baseline);
-  if (!baseline.fog_present || !(without > floor_m_)) return;
-  sum_ += (without - CompromisedSafety(traded)) / without;
-  ++relevant_steps_;
-}
-
-std::optional<double> SafetyImprovement::Pct() const {
-  if (relevant_steps_ == 0) return std::nullopt;
-  return kPercent * sum_ / static_cast<double>(relevant_steps_);
-}
-
-std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
-                                           std::span<const Sample> traded, double floor_m) {
-  SafetyImprovement improvement(floor_m);
-  const std::size_t steps = std::min(baseline.size(), traded.size());
-  for (std::size_t i = 0; i < steps; ++i) improvement.Add(baseline[i], traded[i]);
-  return improvement.Pct();
 }
 
 }  // namespace fogline::metrics

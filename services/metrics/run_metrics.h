@@ -15,6 +15,8 @@
 #include "services/metrics/running.h"
 #include "services/metrics/sample.h"
 #include "services/metrics/surrogate.h"
+#include "services/metrics/track_judge.h"
+#include "services/metrics/until_recovery.h"
 
 namespace fogline::metrics {
 
@@ -39,6 +41,10 @@ struct RunMeasures {
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
   std::optional<double> mean_compromised_safety_fog_m;
+  /// The largest CS and its mean, m, from the first step in fog until the track is right again for
+  /// good, or the run ends (UntilRecovery). nullopt without fog.
+  std::optional<double> max_compromised_safety_until_recovery_m;
+  std::optional<double> mean_compromised_safety_until_recovery_m;
   /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
   std::int8_t collision = truth_t::COLLISION_NONE;
   /// Its simulated time, s.
@@ -108,8 +114,8 @@ double CompromisedSafety(const Sample& sample);
 /// Collects the measures of a run, sample by sample, in order of steps.
 class MeasureAccumulator {
  public:
-  /// For a run of this scenario: uses its section `measures`, and bias and lateral offset of its
-  /// LiDAR.
+  /// For a run of this scenario: uses its section `measures`, the offsets of its sensors, and the
+  /// noise that its filter assumes.
   explicit MeasureAccumulator(const Scenario& scenario);
   /// For a run of a scenario with the defaults.
   MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
@@ -120,6 +126,11 @@ class MeasureAccumulator {
   RunMeasures Result() const;
 
  private:
+  struct CompromisedSafetySums {
+    std::optional<double> max_m;
+    Mean mean_m;
+  };
+
   void AddSafety(const Sample& sample);
   void AddPairs(const Sample& sample);
   void AddAuthority(const Sample& sample);
@@ -132,7 +143,9 @@ class MeasureAccumulator {
   PairAccumulator follower_;
   DetectionAccumulator detection_;
   RunMeasures measures_;  // measures without a final division
+  TrackJudge track_;
   Mean compromised_safety_fog_m_;
+  UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;
   AveragedJerk averaged_jerk_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
@@ -145,37 +158,6 @@ class MeasureAccumulator {
 
 /// Measures of a whole run of a scenario.
 RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
-
-/// Safety improvement SI of a run with traded control over its baseline, a run without traded
-/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
-///
-///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
-///
-/// over the n relevant steps, those in fog with CS_baseline > floor. The ratio of one step can be
-/// far below 0, never above 1.
-class SafetyImprovement {
- public:
-  /// @param floor_m at least 0; avoids the ratio 0/0
-  explicit SafetyImprovement(double floor_m) : floor_m_(floor_m) {}
-
-  /// Adds a step of both runs.
-  /// @throws std::invalid_argument if the samples are not of the same step.
-  void Add(const Sample& baseline, const Sample& traded);
-
-  /// SI so far in %; nullopt without a relevant step.
-  std::optional<double> Pct() const;
-
- private:
-  double floor_m_;
-  double sum_ = 0;
-  std::int64_t relevant_steps_ = 0;
-};
-
-/// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
-/// both runs have.
-/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
-std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
-                                           std::span<const Sample> traded, double floor_m);
 
 template <class Visitor>
 void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
@@ -192,6 +174,10 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "largest shortfall of the following car's safe distance");
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
+  number("max_compromised_safety_until_recovery_m", m.max_compromised_safety_until_recovery_m, "m",
+         "largest shortfall from the fog's begin until the track is right again");
+  number("mean_compromised_safety_until_recovery_m", m.mean_compromised_safety_until_recovery_m,
+         "m", "mean shortfall from the fog's begin until the track is right again");
   const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,
                         const PairMeasures& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");

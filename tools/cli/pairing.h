@@ -1,10 +1,11 @@
-// Finds the paired run without traded control of each run: the safety improvement SI needs both.
+// Finds the paired run without traded control of each run: the measures of a pair, such as the
+// safety improvement SI, need both.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "services/metrics/safety_improvement.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline::cli {
@@ -12,8 +13,8 @@ namespace fogline::cli {
 /// The scenario of the paired run: lambda_A = 1 throughout, everything else the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
-/// SI in % of every run whose pair is among `runs`: a run of the same scenario and seed with policy
-/// none, where only the arbitrator differs. nullopt for the others.
-std::vector<std::optional<double>> SafetyImprovements(std::span<const runner::LoggedRun> runs);
+/// The measures of every run whose pair is among `runs`: a run of the same scenario and seed with
+/// policy none, where only the arbitrator differs. They are empty for the others.
+std::vector<metrics::PairedMeasures> MeasurePairs(std::span<const runner::LoggedRun> runs);
 
 }  // namespace fogline::cli

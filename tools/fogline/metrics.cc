@@ -1,6 +1,10 @@
 // fogline metrics: prints the measures of runs, from their logs alone.
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -26,7 +30,7 @@ int RunMetrics(const MetricsArguments& arguments) {
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     runs.push_back(runner::ReadLoggedRun(log));
   });
-  const std::vector<std::optional<double>> improvements = cli::SafetyImprovements(runs);
+  const std::vector<metrics::PairedMeasures> pairs = cli::MeasurePairs(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const runner::LoggedRun& run = runs[i];
@@ -35,7 +39,11 @@ int RunMetrics(const MetricsArguments& arguments) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
-      row["si_pct"] = improvements[i] ? nlohmann::ordered_json(*improvements[i]) : nullptr;
+      metrics::VisitPairedMeasures(
+          pairs[i], [&row](std::string_view name, const std::optional<double>& value,
+                           std::string_view, std::string_view) {
+            row[std::string(name)] = value ? nlohmann::ordered_json(*value) : nullptr;
+          });
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
       row["metrics"] = nlohmann::ordered_json::parse(cli::MeasuresJson(run.result));
       rows.push_back(std::move(row));
@@ -46,10 +54,13 @@ int RunMetrics(const MetricsArguments& arguments) {
                EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
                collision);
     if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
-    if (improvements[i]) {
-      fmt::print("  {:<32}{:>12} %\n", "si_pct",
-                 report::MeasureText("si_pct", *improvements[i], "%"));
-    }
+    metrics::VisitPairedMeasures(
+        pairs[i], [](std::string_view name, const std::optional<double>& value,
+                     std::string_view unit, std::string_view) {
+          if (value) {
+            fmt::print("  {:<32}{:>12} {}\n", name, report::MeasureText(name, *value, unit), unit);
+          }
+        });
     fmt::print("{}", cli::MeasuresText(run.result));
   }
   if (arguments.json) cli::PrintJson(rows);

@@ -100,7 +100,7 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
                        external.Command(role)));
   }
   std::vector<sweep::ThresholdRow> rows;
-  for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});
+  for (const double threshold : thresholds) rows.emplace_back().threshold = threshold;
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
@@ -110,9 +110,7 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
       scenario.arbitrator.threshold = row.threshold;
       const runner::ExperimentResult result =
           RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
-      row.Add(metrics::SafetyImprovementPct(baseline.samples, result.samples,
-                                            scenario.measures.safety_floor_m),
-              result.measures);
+      row.Add(metrics::MeasurePair(baseline.samples, result.samples, scenario), result.measures);
     }
     progress.Show(seed - seeds.first + 1);
   }

@@ -36,8 +36,10 @@ struct ReportRun {
   std::string digest;
   std::vector<metrics::Sample> samples;  // in order of time
   std::vector<ReportMeasure> measures;
-  std::optional<double> si_pct =
-      {};  // safety improvement over the paired run without traded control
+  // Safety improvement over the paired run without traded control, in fog, and until the track has
+  // recovered (metrics::PairedMeasures).
+  std::optional<double> si_pct = {};
+  std::optional<double> si_until_recovery_pct = {};
 };
 
 /// The paper's table. Standard deviations are over seeds; published values come from the scenario.

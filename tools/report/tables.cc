@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "services/metrics/safety_improvement.h"
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
 #include "tools/stats/statistics.h"
@@ -95,12 +96,14 @@ void Put(std::vector<MeasureRow>& rows, const ReportMeasure& measure, std::size_
 std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
   std::vector<MeasureRow> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].si_pct) {
-      Put(rows,
-          {"si_pct", *runs[i].si_pct, "%",
-           "safety improvement over the paired run without traded control"},
-          i, runs.size());
-    }
+    metrics::VisitPairedMeasures(
+        {.si_pct = runs[i].si_pct, .si_until_recovery_pct = runs[i].si_until_recovery_pct},
+        [&](std::string_view name, const std::optional<double>& value, std::string_view unit,
+            std::string_view description) {
+          if (!value) return;
+          Put(rows, {std::string(name), *value, std::string(unit), std::string(description)}, i,
+              runs.size());
+        });
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const ReportMeasure& measure : runs[i].measures) Put(rows, measure, i, runs.size());

@@ -9,6 +9,7 @@
 
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/report/measure_text.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
@@ -18,14 +19,14 @@ namespace fogline::study {
 namespace {
 
 std::vector<ComparedMeasure> AllMeasures() {
-  std::vector<ComparedMeasure> all{
-      {"si_pct", "%", "safety improvement over the paired run without traded control"},
-      {"collided", "", "probability of a collision"}};
-  metrics::VisitMeasures(
-      metrics::RunMeasures{},
-      [&](std::string_view name, const auto&, std::string_view unit, std::string_view description) {
-        all.push_back({std::string(name), std::string(unit), std::string(description)});
-      });
+  std::vector<ComparedMeasure> all;
+  const auto put = [&](std::string_view name, const auto&, std::string_view unit,
+                       std::string_view description) {
+    all.push_back({std::string(name), std::string(unit), std::string(description)});
+  };
+  metrics::VisitPairedMeasures({}, put);
+  put("collided", 0, "", "probability of a collision");
+  metrics::VisitMeasures(metrics::RunMeasures{}, put);
   return all;
 }
 
@@ -276,10 +277,15 @@ report::StudyTable Comparison::TableOfVariant(std::size_t variant,
 std::string NameForReaders(std::string_view measure) {
   constexpr std::pair<std::string_view, std::string_view> kNames[] = {
       {"si_pct", "safety improvement (SI)"},
+      {"si_until_recovery_pct", "safety improvement until the tracks have recovered"},
       {"rhe_pct", "redundant human engagement (RHE)"},
       {"collided", "collision probability"},
       {"mean_compromised_safety_fog_m", "mean compromised safety in fog"},
+      {"mean_compromised_safety_until_recovery_m",
+       "mean compromised safety until the track has recovered"},
       {"max_compromised_safety_m", "worst compromised safety"},
+      {"max_compromised_safety_until_recovery_m",
+       "worst compromised safety until the track has recovered"},
       {"max_handover_jerk_mps3", "largest jerk at a hand-over"},
       {"max_handover_jerk_1s_mps3", "largest jerk at a hand-over, averaged over 1 s"},
       {"max_handover_jump_mps2", "largest jump of the command at a hand-over"},

@@ -35,7 +35,8 @@ struct StudyVariant {
 /// The override for a run without traded control.
 inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=none";
 
-/// A measure of a run: one of VisitMeasures(), the safety improvement, or "collided" (1 or 0).
+/// A measure of a run: one of VisitPairedMeasures(), "collided" (1 or 0), or one of
+/// VisitMeasures().
 struct ComparedMeasure {
   std::string name;
   std::string unit;

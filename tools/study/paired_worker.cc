@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 
 namespace fogline::study {
@@ -18,11 +19,14 @@ void KeepInfinite(metrics::PairMeasures& pair) {
 }
 
 // The values are in the order of ComparedMeasures().
-RunValues ValuesOf(metrics::RunMeasures measures, const std::optional<double>& si_pct) {
+RunValues ValuesOf(metrics::RunMeasures measures, const metrics::PairedMeasures& paired) {
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
-  RunValues values{si_pct.value_or(stats::kMissing),
-                   measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
+  RunValues values;
+  metrics::VisitPairedMeasures(
+      paired, [&](std::string_view, const std::optional<double>& value, std::string_view,
+                  std::string_view) { values.push_back(value.value_or(stats::kMissing)); });
+  values.push_back(measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0);
   metrics::VisitMeasures(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
@@ -56,15 +60,15 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
     metrics::MeasureAccumulator measures(scenario);
-    metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
+    metrics::PairedAccumulator pair(scenario);
     std::size_t i = 0;
     Run(scenario, seed, [&](const metrics::StepView& step) {
       const metrics::Sample sample = step.ToSample();
       measures.Add(sample);
-      // If one run of the pair ended early, SI covers only the steps that both have.
-      if (i < baseline_.size()) improvement.Add(baseline_[i++], sample);
+      // If one run of the pair ended early, the pair has only the steps that both have.
+      if (i < baseline_.size()) pair.Add(baseline_[i++], sample);
     });
-    runs.push_back(ValuesOf(measures.Result(), improvement.Pct()));
+    runs.push_back(ValuesOf(measures.Result(), pair.Result()));
   }
   return runs;
 }

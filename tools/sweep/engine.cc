@@ -47,17 +47,17 @@ SweepRow SweepWorker::ComputeRow() {
     scenario_.arbitrator.policy = policy;
   }
   metrics::MeasureAccumulator measures(scenario_);
-  metrics::SafetyImprovement improvement(scenario_.measures.safety_floor_m);
+  metrics::PairedAccumulator pair(scenario_);
   std::size_t i = 0;
   Run([&](const metrics::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
-    // If one run of the pair ended early, SI covers only the steps that both have.
+    // If one run of the pair ended early, the pair has only the steps that both have.
     if (policy != Policy::kNone && i < baseline_.size()) {
-      improvement.Add(baseline_[i++], sample);
+      pair.Add(baseline_[i++], sample);
     }
   });
-  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
+  return {.measures = measures.Result(), .paired = pair.Result()};
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

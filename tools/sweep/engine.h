@@ -8,6 +8,7 @@
 
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline::sweep {
@@ -15,9 +16,9 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMeasures measures;
-  /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
-  /// for a paired run without compromised safety.
-  std::optional<double> si_pct;
+  /// Measures of the pair with the run without traded control. They are empty for a run that is its
+  /// own pair, and for a paired run without compromised safety.
+  metrics::PairedMeasures paired;
 };
 
 /// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.

@@ -11,6 +11,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
 
@@ -19,15 +20,20 @@ namespace fogline::sweep {
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
   /// Adds a run. SI and RHE may be missing: SI needs compromised safety in the paired run.
-  void Add(const std::optional<double>& si, const metrics::RunMeasures& measures) {
-    if (si) si_pct.Add(*si);
-    if (measures.rhe_pct) rhe_pct.Add(*measures.rhe_pct);
+  void Add(const metrics::PairedMeasures& paired, const metrics::RunMeasures& measures) {
+    const auto add = [](const std::optional<double>& value, stats::Statistics& to) {
+      if (value) to.Add(*value);
+    };
+    add(paired.si_pct, si_pct);
+    add(paired.si_until_recovery_pct, si_until_recovery_pct);
+    add(measures.rhe_pct, rhe_pct);
     if (measures.collision != truth_t::COLLISION_NONE) ++collisions;
   }
 
   double threshold = 0;
   stats::Statistics si_pct;
   stats::Statistics rhe_pct;
+  stats::Statistics si_until_recovery_pct;
   std::int64_t collisions = 0;  // runs with a collision
 };
 

@@ -35,8 +35,9 @@ TEST(ListTextTest, JoinsNames) {
 
 TEST(ComparedMeasuresTest, HasSafetyImprovementCollisionsAndEveryMeasureOfARun) {
   EXPECT_EQ(study::PlaceOfMeasure("si_pct"), 0U);
-  EXPECT_EQ(study::PlaceOfMeasure("collided"), 1U);
-  EXPECT_GT(study::PlaceOfMeasure("max_handover_jerk_mps3"), 1U);
+  EXPECT_EQ(study::PlaceOfMeasure("si_until_recovery_pct"), 1U);
+  EXPECT_EQ(study::PlaceOfMeasure("collided"), 2U);
+  EXPECT_GT(study::PlaceOfMeasure("max_handover_jerk_mps3"), 2U);
   EXPECT_THROW(study::PlaceOfMeasure("levity"), std::out_of_range);
 }
 

@@ -11,6 +11,7 @@
 #include "scenario/io/loader.h"
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 
 namespace fogline::test {
 namespace {
