@@ -50,10 +50,11 @@ struct RunMeasures {
   /// Its simulated time, s.
   std::optional<double> collision_time_s;
 
-  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
-  /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
-  /// services/models/minimal_risk/modes.h. In traded control he then drives; in shared control he
-  /// may have a small part.
+  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
+  /// This reinterprets Sourav & Cheng 2024: their words taken literally cannot give the 0 % that
+  /// they print beside an SI of 80.79 %.
+  /// Engaged means lambda_H > 0, as HumanIsEngaged() in services/models/minimal_risk/modes.h. In
+  /// traded control he then drives; in shared control he may have a small part.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. It ends with the last step, because the command of
   /// that step is never carried out.

@@ -153,20 +153,51 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::stri
       out["published_si_pct"] = published->si_pct;
       out["published_rhe_pct"] = published->rhe_pct;
     }
+    const stats::Summary until_recovery = row.si_until_recovery_pct.Result();
+    out["si_until_recovery_pct"] = OrNull(until_recovery.mean);
+    out["si_until_recovery_std_pct"] = OrNull(until_recovery.deviation);
+    for (std::size_t i = 0; i < metrics::kSafetyChoices.size(); ++i) {
+      out["other_si_pct"][std::string(metrics::kSafetyChoices[i].name)] =
+          OrNull(row.other_si_pct[i].Value());
+    }
     json["rows"].push_back(std::move(out));
   }
   return json;
 }
 
+/// "80.80"; "-" without a value.
+std::string Cell(std::optional<double> value, int decimals = 2) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string("-");
+}
+
+/// "80.80", or "80.81 +- 2.64" over seeds.
+std::string Spread(const stats::Summary& of, int decimals = 2) {
+  return of.deviation
+             ? fmt::format("{} +- {}", Cell(of.mean, decimals), Cell(of.deviation, decimals))
+             : Cell(of.mean, decimals);
+}
+
+/// Says that SI depends on choices that the paper leaves open, and on which values they lead to.
+void PrintOtherChoices(const Scenario& scenario, const std::vector<sweep::ThresholdRow>& rows) {
+  fmt::print(
+      "\nSI counts steps in fog with a compromised safety CS above a floor. The floor is a\n"
+      "free parameter (/measures/safety_floor_m, {:g} m), and so is the reading of CS.\n"
+      "SI (%) with other floors, and with CS as what the gap of the following car or its\n"
+      "safe distance d_r,f has lost since the fog began:\n\n  {:>6}",
+      scenario.measures.safety_floor_m, "DoC_th");
+  for (const metrics::SafetyChoice& choice : metrics::kSafetyChoices) {
+    fmt::print("  {:>10}", choice.text);
+  }
+  for (const sweep::ThresholdRow& row : rows) {
+    fmt::print("\n  {:>6g}", row.threshold);
+    for (const metrics::Mean& si_pct : row.other_si_pct)
+      fmt::print("  {:>10}", Cell(si_pct.Value()));
+  }
+  fmt::print("\n");
+}
+
 void PrintText(const Scenario& scenario, const sweep::SeedRange& seeds,
                const std::vector<sweep::ThresholdRow>& rows) {
-  const auto cell = [](std::optional<double> value) {
-    return value ? fmt::format("{:.2f}", *value) : std::string("-");
-  };
-  const auto spread = [&](const stats::Summary& of) {
-    return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
-                        : cell(of.mean);
-  };
   fmt::print("{}\n", EscapeControls(scenario.title));
   if (seeds.count() == 1) {
     fmt::print("seed {}\n\n", seeds.first);
@@ -178,9 +209,9 @@ void PrintText(const Scenario& scenario, const sweep::SeedRange& seeds,
   for (const sweep::ThresholdRow& row : rows) {
     const stats::Summary si = row.si_pct.Result();
     const PublishedRow* published = PublishedOf(scenario, row.threshold);
-    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
-               spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
-               published ? cell(published->rhe_pct) : "-", row.collisions);
+    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, Spread(si),
+               Spread(row.rhe_pct.Result()), published ? Cell(published->si_pct) : "-",
+               published ? Cell(published->rhe_pct) : "-", row.collisions);
     if (si.count > 0 && si.count < seeds.count()) {
       fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
                  si.count);
@@ -190,7 +221,9 @@ void PrintText(const Scenario& scenario, const sweep::SeedRange& seeds,
   if (std::ranges::none_of(rows, has_si)) {
     fmt::print(
         "\nno SI: without traded control the following car never comes too close (no fog?)\n");
+    return;
   }
+  PrintOtherChoices(scenario, rows);
 }
 
 Scenario ScenarioOf(const TableArguments& arguments) {

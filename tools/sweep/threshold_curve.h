@@ -2,6 +2,8 @@
 // and `fogline report` draws them.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,6 +13,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/running.h"
 #include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
@@ -27,6 +30,9 @@ struct ThresholdRow {
     add(paired.si_pct, si_pct);
     add(paired.si_until_recovery_pct, si_until_recovery_pct);
     add(measures.rhe_pct, rhe_pct);
+    for (std::size_t i = 0; i < other_si_pct.size(); ++i) {
+      if (paired.other_si_pct[i]) other_si_pct[i].Add(*paired.other_si_pct[i]);
+    }
     if (measures.collision != truth_t::COLLISION_NONE) ++collisions;
   }
 
@@ -34,6 +40,7 @@ struct ThresholdRow {
   stats::Statistics si_pct;
   stats::Statistics rhe_pct;
   stats::Statistics si_until_recovery_pct;
+  std::array<metrics::Mean, metrics::kSafetyChoices.size()> other_si_pct;
   std::int64_t collisions = 0;  // runs with a collision
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -101,6 +102,44 @@ TEST(PairedMeasuresTest, HaveTheFloorOfTheScenario) {
   EXPECT_EQ(metrics::MeasurePair(baseline, traded, WithFloor(0.1)).si_until_recovery_pct, 50);
   EXPECT_EQ(metrics::MeasurePair(baseline, traded, WithFloor(2)).si_until_recovery_pct,
             std::nullopt);
+}
+
+// Place of a choice in PairedMeasures::other_si_pct.
+std::size_t PlaceOf(std::string_view name) {
+  for (std::size_t i = 0; i < metrics::kSafetyChoices.size(); ++i) {
+    if (metrics::kSafetyChoices[i].name == name) return i;
+  }
+  throw std::out_of_range(std::string(name));
+}
+
+TEST(PairedMeasuresTest, HaveSafetyWithOtherFloors) {
+  const auto baseline = FoggyRun({0.5, 0.015, 0.007, 0.002, 0.0005});
+  const auto traded = FoggyRun({0, 0.015, 0.007, 0.002, 0.0005});
+  const metrics::PairedMeasures m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
+  EXPECT_EQ(m.si_pct, 100);
+  EXPECT_EQ(m.other_si_pct[PlaceOf("floor_20mm")], 100);
+  EXPECT_NEAR(*m.other_si_pct[PlaceOf("floor_10mm")], 100.0 / 2, 1e-9);
+  EXPECT_NEAR(*m.other_si_pct[PlaceOf("floor_5mm")], 100.0 / 3, 1e-9);
+  EXPECT_NEAR(*m.other_si_pct[PlaceOf("floor_1mm")], 100.0 / 4, 1e-9);
+  EXPECT_NEAR(*m.other_si_pct[PlaceOf("floor_0mm")], 100.0 / 5, 1e-9);
+}
+
+TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
+  // GIVEN fog from step 1 on, when the gap is 32 m and the safe distance 30 m
+  auto baseline = QuietRun(3);
+  for (const std::size_t k : {1, 2}) baseline[k].fog_present = true;
+  for (metrics::Sample& sample : baseline) sample.follower_safe_distance_m = 30;
+  auto traded = baseline;
+  // WHEN the gap shrinks by 4 m, and the safe distance by 1 m; with traded control by less
+  baseline[2].follower_gap_m = 28;
+  traded[2].follower_gap_m = 30;
+  baseline[2].follower_safe_distance_m = 29;
+  traded[2].follower_safe_distance_m = 29.75;
+  // THEN the readings differ: 1 m below the safe distance against 0; 4 m against 2; 1 m against 0.25
+  const metrics::PairedMeasures m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
+  EXPECT_EQ(m.si_pct, 100);
+  EXPECT_EQ(m.other_si_pct[PlaceOf("gap_lost")], 50);
+  EXPECT_EQ(m.other_si_pct[PlaceOf("safe_distance_lost")], 75);
 }
 
 TEST(PairedMeasuresTest, AreVisitedOnceEachWithTheirUnit) {
