@@ -21,6 +21,11 @@ std::optional<double> Root(std::optional<double> mean_square) {
 
 }  // namespace
 
+FogEffect FogEffectOf(const RunMeasures& measures) {
+  return {.mean_compromised_safety_m = measures.mean_compromised_safety_fog_m,
+          .slow_down_mps = measures.max_slow_down_fog_mps};
+}
+
 double CompromisedSafety(const Sample& sample) {
   return CompromisedSafety(sample.follower_safe_distance_m, sample.follower_gap_m);
 }
@@ -52,7 +57,7 @@ void MeasureAccumulator::AddSafety(const Sample& sample) {
   Lower(measures_.min_host_gap_m, sample.host_gap_m);
   Lower(measures_.min_follower_gap_m, sample.follower_gap_m);
   Raise(measures_.max_compromised_safety_m, compromised);
-  if (sample.fog_present) compromised_safety_fog_m_.Add(compromised);
+  fog_effect_.Add(sample);
   compromised_safety_until_recovery_m_.Step(sample.fog_present, track_.IsWrong(sample),
                                             [&](CompromisedSafetySums& sums) {
                                               Raise(sums.max_m, compromised);
@@ -120,7 +125,9 @@ void MeasureAccumulator::AddSensing(const Sample& sample) {
 
 RunMeasures MeasureAccumulator::Result() const {
   RunMeasures result = measures_;
-  result.mean_compromised_safety_fog_m = compromised_safety_fog_m_.Value();
+  const FogEffect fog_effect = fog_effect_.Result();
+  result.mean_compromised_safety_fog_m = fog_effect.mean_compromised_safety_m;
+  result.max_slow_down_fog_mps = fog_effect.slow_down_mps;
   const CompromisedSafetySums& until_recovery = compromised_safety_until_recovery_m_.sums();
   result.max_compromised_safety_until_recovery_m = until_recovery.max_m;
   result.mean_compromised_safety_until_recovery_m = until_recovery.mean_m.Value();

@@ -12,6 +12,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/metrics/averaged_jerk.h"
 #include "services/metrics/detection.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/running.h"
 #include "services/metrics/sample.h"
 #include "services/metrics/surrogate.h"
@@ -45,6 +46,8 @@ struct RunMeasures {
   /// good, or the run ends (UntilRecovery). nullopt without fog.
   std::optional<double> max_compromised_safety_until_recovery_m;
   std::optional<double> mean_compromised_safety_until_recovery_m;
+  /// Largest drop of the host's speed in fog below its speed when the fog began, m/s.
+  std::optional<double> max_slow_down_fog_mps;
   /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
   std::int8_t collision = truth_t::COLLISION_NONE;
   /// Its simulated time, s.
@@ -108,6 +111,9 @@ struct RunMeasures {
 template <class Visitor>
 void VisitMeasures(const RunMeasures& m, Visitor&& visit);
 
+/// The effect of the fog on a run, which its measures have, too.
+FogEffect FogEffectOf(const RunMeasures& measures);
+
 /// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
 /// without a following car.
 double CompromisedSafety(const Sample& sample);
@@ -145,7 +151,7 @@ class MeasureAccumulator {
   DetectionAccumulator detection_;
   RunMeasures measures_;  // measures without a final division
   TrackJudge track_;
-  Mean compromised_safety_fog_m_;
+  FogEffectAccumulator fog_effect_;
   UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;
   AveragedJerk averaged_jerk_;
   Mean squared_jerk_m2ps6_;
@@ -179,6 +185,8 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
          "largest shortfall from the fog's begin until the track is right again");
   number("mean_compromised_safety_until_recovery_m", m.mean_compromised_safety_until_recovery_m,
          "m", "mean shortfall from the fog's begin until the track is right again");
+  number("max_slow_down_fog_mps", m.max_slow_down_fog_mps, "m/s",
+         "largest drop of the host's speed in fog below its speed when the fog began");
   const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,
                         const PairMeasures& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");

@@ -30,7 +30,7 @@ int RunMetrics(const MetricsArguments& arguments) {
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     runs.push_back(runner::ReadLoggedRun(log));
   });
-  const std::vector<metrics::PairedMeasures> pairs = cli::MeasurePairs(runs);
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const runner::LoggedRun& run = runs[i];
@@ -40,8 +40,8 @@ int RunMetrics(const MetricsArguments& arguments) {
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
       metrics::VisitPairedMeasures(
-          pairs[i], [&row](std::string_view name, const std::optional<double>& value,
-                           std::string_view, std::string_view) {
+          pairs[i].measures, [&row](std::string_view name, const std::optional<double>& value,
+                                    std::string_view, std::string_view) {
             row[std::string(name)] = value ? nlohmann::ordered_json(*value) : nullptr;
           });
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
@@ -55,8 +55,8 @@ int RunMetrics(const MetricsArguments& arguments) {
                collision);
     if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
     metrics::VisitPairedMeasures(
-        pairs[i], [](std::string_view name, const std::optional<double>& value,
-                     std::string_view unit, std::string_view) {
+        pairs[i].measures, [](std::string_view name, const std::optional<double>& value,
+                              std::string_view unit, std::string_view) {
           if (value) {
             fmt::print("  {:<32}{:>12} {}\n", name, report::MeasureText(name, *value, unit), unit);
           }

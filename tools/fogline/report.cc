@@ -136,17 +136,19 @@ std::vector<report::ReportMeasure> MeasuresOf(const metrics::RunMeasures& measur
 
 /// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
-                                           std::span<const metrics::PairedMeasures> pairs) {
+                                           std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);
   report::ReportTable table;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!pairs[i].si_pct) continue;
+    if (!pairs[i].measures.si_pct) continue;
     const Scenario& scenario = runs[i].scenario;
     report::ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
                                  .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
-                                 .si_pct = *pairs[i].si_pct,
+                                 .si_pct = *pairs[i].measures.si_pct,
                                  .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
-                                     std::numeric_limits<double>::quiet_NaN())};
+                                     std::numeric_limits<double>::quiet_NaN()),
+                                 .effect = metrics::FogEffectOf(runs[i].result.measures),
+                                 .without = pairs[i].without};
     for (const PublishedRow& published : scenario.published) {
       if (published.threshold != row.threshold) continue;
       row.published_si_pct = published.si_pct;
@@ -241,12 +243,12 @@ int RunReport(const ReportArguments& arguments) {
   }
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs);
-  const std::vector<metrics::PairedMeasures> pairs = cli::MeasurePairs(runs);
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   const std::optional<report::ReportTable> table = TableOf(runs, pairs);
   std::vector<report::ReportRun> pages;
   const std::vector<std::string> names = NamesOf(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    pages.push_back(PageOf(runs[i], names[i], pairs[i]));
+    pages.push_back(PageOf(runs[i], names[i], pairs[i].measures));
   }
   std::optional<report::ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);

@@ -43,7 +43,12 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    Run([this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
+    metrics::FogEffectAccumulator effect;
+    Run([&](const metrics::StepView& step) {
+      baseline_.push_back(step.ToSample());
+      effect.Add(baseline_.back());
+    });
+    effect_ = effect.Result();
     scenario_.arbitrator.policy = policy;
   }
   metrics::MeasureAccumulator measures(scenario_);
@@ -57,7 +62,9 @@ SweepRow SweepWorker::ComputeRow() {
       pair.Add(baseline_[i++], sample);
     }
   });
-  return {.measures = measures.Result(), .paired = pair.Result()};
+  return {.measures = measures.Result(),
+          .paired = pair.Result(),
+          .without = policy == Policy::kNone ? metrics::FogEffect() : effect_};
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/metrics/closed_loop/closed_loop.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/safety_improvement.h"
 #include "tools/sweep/plan.h"
@@ -19,6 +20,9 @@ struct SweepRow {
   /// Measures of the pair with the run without traded control. They are empty for a run that is its
   /// own pair, and for a paired run without compromised safety.
   metrics::PairedMeasures paired;
+  /// The effect of the fog in the paired run without traded control; empty for a run that is its
+  /// own pair.
+  metrics::FogEffect without;
 };
 
 /// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.
@@ -41,6 +45,7 @@ class SweepWorker {
   Scenario scenario_;
   std::optional<metrics::ClosedLoop> loop_;
   std::vector<metrics::Sample> baseline_;
+  metrics::FogEffect effect_;  // of the baseline
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.

@@ -37,7 +37,7 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
   RunSweep(plan, 0, plan.units(), jobs,
            [&](std::int64_t unit, const std::vector<SweepRow>& results) {
              for (std::size_t i = 0; i < rows.size(); ++i) {
-               rows[i].Add(results[i].paired, results[i].measures);
+               rows[i].Add(results[i].measures, results[i].paired, results[i].without);
              }
              return done(unit + 1);
            });

@@ -78,6 +78,17 @@ TEST(MeasureTest, MeasuresCompromisedSafetyEverywhereAndItsMeanInFog) {
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 4.0 / 3);
 }
 
+TEST(MeasureTest, SlowDownIsTheDropOfTheHostsSpeedSinceTheFogBegan) {
+  auto run = QuietRun(6);
+  const std::array<double, 6> speed{25, 20, 21, 17, 19, 10};
+  for (std::size_t k = 0; k < run.size(); ++k) run[k].host_speed_mps = speed[k];
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, std::nullopt);
+  for (const std::size_t k : {1, 2, 3, 4}) run[k].fog_present = true;
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 3);
+  run[3].host_speed_mps = run[4].host_speed_mps = 22;  // it only speeds up
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 0);
+}
+
 // A run of 12 steps of 0.5 s with fog from step 2 to step 4. The track is wrong in `wrong`.
 std::vector<metrics::Sample> RunAroundFog(const std::vector<std::size_t>& wrong) {
   std::vector<metrics::Sample> run = QuietRun(12);
@@ -310,7 +321,7 @@ TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
 
 TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
   const std::map<std::string_view, std::string_view> suffixes{
-      {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"},
+      {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"}, {"m/s", "_mps"},
       {"m/s2", "_mps2"}, {"m/s3", "_mps3"}, {"1/min", "_pmin"}, {"1/h", "_ph"}};
   std::set<std::string_view> names;
   const auto check = [&](std::string_view name, auto value, std::string_view unit,
@@ -325,7 +336,7 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
     }
   };
   metrics::VisitMeasures(metrics::RunMeasures(), check);
-  EXPECT_EQ(names.size(), 48U);
+  EXPECT_EQ(names.size(), 49U);
 }
 
 TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {

@@ -135,7 +135,8 @@ TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
   traded[2].follower_gap_m = 30;
   baseline[2].follower_safe_distance_m = 29;
   traded[2].follower_safe_distance_m = 29.75;
-  // THEN the readings differ: 1 m below the safe distance against 0; 4 m against 2; 1 m against 0.25
+  // THEN the readings differ: 1 m below the safe distance against 0; 4 m against 2; 1 m against
+  // 0.25
   const metrics::PairedMeasures m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
   EXPECT_EQ(m.si_pct, 100);
   EXPECT_EQ(m.other_si_pct[PlaceOf("gap_lost")], 50);

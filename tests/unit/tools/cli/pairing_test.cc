@@ -40,16 +40,19 @@ TEST_F(PairingTest, MeasuresEachRunThatHasItsPair) {
       Run({none}),
       Run({"/arbitrator/threshold=0.3", "/seed=2"}),
   };
-  const std::vector<metrics::PairedMeasures> pairs = cli::MeasurePairs(runs);
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   ASSERT_EQ(pairs.size(), 3U);
-  ASSERT_TRUE(pairs[0].si_pct);
-  EXPECT_EQ(pairs[0].si_pct,
+  ASSERT_TRUE(pairs[0].measures.si_pct);
+  EXPECT_EQ(pairs[0].measures.si_pct,
             metrics::SafetyImprovementPct(runs[1].result.samples, runs[0].result.samples,
                                           runs[0].scenario.measures.safety_floor_m));
-  EXPECT_TRUE(pairs[0].si_until_recovery_pct);
-  EXPECT_EQ(pairs[1].si_pct, std::nullopt) << "it is the pair";
-  EXPECT_EQ(pairs[2].si_pct, std::nullopt) << "its pair has another seed";
-  EXPECT_EQ(pairs[2].si_until_recovery_pct, std::nullopt);
+  EXPECT_TRUE(pairs[0].measures.si_until_recovery_pct);
+  EXPECT_EQ(pairs[0].without.mean_compromised_safety_m,
+            runs[1].result.measures.mean_compromised_safety_fog_m);
+  EXPECT_EQ(pairs[0].without.slow_down_mps, runs[1].result.measures.max_slow_down_fog_mps);
+  EXPECT_EQ(pairs[1].measures.si_pct, std::nullopt) << "it is the pair";
+  EXPECT_EQ(pairs[2].measures.si_pct, std::nullopt) << "its pair has another seed";
+  EXPECT_EQ(pairs[2].measures.si_until_recovery_pct, std::nullopt);
   EXPECT_TRUE(cli::MeasurePairs({}).empty());
 }
 
