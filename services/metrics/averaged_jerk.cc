@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "services/metrics/running.h"
+
 namespace fogline::metrics {
 namespace {
 
 constexpr double kWindow_s = 1.0;
-
-// Times are whole microseconds: two times that differ by less count as equal.
-constexpr double kHalfMicrosecond_s = 0.5e-6;
 
 }  // namespace
 
@@ -25,8 +24,8 @@ std::optional<double> AveragedJerk::Add(double time_s, double acceleration_mps2)
   points_[(begin_ + count_) % kMostPoints] = {time_s, acceleration_mps2};
   ++count_;
   const double since_s = time_s - kWindow_s;
-  while (Oldest().time_s < since_s - kHalfMicrosecond_s) DropOldest();
-  const bool known = dropped_ || Oldest().time_s <= since_s + kHalfMicrosecond_s;
+  while (Oldest().time_s < since_s - kSameTime_s) DropOldest();
+  const bool known = dropped_ || Oldest().time_s <= since_s + kSameTime_s;
   if (!known) return std::nullopt;
   return std::abs(acceleration_mps2 - Oldest().acceleration_mps2) / kWindow_s;
 }

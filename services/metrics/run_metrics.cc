@@ -11,9 +11,6 @@ namespace {
 constexpr double kPercent = 100.0;
 constexpr double kSecondsPerMinute = 60.0;
 
-// Times are whole microseconds: two times that differ by less count as equal.
-constexpr double kSameTime_s = 0.5e-6;
-
 std::optional<double> Root(std::optional<double> mean_square) {
   if (!mean_square) return std::nullopt;
   return std::sqrt(*mean_square);
