@@ -25,8 +25,8 @@ bool DetectionAccumulator::IsDeceived(const Sample& sample) const {
 }
 
 void DetectionAccumulator::Pass(double duration_s) {
-  measures_.wrong_human_s += wrong_human_ * duration_s;
-  measures_.wrong_automation_s += wrong_automation_ * duration_s;
+  metrics_.wrong_human_s += wrong_human_ * duration_s;
+  metrics_.wrong_automation_s += wrong_automation_ * duration_s;
   if (quiet_) quiet_s_ += duration_s;
 }
 
@@ -38,8 +38,8 @@ void DetectionAccumulator::Add(const Sample& sample) {
   wrong_human_ = deceived ? 0 : sample.lambda_human;
   wrong_automation_ = track_.IsWrong(sample) ? sample.lambda_automation : 0;
   if (deceived && !onset_s_) onset_s_ = sample.time_s;
-  if (alarm && onset_s_ && !measures_.deception_to_alarm_s) {
-    measures_.deception_to_alarm_s = sample.time_s - *onset_s_;
+  if (alarm && onset_s_ && !metrics_.deception_to_alarm_s) {
+    metrics_.deception_to_alarm_s = sample.time_s - *onset_s_;
   }
   if (alarm && !alarm_ && quiet_) ++false_alarms_;
   alarm_ = alarm;
@@ -47,8 +47,8 @@ void DetectionAccumulator::Add(const Sample& sample) {
   begun_ = true;
 }
 
-DetectionMeasures DetectionAccumulator::Result() const {
-  DetectionMeasures result = measures_;
+DetectionMetrics DetectionAccumulator::Result() const {
+  DetectionMetrics result = metrics_;
   if (quiet_s_ > 0) result.false_alarms_ph = kSecondsPerHour * false_alarms_ / quiet_s_;
   return result;
 }

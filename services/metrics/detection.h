@@ -13,7 +13,7 @@ namespace fogline::metrics {
 /// In a step the LiDAR is *deceived* if it has a value with an error (LidarError) of more than a
 /// tolerance. Otherwise it is *right*; a LiDAR without a value counts as right. An *alarm* lasts
 /// while the Degree of Conflict is at least the threshold in force, under any policy.
-struct DetectionMeasures {
+struct DetectionMetrics {
   /// Time under the wrong controller, s: time of the human while the LiDAR is right, weighted by
   /// his authority.
   double wrong_human_s = 0;
@@ -42,7 +42,7 @@ class DetectionAccumulator {
   explicit DetectionAccumulator(const Scenario& scenario);
 
   void Add(const Sample& sample);
-  DetectionMeasures Result() const;
+  DetectionMetrics Result() const;
 
  private:
   bool IsDeceived(const Sample& sample) const;
@@ -61,7 +61,7 @@ class DetectionAccumulator {
   double wrong_human_ = 0;
   double wrong_automation_ = 0;
 
-  DetectionMeasures measures_;
+  DetectionMetrics metrics_;
   std::optional<double> onset_s_;
   double quiet_s_ = 0;
   double false_alarms_ = 0;

@@ -32,8 +32,8 @@ void FollowerAccumulator::AddSafety(bool fog, double compromised_m, Car& car) {
   if (fog) car.compromised_safety_fog_m.Add(compromised_m);
 }
 
-std::vector<FollowerMeasures> FollowerAccumulator::Result() const {
-  std::vector<FollowerMeasures> result;
+std::vector<FollowerMetrics> FollowerAccumulator::Result() const {
+  std::vector<FollowerMetrics> result;
   for (std::size_t i = 0; i < num_cars_; ++i) {
     result.push_back(cars_[i].measures);
     result.back().mean_compromised_safety_fog_m = cars_[i].compromised_safety_fog_m.Value();

@@ -15,7 +15,7 @@ namespace fogline::metrics {
 
 /// Measures of one following car. The car ahead of the first following car is the host.
 /// nullopt: the run has no step that is relevant for the measure.
-struct FollowerMeasures {
+struct FollowerMetrics {
   /// Smallest true gap to the car ahead, m.
   std::optional<double> min_gap_m;
   /// Smallest time to collision with the car ahead, s (Hayward 1972; surrogate.h).
@@ -27,10 +27,10 @@ struct FollowerMeasures {
   std::optional<double> mean_compromised_safety_fog_m;
 };
 
-/// Calls `visit(name, value, unit, description)` for each measure, as VisitMeasures() does for a
+/// Calls `visit(name, value, unit, description)` for each measure, as VisitMetrics() does for a
 /// run.
 template <class Visitor>
-void VisitFollowerMeasures(const FollowerMeasures& m, Visitor&& visit) {
+void VisitFollowerMetrics(const FollowerMetrics& m, Visitor&& visit) {
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
                           std::string_view description) { visit(name, value, unit, description); };
   number("min_gap_m", m.min_gap_m, "m", "smallest gap to the car ahead");
@@ -49,11 +49,11 @@ class FollowerAccumulator {
   void Add(const truth_t& truth, const follower_command_t& commands);
 
   /// One entry for each following car, nearest to the host first.
-  std::vector<FollowerMeasures> Result() const;
+  std::vector<FollowerMetrics> Result() const;
 
  private:
   struct Car {
-    FollowerMeasures measures;  // measures without a final division
+    FollowerMetrics measures;  // measures without a final division
     Mean compromised_safety_fog_m;
   };
   static void AddSafety(bool fog, double compromised_m, Car& car);

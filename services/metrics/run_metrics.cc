@@ -18,7 +18,7 @@ std::optional<double> Root(std::optional<double> mean_square) {
 
 }  // namespace
 
-FogEffect FogEffectOf(const RunMeasures& measures) {
+FogEffect FogEffectOf(const RunMetrics& measures) {
   return {.mean_compromised_safety_m = measures.mean_compromised_safety_fog_m,
           .slow_down_mps = measures.max_slow_down_fog_mps};
 }
@@ -27,7 +27,7 @@ double CompromisedSafety(const Sample& sample) {
   return CompromisedSafety(sample.follower_safe_distance_m, sample.follower_gap_m);
 }
 
-MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
+MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
     : handover_s_(scenario.measures.handover_s),
       host_(scenario.measures),
       follower_(scenario.measures),
@@ -36,10 +36,10 @@ MeasureAccumulator::MeasureAccumulator(const Scenario& scenario)
 
 // AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
 // the command of a step is applied only in the next one.
-void MeasureAccumulator::Add(const Sample& sample) {
+void MetricsAccumulator::Add(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
-  ++measures_.steps;
-  measures_.duration_s = sample.time_s - first_time_s_;
+  ++metrics_.steps;
+  metrics_.duration_s = sample.time_s - first_time_s_;
   AddSafety(sample);
   AddPairs(sample);
   AddMotion(sample);
@@ -49,79 +49,79 @@ void MeasureAccumulator::Add(const Sample& sample) {
   previous_ = sample;
 }
 
-void MeasureAccumulator::AddSafety(const Sample& sample) {
+void MetricsAccumulator::AddSafety(const Sample& sample) {
   const double compromised = CompromisedSafety(sample);
-  Lower(measures_.min_host_gap_m, sample.host_gap_m);
-  Lower(measures_.min_follower_gap_m, sample.follower_gap_m);
-  Raise(measures_.max_compromised_safety_m, compromised);
+  Lower(metrics_.min_host_gap_m, sample.host_gap_m);
+  Lower(metrics_.min_follower_gap_m, sample.follower_gap_m);
+  Raise(metrics_.max_compromised_safety_m, compromised);
   fog_effect_.Add(sample);
   compromised_safety_until_recovery_m_.Step(sample.fog_present, track_.IsWrong(sample),
                                             [&](CompromisedSafetySums& sums) {
                                               Raise(sums.max_m, compromised);
                                               sums.mean_m.Add(compromised);
                                             });
-  if (sample.collision != truth_t::COLLISION_NONE && !measures_.collision_time_s) {
-    measures_.collision = sample.collision;
-    measures_.collision_time_s = sample.collision_time_s;
+  if (sample.collision != truth_t::COLLISION_NONE && !metrics_.collision_time_s) {
+    metrics_.collision = sample.collision;
+    metrics_.collision_time_s = sample.collision_time_s;
   }
 }
 
-void MeasureAccumulator::AddPairs(const Sample& sample) {
+void MetricsAccumulator::AddPairs(const Sample& sample) {
   const double since_s = previous_ ? sample.time_s - previous_->time_s : 0;
   host_.Add({sample.host_gap_m, sample.host_speed_mps, sample.preceding_speed_mps}, since_s);
   follower_.Add({sample.follower_gap_m, sample.follower_speed_mps, sample.host_speed_mps}, since_s);
 }
 
-void MeasureAccumulator::AddAuthority(const Sample& sample) {
+void MetricsAccumulator::AddAuthority(const Sample& sample) {
   if (!sample.fog_present)
     human_in_clear_air_.Add(models::HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
   if (models::HumanIsEngaged(previous_->lambda_human)) {
-    measures_.human_time_s += sample.time_s - previous_->time_s;
+    metrics_.human_time_s += sample.time_s - previous_->time_s;
   }
   if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
   if (models::HumanDrives(sample.lambda_human) != models::HumanDrives(previous_->lambda_human))
     AddTransfer(sample);
 }
 
-void MeasureAccumulator::AddTransfer(const Sample& sample) {
-  ++measures_.transfers;
-  measures_.max_handover_jump_mps2 = std::max(
-      measures_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
-  if (transferred_s_) Lower(measures_.min_dwell_s, sample.time_s - *transferred_s_);
+void MetricsAccumulator::AddTransfer(const Sample& sample) {
+  ++metrics_.transfers;
+  metrics_.max_handover_jump_mps2 = std::max(
+      metrics_.max_handover_jump_mps2, std::abs(sample.command_mps2 - previous_->command_mps2));
+  if (transferred_s_) Lower(metrics_.min_dwell_s, sample.time_s - *transferred_s_);
   transferred_s_ = sample.time_s;
 }
 
 // The acceleration at step 0 is a convention; none was applied.
-void MeasureAccumulator::AddMotion(const Sample& sample) {
+void MetricsAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
-  Raise(measures_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
+  Raise(metrics_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
   const bool in_handover =
       authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s;
   if (const auto mean_mps3 = averaged_jerk_.Add(sample.time_s, sample.host_acceleration_mps2)) {
-    Raise(measures_.max_abs_jerk_1s_mps3, *mean_mps3);
-    if (in_handover) Raise(measures_.max_handover_jerk_1s_mps3, *mean_mps3);
+    Raise(metrics_.max_abs_jerk_1s_mps3, *mean_mps3);
+    if (in_handover) Raise(metrics_.max_handover_jerk_1s_mps3, *mean_mps3);
   }
   if (!previous_ || previous_->step == 0) return;
   const double jerk_mps3 = (sample.host_acceleration_mps2 - previous_->host_acceleration_mps2) /
                            (sample.time_s - previous_->time_s);
-  Raise(measures_.max_abs_jerk_mps3, std::abs(jerk_mps3));
+  Raise(metrics_.max_abs_jerk_mps3, std::abs(jerk_mps3));
   squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
-  if (in_handover) Raise(measures_.max_handover_jerk_mps3, std::abs(jerk_mps3));
+  if (in_handover) Raise(metrics_.max_handover_jerk_mps3, std::abs(jerk_mps3));
 }
 
-void MeasureAccumulator::AddSensing(const Sample& sample) {
-  Raise(measures_.max_doc, sample.doc);
+void MetricsAccumulator::AddSensing(const Sample& sample) {
+  Raise(metrics_.max_doc, sample.doc);
   if (!sample.fog_present) {
-    Lower(measures_.min_conflict_clear_m, sample.conflict_m);
-    Raise(measures_.max_conflict_clear_m, sample.conflict_m);
+    Lower(metrics_.min_conflict_clear_m, sample.conflict_m);
+    Raise(metrics_.max_conflict_clear_m, sample.conflict_m);
   }
   const double error = sample.fused_distance_m - sample.host_gap_m;
   squared_fusion_error_m2_.Add(error * error);
 }
 
-RunMeasures MeasureAccumulator::Result() const {
-  RunMeasures result = measures_;
+RunMetrics MetricsAccumulator::Result() const {
+  RunMetrics result = metrics_;
   const FogEffect fog_effect = fog_effect_.Result();
   result.mean_compromised_safety_fog_m = fog_effect.mean_compromised_safety_m;
   result.max_slow_down_fog_mps = fog_effect.slow_down_mps;
@@ -134,15 +134,15 @@ RunMeasures MeasureAccumulator::Result() const {
   result.host = host_.Result();
   result.follower = follower_.Result();
   result.detection = detection_.Result();
-  if (measures_.duration_s > 0) {
+  if (metrics_.duration_s > 0) {
     result.transfers_pmin =
-        kSecondsPerMinute * static_cast<double>(measures_.transfers) / measures_.duration_s;
+        kSecondsPerMinute * static_cast<double>(metrics_.transfers) / metrics_.duration_s;
   }
   return result;
 }
 
-RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario) {
-  MeasureAccumulator accumulator(scenario);
+RunMetrics Measure(std::span<const Sample> samples, const Scenario& scenario) {
+  MetricsAccumulator accumulator(scenario);
   for (const Sample& sample : samples) accumulator.Add(sample);
   return accumulator.Result();
 }

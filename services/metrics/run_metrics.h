@@ -24,7 +24,7 @@ namespace fogline::metrics {
 /// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
 /// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
 /// for the measure.
-struct RunMeasures {
+struct RunMetrics {
   /// Number of samples.
   std::int64_t steps = 0;
   /// Time from the first sample to the last, s.
@@ -36,8 +36,8 @@ struct RunMeasures {
   std::optional<double> min_follower_gap_m;
   /// Surrogate measures of the host behind the preceding car, and of the first following car behind
   /// the host.
-  PairMeasures host;
-  PairMeasures follower;
+  PairMetrics host;
+  PairMetrics follower;
   /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
@@ -80,7 +80,7 @@ struct RunMeasures {
   /// The same of the jerk averaged over 1 s (AveragedJerk). Its second may begin before the change.
   std::optional<double> max_handover_jerk_1s_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
-  DetectionMeasures detection;
+  DetectionMetrics detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
@@ -109,28 +109,28 @@ struct RunMeasures {
 /// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
 /// tables and reports use these calls.
 template <class Visitor>
-void VisitMeasures(const RunMeasures& m, Visitor&& visit);
+void VisitMetrics(const RunMetrics& m, Visitor&& visit);
 
 /// The effect of the fog on a run, which its measures have, too.
-FogEffect FogEffectOf(const RunMeasures& measures);
+FogEffect FogEffectOf(const RunMetrics& measures);
 
 /// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
 /// without a following car.
 double CompromisedSafety(const Sample& sample);
 
 /// Collects the measures of a run, sample by sample, in order of steps.
-class MeasureAccumulator {
+class MetricsAccumulator {
  public:
   /// For a run of this scenario: uses its section `measures`, the offsets of its sensors, and the
   /// noise that its filter assumes.
-  explicit MeasureAccumulator(const Scenario& scenario);
+  explicit MetricsAccumulator(const Scenario& scenario);
   /// For a run of a scenario with the defaults.
-  MeasureAccumulator() : MeasureAccumulator(Scenario{}) {}
+  MetricsAccumulator() : MetricsAccumulator(Scenario{}) {}
 
   void Add(const Sample& sample);
 
   /// Measures of the samples so far.
-  RunMeasures Result() const;
+  RunMetrics Result() const;
 
  private:
   struct CompromisedSafetySums {
@@ -149,7 +149,7 @@ class MeasureAccumulator {
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;
-  RunMeasures measures_;  // measures without a final division
+  RunMetrics metrics_;  // measures without a final division
   TrackJudge track_;
   FogEffectAccumulator fog_effect_;
   UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;
@@ -164,10 +164,10 @@ class MeasureAccumulator {
 };
 
 /// Measures of a whole run of a scenario.
-RunMeasures Measure(std::span<const Sample> samples, const Scenario& scenario = {});
+RunMetrics Measure(std::span<const Sample> samples, const Scenario& scenario = {});
 
 template <class Visitor>
-void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
+void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
   const auto count = [&](std::string_view name, std::int64_t value, std::string_view unit,
                          std::string_view description) { visit(name, value, unit, description); };
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
@@ -188,7 +188,7 @@ void VisitMeasures(const RunMeasures& m, Visitor&& visit) {
   number("max_slow_down_fog_mps", m.max_slow_down_fog_mps, "m/s",
          "largest drop of the host's speed in fog below its speed when the fog began");
   const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,
-                        const PairMeasures& of) {
+                        const PairMetrics& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
     number(names[1], of.tet_s, "s",
            car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");

@@ -79,15 +79,15 @@ void PairedAccumulator::Add(const Sample& baseline, const Sample& traded) {
                        });
 }
 
-PairedMeasures PairedAccumulator::Result() const {
-  PairedMeasures result{.si_pct = improvement_.Pct(),
-                        .si_until_recovery_pct = until_recovery_.sums().Pct()};
+PairedMetrics PairedAccumulator::Result() const {
+  PairedMetrics result{.si_pct = improvement_.Pct(),
+                       .si_until_recovery_pct = until_recovery_.sums().Pct()};
   std::ranges::transform(others_, result.other_si_pct.begin(), &SafetyImprovement::Pct);
   return result;
 }
 
-PairedMeasures MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
-                           const Scenario& scenario) {
+PairedMetrics MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
+                          const Scenario& scenario) {
   PairedAccumulator accumulator(scenario);
   AddPairs(baseline, traded, accumulator);
   return accumulator.Result();

@@ -105,7 +105,7 @@ std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
                                            std::span<const Sample> traded, double floor_m);
 
 /// Measures of a pair of runs. nullopt: the pair has no step that is relevant for the measure.
-struct PairedMeasures {
+struct PairedMetrics {
   /// SI, %.
   std::optional<double> si_pct;
   /// The same over more steps, %: from the first step in fog until the tracks of both runs are
@@ -117,9 +117,9 @@ struct PairedMeasures {
 };
 
 /// Calls `visit(name, value, unit, description)` for every measure except `other_si_pct`, as
-/// VisitMeasures().
+/// VisitMetrics().
 template <class Visitor>
-void VisitPairedMeasures(const PairedMeasures& m, Visitor&& visit) {
+void VisitPairedMetrics(const PairedMetrics& m, Visitor&& visit) {
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
                           std::string_view description) { visit(name, value, unit, description); };
   number("si_pct", m.si_pct, "%", "safety improvement over the paired run without traded control");
@@ -136,7 +136,7 @@ class PairedAccumulator {
   /// @throws std::invalid_argument if the samples are not of the same step.
   void Add(const Sample& baseline, const Sample& traded);
 
-  PairedMeasures Result() const;
+  PairedMetrics Result() const;
 
  private:
   double floor_m_;
@@ -148,7 +148,7 @@ class PairedAccumulator {
 
 /// Measures of two whole runs of a scenario, over the steps that both runs have.
 /// @throws std::invalid_argument as SafetyImprovementPct()
-PairedMeasures MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
-                           const Scenario& scenario);
+PairedMetrics MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
+                          const Scenario& scenario);
 
 }  // namespace fogline::metrics

@@ -104,13 +104,13 @@ void PairAccumulator::Add(const CarPair& pair, double since_s) {
   min_rss_margin_ad_rss_m_ = std::min(min_rss_margin_ad_rss_m_, margin_m(models::RssParameters{}));
 }
 
-PairMeasures PairAccumulator::Result() const {
-  PairMeasures result{.min_ttc_s = IfFinite(min_ttc_s_),
-                      .min_time_gap_s = IfFinite(min_time_gap_s_),
-                      .max_drac_mps2 = IfFinite(max_drac_mps2_),
-                      .min_picud_m = IfFinite(min_picud_m_),
-                      .min_rss_margin_m = IfFinite(min_rss_margin_m_),
-                      .min_rss_margin_ad_rss_m = IfFinite(min_rss_margin_ad_rss_m_)};
+PairMetrics PairAccumulator::Result() const {
+  PairMetrics result{.min_ttc_s = IfFinite(min_ttc_s_),
+                     .min_time_gap_s = IfFinite(min_time_gap_s_),
+                     .max_drac_mps2 = IfFinite(max_drac_mps2_),
+                     .min_picud_m = IfFinite(min_picud_m_),
+                     .min_rss_margin_m = IfFinite(min_rss_margin_m_),
+                     .min_rss_margin_ad_rss_m = IfFinite(min_rss_margin_ad_rss_m_)};
   if (met_) {
     result.tet_s = tet_s_;
     result.tit_s2 = tit_s2_;

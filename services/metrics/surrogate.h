@@ -42,7 +42,7 @@ double CompromisedSafety(double safe_distance_m, double gap_m);
 
 /// Measures of a pair of cars over a run. nullopt: the run has no step that is relevant for the
 /// measure.
-struct PairMeasures {
+struct PairMetrics {
   /// Least time to collision, s.
   std::optional<double> min_ttc_s;
   /// Time exposed: time during which the time to collision is at most TTC*, s (Minderhoud & Bovy
@@ -76,7 +76,7 @@ class PairAccumulator {
   /// count; 0 at the first step. A pair with NaN does not count.
   void Add(const CarPair& pair, double since_s);
 
-  PairMeasures Result() const;
+  PairMetrics Result() const;
 
  private:
   /// Adds the findings of the step before, which hold for `duration_s`.

@@ -29,7 +29,7 @@ double ClosedLoopRunsPerSecond(double duration_s) {
       constexpr int kBatch = 100;
       for (int i = 0; i < kBatch; ++i) {
         ++scenario.seed;
-        metrics::MeasureAccumulator measures;
+        metrics::MetricsAccumulator measures;
         loop.Restart(scenario);
         loop.Run(0, [&](const metrics::StepView& step) { measures.Add(step.ToSample()); });
         steps += measures.Result().steps;

@@ -19,7 +19,7 @@
 #include "common/text.h"
 #include "services/log/event_log.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline::cli {
 
@@ -156,20 +156,20 @@ auto Into(nlohmann::ordered_json& json) {
 }
 
 std::string Cell(std::string_view name, std::optional<double> value, std::string_view unit) {
-  return value ? report::MeasureText(name, *value, unit) : "-";
+  return value ? report::MetricText(name, *value, unit) : "-";
 }
 
 /// A line of column names, then one line for each following car.
-std::string FollowersText(const std::vector<metrics::FollowerMeasures>& followers) {
+std::string FollowersText(const std::vector<metrics::FollowerMetrics>& followers) {
   std::string text = fmt::format("  {:<10}", "follower");
-  metrics::VisitFollowerMeasures(metrics::FollowerMeasures(),
-                                 [&text](std::string_view name, const auto&, std::string_view,
-                                         std::string_view) { text += fmt::format("  {}", name); });
+  metrics::VisitFollowerMetrics(metrics::FollowerMetrics(),
+                                [&text](std::string_view name, const auto&, std::string_view,
+                                        std::string_view) { text += fmt::format("  {}", name); });
   text += '\n';
   for (std::size_t i = 0; i < followers.size(); ++i) {
     text += fmt::format("  {:<10}", i + 1);
-    metrics::VisitFollowerMeasures(followers[i], [&text](std::string_view name, const auto& value,
-                                                         std::string_view unit, std::string_view) {
+    metrics::VisitFollowerMetrics(followers[i], [&text](std::string_view name, const auto& value,
+                                                        std::string_view unit, std::string_view) {
       text += fmt::format("  {:>{}}", Cell(name, value, unit), name.size());
     });
     text += '\n';
@@ -179,28 +179,27 @@ std::string FollowersText(const std::vector<metrics::FollowerMeasures>& follower
 
 }  // namespace
 
-std::string MeasuresJson(const runner::ExperimentResult& result) {
+std::string MetricsJson(const runner::ExperimentResult& result) {
   nlohmann::ordered_json json;
-  metrics::VisitMeasures(result.measures, Into(json));
+  metrics::VisitMetrics(result.measures, Into(json));
   if (result.followers.size() > 1) {
-    for (const metrics::FollowerMeasures& follower : result.followers) {
-      metrics::VisitFollowerMeasures(follower, Into(json["followers"].emplace_back()));
+    for (const metrics::FollowerMetrics& follower : result.followers) {
+      metrics::VisitFollowerMetrics(follower, Into(json["followers"].emplace_back()));
     }
   }
   return json.dump();
 }
 
-std::string MeasuresText(const runner::ExperimentResult& result) {
+std::string MetricsText(const runner::ExperimentResult& result) {
   std::string text;
-  metrics::VisitMeasures(
-      result.measures, [&text]<class V>(std::string_view name, const V& value,
-                                        std::string_view unit, std::string_view) {
-        if constexpr (std::is_same_v<V, std::optional<double>>) {
-          text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
-        } else {
-          text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
-        }
-      });
+  metrics::VisitMetrics(result.measures, [&text]<class V>(std::string_view name, const V& value,
+                                                          std::string_view unit, std::string_view) {
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);
+    } else {
+      text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+    }
+  });
   return result.followers.size() > 1 ? text + FollowersText(result.followers) : text;
 }
 

@@ -117,11 +117,11 @@ class NetworkArguments {
 
 /// {"name": value, ...} of a run's measures, as part of a larger JSON text. With more than one
 /// following car, "followers" is the list of their measures.
-std::string MeasuresJson(const runner::ExperimentResult& result);
+std::string MetricsJson(const runner::ExperimentResult& result);
 
 /// The measures of a run as lines "name  value unit". If there is more than one following car, a
 /// table of their measures follows.
-std::string MeasuresText(const runner::ExperimentResult& result);
+std::string MetricsText(const runner::ExperimentResult& result);
 
 /// The same for the figures of a run in real time, and its fallbacks.
 nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);

@@ -16,7 +16,7 @@ Scenario WithoutTradedControl(Scenario scenario);
 
 /// What a run's pair says. Everything is empty if the pair is not there.
 struct Pairing {
-  metrics::PairedMeasures measures;
+  metrics::PairedMetrics measures;
   metrics::FogEffect without;  // effect of the fog in the pair, which has no traded control
 };
 

@@ -5,7 +5,7 @@
 
 #include "common/text.h"
 #include "tools/cli/arguments.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline::cli {
 namespace {
@@ -104,7 +104,7 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
   json["verified"] = nullptr;
   if (result.verification) json["verified"] = VerificationJson(*result.verification);
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
-  json["metrics"] = nlohmann::ordered_json::parse(MeasuresJson(result));
+  json["metrics"] = nlohmann::ordered_json::parse(MetricsJson(result));
   return json;
 }
 
@@ -139,7 +139,7 @@ std::string ToText(const RunOutcome& outcome) {
   if (result.realtime) text += RealtimeText(*result.realtime);
   text += fmt::format("digest {}\n", result.digest);
   if (!result.log.empty()) text += fmt::format("log    {}\n", PathText(result.log));
-  return text + MeasuresText(result);
+  return text + MetricsText(result);
 }
 
 }  // namespace fogline::cli

@@ -15,7 +15,7 @@
 #include "tools/cli/help.h"
 #include "tools/cli/pairing.h"
 #include "tools/fogline/verbs.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline {
 namespace {
@@ -39,13 +39,13 @@ int RunMetrics(const MetricsArguments& arguments) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
-      metrics::VisitPairedMeasures(
+      metrics::VisitPairedMetrics(
           pairs[i].measures, [&row](std::string_view name, const std::optional<double>& value,
                                     std::string_view, std::string_view) {
             row[std::string(name)] = value ? nlohmann::ordered_json(*value) : nullptr;
           });
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
-      row["metrics"] = nlohmann::ordered_json::parse(cli::MeasuresJson(run.result));
+      row["metrics"] = nlohmann::ordered_json::parse(cli::MetricsJson(run.result));
       rows.push_back(std::move(row));
       continue;
     }
@@ -54,14 +54,14 @@ int RunMetrics(const MetricsArguments& arguments) {
                EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
                collision);
     if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
-    metrics::VisitPairedMeasures(
+    metrics::VisitPairedMetrics(
         pairs[i].measures, [](std::string_view name, const std::optional<double>& value,
                               std::string_view unit, std::string_view) {
           if (value) {
-            fmt::print("  {:<32}{:>12} {}\n", name, report::MeasureText(name, *value, unit), unit);
+            fmt::print("  {:<32}{:>12} {}\n", name, report::MetricText(name, *value, unit), unit);
           }
         });
-    fmt::print("{}", cli::MeasuresText(run.result));
+    fmt::print("{}", cli::MetricsText(run.result));
   }
   if (arguments.json) cli::PrintJson(rows);
   if (!readable) return kBadInput;

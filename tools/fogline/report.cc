@@ -118,9 +118,9 @@ std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   return names;
 }
 
-std::vector<report::ReportMeasure> MeasuresOf(const metrics::RunMeasures& measures) {
-  std::vector<report::ReportMeasure> out;
-  metrics::VisitMeasures(
+std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures) {
+  std::vector<report::ReportMetric> out;
+  metrics::VisitMetrics(
       measures, [&out]<class V>(std::string_view name, const V& value, std::string_view unit,
                                 std::string_view description) {
         double number = std::numeric_limits<double>::quiet_NaN();
@@ -179,7 +179,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
 
 /// Moves the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
-                         const metrics::PairedMeasures& paired) {
+                         const metrics::PairedMetrics& paired) {
   return {.name = name,
           .log = LogNameOf(run),
           .shortage = run.complete ? "" : run.note,
@@ -189,7 +189,7 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .seed = run.result.seed,
           .digest = run.result.digest,
           .samples = std::move(run.result.samples),
-          .measures = MeasuresOf(run.result.measures),
+          .measures = MetricsOf(run.result.measures),
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct};
 }

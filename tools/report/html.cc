@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 namespace fogline::report {
 namespace {
@@ -96,9 +96,9 @@ std::string DataElement(double value, int decimals) {
   return fmt::format("<data value=\"{}\">{}</data>", value, Decimal(value, decimals));
 }
 
-std::string MeasureElement(std::string_view name, double value, std::string_view unit) {
+std::string MetricElement(std::string_view name, double value, std::string_view unit) {
   if (!std::isfinite(value)) return std::string(kNoNumber);
-  std::string text = MeasureText(name, value, unit);
+  std::string text = MetricText(name, value, unit);
   if (const std::size_t minus = text.find('-'); minus != std::string::npos) {
     text.replace(minus, 1, kMinus);
   }

@@ -25,7 +25,7 @@ std::string Decimal(double value, int decimals);
 /// The same in a data element, which also has the exact number.
 std::string DataElement(double value, int decimals);
 
-/// The same for a measure, formatted by MeasureText().
-std::string MeasureElement(std::string_view name, double value, std::string_view unit);
+/// The same for a measure, formatted by MetricText().
+std::string MetricElement(std::string_view name, double value, std::string_view unit);
 
 }  // namespace fogline::report

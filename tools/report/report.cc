@@ -31,12 +31,12 @@ std::string Fact(std::string_view what, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", what, value);
 }
 
-std::string MeasureFact(std::string_view what, std::string_view name, double value,
-                        std::string_view unit) {
-  return Fact(what, fmt::format("{} {}", MeasureElement(name, value, unit), unit));
+std::string MetricFact(std::string_view what, std::string_view name, double value,
+                       std::string_view unit) {
+  return Fact(what, fmt::format("{} {}", MetricElement(name, value, unit), unit));
 }
 
-std::string CollisionFact(const metrics::RunMeasures& measures) {
+std::string CollisionFact(const metrics::RunMetrics& measures) {
   if (!measures.collision_time_s) return "";
   const bool host = measures.collision == truth_t::COLLISION_HOST;
   return Fact("Collision",
@@ -70,12 +70,12 @@ std::string BadgeElement(const ReportRun& run) {
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
-  if (run.si_pct) facts += MeasureFact("Safety improvement", "si_pct", *run.si_pct, "%");
-  const metrics::RunMeasures measures = metrics::Measure(run.samples, run.scenario);
-  facts += MeasureFact("Human drives", "human_time_s", measures.human_time_s, "s");
+  if (run.si_pct) facts += MetricFact("Safety improvement", "si_pct", *run.si_pct, "%");
+  const metrics::RunMetrics measures = metrics::Measure(run.samples, run.scenario);
+  facts += MetricFact("Human drives", "human_time_s", measures.human_time_s, "s");
   if (measures.max_compromised_safety_m) {
-    facts += MeasureFact("Worst compromised safety", "max_compromised_safety_m",
-                         *measures.max_compromised_safety_m, "m");
+    facts += MetricFact("Worst compromised safety", "max_compromised_safety_m",
+                        *measures.max_compromised_safety_m, "m");
   }
   facts += CollisionFact(measures);
   return fmt::format(
@@ -196,7 +196,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
                {"curves", CurvesSection(curves)},
                {"figures_hidden", no_figures ? " hidden" : ""},
                {"figures", figures},
-               {"measures", Section("measures", "Measures", MeasureTable(runs))},
+               {"measures", Section("measures", "Measures", MetricTable(runs))},
                {"differences", Section("differences", "What differs between the scenarios",
                                        DifferenceTable(runs))},
                {"scenarios", Section("scenarios", "Scenarios", scenarios)},

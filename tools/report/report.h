@@ -17,7 +17,7 @@
 namespace fogline::report {
 
 /// A number that rates a run.
-struct ReportMeasure {
+struct ReportMetric {
   std::string name;
   double value = 0;  // NaN if the run has none
   std::string unit;  // "" if it has none
@@ -36,9 +36,9 @@ struct ReportRun {
   std::int64_t seed = 0;
   std::string digest;
   std::vector<metrics::Sample> samples;  // in order of time
-  std::vector<ReportMeasure> measures;
+  std::vector<ReportMetric> measures;
   // Safety improvement over the paired run without traded control, in fog, and until the track has
-  // recovered (metrics::PairedMeasures).
+  // recovered (metrics::PairedMetrics).
   std::optional<double> si_pct = {};
   std::optional<double> si_until_recovery_pct = {};
 };

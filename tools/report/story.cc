@@ -14,7 +14,7 @@
 #include "services/metrics/detection.h"
 #include "services/metrics/run_metrics.h"
 #include "tools/report/figures.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/report/tables.h"
 
 namespace fogline::report {
@@ -27,7 +27,7 @@ constexpr std::size_t kMostRuns = 3;        // with traded control that a senten
 struct Told {
   const ReportRun* run;
   std::string name;
-  metrics::RunMeasures measures;
+  metrics::RunMetrics measures;
 
   bool IsTraded() const { return run->scenario.arbitrator.policy != Policy::kNone; }
 };
@@ -156,7 +156,7 @@ std::string SpeedText(double speed_mps) {
 
 /// " (1.5 cm on average in the fog) and the host slowed down by 0.047 m/s": the effect of the fog
 /// in metres and m/s; "" if there is none.
-std::string EffectText(const metrics::RunMeasures& measures) {
+std::string EffectText(const metrics::RunMetrics& measures) {
   constexpr double kLeastSlowDown_mps = 0.0005;
   std::string text;
   if (measures.mean_compromised_safety_fog_m.value_or(0) > 0) {
@@ -176,7 +176,7 @@ std::string LeftText(double compromised_m) {
 }
 
 /// Safety of a run by itself.
-std::string SafetyText(const metrics::RunMeasures& measures) {
+std::string SafetyText(const metrics::RunMetrics& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
   if (!measures.max_compromised_safety_m) return "no car collided";
   if (*measures.max_compromised_safety_m == 0) return "the following car never came too close";
@@ -211,7 +211,7 @@ std::string OutcomeText(const Told& told, const Told* baseline) {
 
 /// "the human drove for 9.4 s".
 std::string DrivingText(const Told& told) {
-  const metrics::RunMeasures& measures = told.measures;
+  const metrics::RunMetrics& measures = told.measures;
   if (measures.human_time_s == 0) return "the human never drove";
   if (measures.human_time_s >= measures.duration_s) return "the human drove all the time";
   return fmt::format("the human drove for {} s", TimeText(measures.human_time_s));

@@ -82,14 +82,14 @@ std::string SummaryCells(const stats::Summary& summary) {
 }
 
 /// A row of the table of measures; runs may have different measures.
-struct MeasureRow {
-  ReportMeasure measure;
+struct MetricRow {
+  ReportMetric measure;
   std::vector<std::optional<double>> values;  // of each run; nullopt if the run lacks the measure
 };
 
-void Put(std::vector<MeasureRow>& rows, const ReportMeasure& measure, std::size_t run,
+void Put(std::vector<MetricRow>& rows, const ReportMetric& measure, std::size_t run,
          std::size_t num_runs) {
-  const auto same = [&](const MeasureRow& row) {
+  const auto same = [&](const MetricRow& row) {
     return row.measure.name == measure.name && row.measure.unit == measure.unit && !row.values[run];
   };
   auto found = std::find_if(rows.begin(), rows.end(), same);
@@ -100,10 +100,10 @@ void Put(std::vector<MeasureRow>& rows, const ReportMeasure& measure, std::size_
   found->values[run] = measure.value;
 }
 
-std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
-  std::vector<MeasureRow> rows;
+std::vector<MetricRow> MetricRows(std::span<const ReportRun> runs) {
+  std::vector<MetricRow> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    metrics::VisitPairedMeasures(
+    metrics::VisitPairedMetrics(
         {.si_pct = runs[i].si_pct, .si_until_recovery_pct = runs[i].si_until_recovery_pct},
         [&](std::string_view name, const std::optional<double>& value, std::string_view unit,
             std::string_view description) {
@@ -113,7 +113,7 @@ std::vector<MeasureRow> MeasureRows(std::span<const ReportRun> runs) {
         });
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (const ReportMeasure& measure : runs[i].measures) Put(rows, measure, i, runs.size());
+    for (const ReportMetric& measure : runs[i].measures) Put(rows, measure, i, runs.size());
   }
   return rows;
 }
@@ -134,7 +134,7 @@ std::string UnitText(const std::string& unit) {
 }
 
 /// Description of a measure, its unit, and its name in JSON and CSV.
-std::string HeadOf(const ReportMeasure& measure) {
+std::string HeadOf(const ReportMetric& measure) {
   const bool described = !measure.description.empty();
   std::string head = EscapeHtml(described ? measure.description : measure.name);
   if (!measure.unit.empty()) {
@@ -219,14 +219,14 @@ std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> p
       rows);
 }
 
-std::string MeasureTable(std::span<const ReportRun> runs) {
+std::string MetricTable(std::span<const ReportRun> runs) {
   std::string body;
-  for (const MeasureRow& row : MeasureRows(runs)) {
+  for (const MetricRow& row : MetricRows(runs)) {
     body += fmt::format("<tr><th scope=\"row\">{}</th>", HeadOf(row.measure));
     for (const std::optional<double>& value : row.values) {
       body += fmt::format(
           "<td>{}</td>",
-          MeasureElement(row.measure.name, value.value_or(stats::kMissing), row.measure.unit));
+          MetricElement(row.measure.name, value.value_or(stats::kMissing), row.measure.unit));
     }
     body += "</tr>\n";
   }

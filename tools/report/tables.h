@@ -17,7 +17,7 @@ std::string ThresholdTable(const ReportTable& table);
 std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// Every measure that any run has: one row for each measure, one column for each run.
-std::string MeasureTable(std::span<const ReportRun> runs);
+std::string MetricTable(std::span<const ReportRun> runs);
 
 /// The scenario fields in which the runs differ, with one column for each run; "" if there are
 /// none.

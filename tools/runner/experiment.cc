@@ -75,7 +75,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   ExperimentResult result;
   runtime::Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   metrics::FollowerAccumulator followers;
   const TimePoint began = Clock::now();
   metrics::ClosedLoop loop(scenario);
@@ -249,7 +249,7 @@ LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
 }
 
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   LoggedRun logged = ReadSteps(log, [&](const metrics::Sample& sample) { measures.Add(sample); });
   logged.result.measures = measures.Result();
   return logged;

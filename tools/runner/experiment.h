@@ -78,10 +78,10 @@ struct ExperimentResult {
   std::optional<replay::Verification> verification;
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is none
-  metrics::RunMeasures measures;
-  std::vector<metrics::FollowerMeasures> followers;  // nearest to the host first
-  std::vector<metrics::Sample> samples;              // if requested
-  std::optional<log::RealtimeFigures> realtime;      // only for a run in real time
+  metrics::RunMetrics measures;
+  std::vector<metrics::FollowerMetrics> followers;  // nearest to the host first
+  std::vector<metrics::Sample> samples;             // if requested
+  std::optional<log::RealtimeFigures> realtime;     // only for a run in real time
 };
 
 /// Constructs every part of a run once, without running it. Fields whose values are valid one by

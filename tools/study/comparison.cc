@@ -10,7 +10,7 @@
 #include "services/metrics/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/safety_improvement.h"
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
@@ -18,15 +18,15 @@
 namespace fogline::study {
 namespace {
 
-std::vector<ComparedMeasure> AllMeasures() {
-  std::vector<ComparedMeasure> all;
+std::vector<ComparedMetric> AllMetrics() {
+  std::vector<ComparedMetric> all;
   const auto put = [&](std::string_view name, const auto&, std::string_view unit,
                        std::string_view description) {
     all.push_back({std::string(name), std::string(unit), std::string(description)});
   };
-  metrics::VisitPairedMeasures({}, put);
+  metrics::VisitPairedMetrics({}, put);
   put("collided", 0, "", "probability of a collision");
-  metrics::VisitMeasures(metrics::RunMeasures{}, put);
+  metrics::VisitMetrics(metrics::RunMetrics{}, put);
   return all;
 }
 
@@ -49,13 +49,13 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
 
 }  // namespace
 
-std::span<const ComparedMeasure> ComparedMeasures() {
-  static const std::vector<ComparedMeasure> kAll = AllMeasures();
+std::span<const ComparedMetric> ComparedMetrics() {
+  static const std::vector<ComparedMetric> kAll = AllMetrics();
   return kAll;
 }
 
-std::size_t PlaceOfMeasure(std::string_view name) {
-  const std::span<const ComparedMeasure> all = ComparedMeasures();
+std::size_t PlaceOfMetric(std::string_view name) {
+  const std::span<const ComparedMetric> all = ComparedMetrics();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].name == name) return i;
   }
@@ -66,7 +66,7 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
                        std::vector<StudyVariant> variants)
     : cases_(std::move(cases)), variants_(std::move(variants)), seeds_(context.seeds.count()) {
   const std::vector<Scenario> scenarios = ScenariosOf(context, cases_, variants_);
-  const std::size_t measures = ComparedMeasures().size();
+  const std::size_t measures = ComparedMetrics().size();
   const auto seeds = static_cast<std::size_t>(seeds_);
   values_.assign(cases_.size() * variants_.size() * measures * seeds, stats::kMissing);
   const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
@@ -98,7 +98,7 @@ Comparison::Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> v
       seeds_(seeds),
       values_(std::move(values)) {
   const std::size_t cells = cases_.size() * variants_.size();
-  if (values_.size() != cells * ComparedMeasures().size() * static_cast<std::size_t>(seeds)) {
+  if (values_.size() != cells * ComparedMetrics().size() * static_cast<std::size_t>(seeds)) {
     throw std::invalid_argument("a comparison needs a value of every measure of every run");
   }
 }
@@ -110,7 +110,7 @@ std::int64_t Comparison::runs() const {
 std::span<const double> Comparison::Values(Cell cell, std::string_view measure) const {
   const auto seeds = static_cast<std::size_t>(seeds_);
   const std::size_t place = cell.test_case * variants_.size() + cell.variant;
-  const std::size_t row = place * ComparedMeasures().size() + PlaceOfMeasure(measure);
+  const std::size_t row = place * ComparedMetrics().size() + PlaceOfMetric(measure);
   return std::span(values_).subspan(row * seeds, seeds);
 }
 
@@ -140,7 +140,7 @@ metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, doub
 }
 
 std::span<const double> Comparison::AllOf(Cell cell) const {
-  const std::size_t length = ComparedMeasures().size() * static_cast<std::size_t>(seeds_);
+  const std::size_t length = ComparedMetrics().size() * static_cast<std::size_t>(seeds_);
   const std::size_t place = cell.test_case * variants_.size() + cell.variant;
   return std::span(values_).subspan(place * length, length);
 }
@@ -176,7 +176,7 @@ std::string Comparison::Csv(std::size_t reference) const {
       "difference_infinite,difference,difference_ci95_low,difference_ci95_high\n";
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
-      for (const ComparedMeasure& measure : ComparedMeasures()) {
+      for (const ComparedMetric& measure : ComparedMetrics()) {
         Estimate mean = Mean({c, v}, measure.name);
         if (measure.name == "collided") {
           const metrics::EventShare share = Collisions({c, v});
@@ -198,7 +198,7 @@ std::string Comparison::Csv(std::size_t reference) const {
 
 report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string id,
                                          std::string title, bool cases_on_axis) const {
-  const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+  const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
   report::StudyFigure figure{
       .id = std::move(id),
       .title = std::move(title),
@@ -242,7 +242,7 @@ report::StudyTable Comparison::TableOf(std::string caption, std::span<const Cell
   report::StudyTable table{.caption = std::move(caption),
                            .columns = {name_cases ? "case" : "variant"}};
   for (const std::string_view measure : measures) {
-    const ComparedMeasure& info = ComparedMeasures()[PlaceOfMeasure(measure)];
+    const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
     table.columns.push_back(info.unit.empty() ? info.name
                                               : fmt::format("{} ({})", info.name, info.unit));
   }

@@ -35,16 +35,16 @@ struct StudyVariant {
 /// The override for a run without traded control.
 inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=none";
 
-/// A measure of a run: one of VisitPairedMeasures(), "collided" (1 or 0), or one of
-/// VisitMeasures().
-struct ComparedMeasure {
+/// A measure of a run: one of VisitPairedMetrics(), "collided" (1 or 0), or one of
+/// VisitMetrics().
+struct ComparedMetric {
   std::string name;
   std::string unit;
   std::string description;
 };
-std::span<const ComparedMeasure> ComparedMeasures();
+std::span<const ComparedMetric> ComparedMetrics();
 /// @throws std::out_of_range
-std::size_t PlaceOfMeasure(std::string_view name);
+std::size_t PlaceOfMetric(std::string_view name);
 
 /// One variant in one case.
 struct Cell {

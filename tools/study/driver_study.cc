@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 #include "tools/study/case_findings.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"

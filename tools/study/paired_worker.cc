@@ -13,21 +13,21 @@ namespace {
 
 /// If a pair of cars existed and never closed in, its smallest time to collision is infinite
 /// instead of missing.
-void KeepInfinite(metrics::PairMeasures& pair) {
+void KeepInfinite(metrics::PairMetrics& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();
 }
 
-// The values are in the order of ComparedMeasures().
-RunValues ValuesOf(metrics::RunMeasures measures, const metrics::PairedMeasures& paired) {
+// The values are in the order of ComparedMetrics().
+RunValues ValuesOf(metrics::RunMetrics measures, const metrics::PairedMetrics& paired) {
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
   RunValues values;
-  metrics::VisitPairedMeasures(
+  metrics::VisitPairedMetrics(
       paired, [&](std::string_view, const std::optional<double>& value, std::string_view,
                   std::string_view) { values.push_back(value.value_or(stats::kMissing)); });
   values.push_back(measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0);
-  metrics::VisitMeasures(
+  metrics::VisitMetrics(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
           values.push_back(value.value_or(stats::kMissing));
@@ -59,7 +59,7 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
       [this](const metrics::StepView& step) { baseline_.push_back(step.ToSample()); });
   std::vector<RunValues> runs;
   for (const Scenario& scenario : scenarios.subspan(1)) {
-    metrics::MeasureAccumulator measures(scenario);
+    metrics::MetricsAccumulator measures(scenario);
     metrics::PairedAccumulator pair(scenario);
     std::size_t i = 0;
     Run(scenario, seed, [&](const metrics::StepView& step) {

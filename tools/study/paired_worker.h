@@ -13,7 +13,7 @@
 
 namespace fogline::study {
 
-/// The measures of a run in the order of ComparedMeasures(); NaN for a missing measure.
+/// The measures of a run in the order of ComparedMetrics(); NaN for a missing measure.
 using RunValues = std::vector<double>;
 
 /// For use by one thread; it keeps its buffers.

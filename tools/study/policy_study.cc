@@ -31,18 +31,19 @@ std::vector<StudyCase> Cases() {
           {"beam fog", "dense_fog.json", {}}};
 }
 
-constexpr std::array<std::string_view, 12> kTableMeasures{"si_pct",
-                                                          "si_until_recovery_pct",
-                                                          "rhe_pct",
-                                                          "collided",
-                                                          "mean_compromised_safety_fog_m",
-                                                          "mean_compromised_safety_until_recovery_m",
-                                                          "min_follower_ttc_s",
-                                                          "max_follower_drac_mps2",
-                                                          "max_abs_jerk_mps3",
-                                                          "transfers_pmin",
-                                                          "wrong_human_s",
-                                                          "wrong_automation_s"};
+constexpr std::array<std::string_view, 12> kTableMeasures{
+    "si_pct",
+    "si_until_recovery_pct",
+    "rhe_pct",
+    "collided",
+    "mean_compromised_safety_fog_m",
+    "mean_compromised_safety_until_recovery_m",
+    "min_follower_ttc_s",
+    "max_follower_drac_mps2",
+    "max_abs_jerk_mps3",
+    "transfers_pmin",
+    "wrong_human_s",
+    "wrong_automation_s"};
 
 /// The policies that can change the driver, by variant: all except those whose rule is
 /// Rule::kNever.

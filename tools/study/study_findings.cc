@@ -14,7 +14,7 @@ namespace {
 constexpr double kPercent = 100;
 
 std::string UnitOf(std::string_view measure) {
-  return ComparedMeasures()[PlaceOfMeasure(measure)].unit;
+  return ComparedMetrics()[PlaceOfMetric(measure)].unit;
 }
 
 }  // namespace

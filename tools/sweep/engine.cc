@@ -51,7 +51,7 @@ SweepRow SweepWorker::ComputeRow() {
     effect_ = effect.Result();
     scenario_.arbitrator.policy = policy;
   }
-  metrics::MeasureAccumulator measures(scenario_);
+  metrics::MetricsAccumulator measures(scenario_);
   metrics::PairedAccumulator pair(scenario_);
   std::size_t i = 0;
   Run([&](const metrics::StepView& step) {

@@ -16,10 +16,10 @@ namespace fogline::sweep {
 
 /// Result of a row of a sweep.
 struct SweepRow {
-  metrics::RunMeasures measures;
+  metrics::RunMetrics measures;
   /// Measures of the pair with the run without traded control. They are empty for a run that is its
   /// own pair, and for a paired run without compromised safety.
-  metrics::PairedMeasures paired;
+  metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
   metrics::FogEffect without;

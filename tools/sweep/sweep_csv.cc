@@ -34,9 +34,9 @@ std::string HeaderLine(const SweepPlan& plan) {
   std::string line;
   for (const Axis& axis : plan.axes()) line += axis.pointer + ",";
   line += "seed,si_pct";
-  metrics::VisitMeasures(metrics::RunMeasures{},
-                         [&line](std::string_view name, const auto&, std::string_view,
-                                 std::string_view) { line += fmt::format(",{}", name); });
+  metrics::VisitMetrics(metrics::RunMetrics{},
+                        [&line](std::string_view name, const auto&, std::string_view,
+                                std::string_view) { line += fmt::format(",{}", name); });
   return line + ",si_until_recovery_pct\n";
 }
 
@@ -56,8 +56,8 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
   };
   AppendKey(plan, unit, index, text);
   number(row.paired.si_pct);
-  metrics::VisitMeasures(row.measures, [&]<class V>(std::string_view, const V& value,
-                                                    std::string_view, std::string_view) {
+  metrics::VisitMetrics(row.measures, [&]<class V>(std::string_view, const V& value,
+                                                   std::string_view, std::string_view) {
     text += ',';
     if constexpr (std::is_same_v<V, std::optional<double>>) {
       number(value);

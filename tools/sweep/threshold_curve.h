@@ -25,7 +25,7 @@ namespace fogline::sweep {
 struct ThresholdRow {
   /// Adds a run, its measures as a pair, and the effect of the fog without traded control. SI and
   /// RHE may be missing: SI needs compromised safety in the paired run.
-  void Add(const metrics::RunMeasures& measures, const metrics::PairedMeasures& paired,
+  void Add(const metrics::RunMetrics& measures, const metrics::PairedMetrics& paired,
            const metrics::FogEffect& without) {
     const auto add = [](const std::optional<double>& value, stats::Statistics& to) {
       if (value) to.Add(*value);

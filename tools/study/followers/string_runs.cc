@@ -24,7 +24,7 @@ constexpr double kLeastBraking_mps2 = 0.01;
 /// Result of one run.
 struct StringRun {
   std::array<double, kStringCars + 1> max_deceleration_mps2{};
-  std::vector<metrics::FollowerMeasures> followers;
+  std::vector<metrics::FollowerMetrics> followers;
   bool collided = false;
 };
 
@@ -75,8 +75,8 @@ void Add(const StringRun& run, StringOutcome& outcome) {
     car.amplification.push_back(ahead_mps2 < kLeastBraking_mps2 ? stats::kMissing
                                                                 : own_mps2 / ahead_mps2);
     const bool there = place <= run.followers.size();
-    const metrics::FollowerMeasures measures =
-        there ? run.followers[place - 1] : metrics::FollowerMeasures{};
+    const metrics::FollowerMetrics measures =
+        there ? run.followers[place - 1] : metrics::FollowerMetrics{};
     car.min_ttc_s.push_back(measures.min_ttc_s.value_or(there ? kInfinite : stats::kMissing));
     car.min_gap_m.push_back(measures.min_gap_m.value_or(stats::kMissing));
   }

@@ -112,10 +112,10 @@ std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixe
 }
 
 void Add(const RunValues& run, RuleMember& member) {
-  member.si_pct.push_back(run[PlaceOfMeasure("si_pct")]);
-  member.rhe_pct.push_back(run[PlaceOfMeasure("rhe_pct")]);
-  member.shortfall_m.push_back(run[PlaceOfMeasure(kShortfall)]);
-  member.collisions += run[PlaceOfMeasure("collided")] > 0 ? 1 : 0;
+  member.si_pct.push_back(run[PlaceOfMetric("si_pct")]);
+  member.rhe_pct.push_back(run[PlaceOfMetric("rhe_pct")]);
+  member.shortfall_m.push_back(run[PlaceOfMetric(kShortfall)]);
+  member.collisions += run[PlaceOfMetric("collided")] > 0 ? 1 : 0;
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ void GiveToHuman(metrics::Sample& sample) {
   sample.lambda_automation = 0;
 }
 
-metrics::DetectionMeasures Collect(const std::vector<metrics::Sample>& run,
-                                   const Scenario& scenario = {}) {
+metrics::DetectionMetrics Collect(const std::vector<metrics::Sample>& run,
+                                  const Scenario& scenario = {}) {
   metrics::DetectionAccumulator accumulator(scenario);
   for (const metrics::Sample& sample : run) accumulator.Add(sample);
   return accumulator.Result();
@@ -44,7 +44,7 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileTheT
   auto run = QuietRun(8);
   for (const std::size_t k : {2, 3, 4}) Deceive(run[k]);
   for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
-  const metrics::DetectionMeasures m = Collect(run);
+  const metrics::DetectionMetrics m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 2 * kStep_s);  // steps 2 and 3
   EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; the last step, 7, has no duration
 }
@@ -56,7 +56,7 @@ TEST(DetectionTest, AuthorityWeighsTheTime) {
     sample.lambda_human = 0.25;
     sample.lambda_automation = 0.75;
   }
-  const metrics::DetectionMeasures m = Collect(run);
+  const metrics::DetectionMetrics m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 0.75 * kStep_s);
   EXPECT_EQ(m.wrong_human_s, 0.25 * kStep_s);
 }
@@ -93,7 +93,7 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
     GiveToHuman(sample);
     sample.doc = 0.9;
   }
-  const metrics::DetectionMeasures m = Collect(run, scenario);
+  const metrics::DetectionMetrics m = Collect(run, scenario);
   EXPECT_EQ(m.wrong_human_s, 3 * kStep_s);
   EXPECT_EQ(m.deception_to_alarm_s, std::nullopt);
 }

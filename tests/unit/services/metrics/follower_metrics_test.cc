@@ -28,13 +28,13 @@ follower_command_t SafeDistances(double first_m, double second_m) {
   return command;
 }
 
-TEST(FollowerMeasuresTest, AreNoneWithoutAFollower) {
+TEST(FollowerMetricsTest, AreNoneWithoutAFollower) {
   metrics::FollowerAccumulator accumulator;
   accumulator.Add(truth_t{}, follower_command_t{});
   EXPECT_TRUE(accumulator.Result().empty());
 }
 
-TEST(FollowerMeasuresTest, HaveTheSmallestGapOfEachCar) {
+TEST(FollowerMetricsTest, HaveTheSmallestGapOfEachCar) {
   metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   for (const double less_m : {0.0, 3.0, 1.0}) {
@@ -47,7 +47,7 @@ TEST(FollowerMeasuresTest, HaveTheSmallestGapOfEachCar) {
   EXPECT_EQ(result[1].min_gap_m, 14);
 }
 
-TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
+TEST(FollowerMetricsTest, HaveTheTimeToCollisionWithTheCarBefore) {
   metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
@@ -64,7 +64,7 @@ TEST(FollowerMeasuresTest, HaveTheTimeToCollisionWithTheCarBefore) {
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, 0);
 }
 
-TEST(FollowerMeasuresTest, HaveTheShortfallOfEachDriversOwnSafeDistance) {
+TEST(FollowerMetricsTest, HaveTheShortfallOfEachDriversOwnSafeDistance) {
   metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(32, 20));
@@ -79,7 +79,7 @@ TEST(FollowerMeasuresTest, HaveTheShortfallOfEachDriversOwnSafeDistance) {
   EXPECT_EQ(result[1].mean_compromised_safety_fog_m, 4.5);
 }
 
-TEST(FollowerMeasuresTest, GoWithoutTheCommandsOfAStepThatHasNone) {
+TEST(FollowerMetricsTest, GoWithoutTheCommandsOfAStepThatHasNone) {
   metrics::FollowerAccumulator accumulator;
   truth_t truth = TwoFollowers();
   truth.follower_gap_m = {10, 10};
@@ -90,10 +90,10 @@ TEST(FollowerMeasuresTest, GoWithoutTheCommandsOfAStepThatHasNone) {
   EXPECT_EQ(result[1].max_compromised_safety_m, std::nullopt);
 }
 
-TEST(FollowerMeasuresTest, AreNamedWithTheirUnits) {
+TEST(FollowerMetricsTest, AreNamedWithTheirUnits) {
   std::map<std::string, std::string> units;
-  metrics::VisitFollowerMeasures(
-      metrics::FollowerMeasures(),
+  metrics::VisitFollowerMetrics(
+      metrics::FollowerMetrics(),
       [&](std::string_view name, const auto&, std::string_view unit, std::string_view what) {
         EXPECT_FALSE(what.empty()) << name;
         units.emplace(name, unit);

@@ -47,7 +47,7 @@ TEST(CompromisedSafetyTest, HasNoValueWithoutAFollowingCar) {
 }
 
 TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
-  const metrics::RunMeasures m = metrics::Measure({});
+  const metrics::RunMetrics m = metrics::Measure({});
   EXPECT_EQ(m.steps, 0);
   EXPECT_EQ(m.duration_s, 0);
   EXPECT_EQ(m.min_host_gap_m, std::nullopt);
@@ -56,7 +56,7 @@ TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
 }
 
 TEST(MeasureTest, CountsStepsAndTheTimeBetweenTheFirstAndTheLast) {
-  const metrics::RunMeasures m = metrics::Measure(QuietRun(5));
+  const metrics::RunMetrics m = metrics::Measure(QuietRun(5));
   EXPECT_EQ(m.steps, 5);
   EXPECT_EQ(m.duration_s, 2.0);
 }
@@ -65,7 +65,7 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
   auto run = QuietRun(3);
   run[1].host_gap_m = 12;
   run[2].follower_gap_m = 7;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_host_gap_m, 12);
   EXPECT_EQ(m.min_follower_gap_m, 7);
 }
@@ -73,7 +73,7 @@ TEST(MeasureTest, FindsTheSmallestGaps) {
 TEST(MeasureTest, MeasuresCompromisedSafetyEverywhereAndItsMeanInFog) {
   auto run = FoggyRun({0, 1, 3, 8});
   run[3].fog_present = false;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.max_compromised_safety_m, 8);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 4.0 / 3);
 }
@@ -108,7 +108,7 @@ TEST(MeasureTest, CompromisedSafetyUntilRecoveryEndsWhenTheTrackIsRightForGood) 
   Shorten(run, 6, 2);
   Shorten(run, 7, 3);
   Shorten(run, 8, 9);  // the track is right again
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.max_compromised_safety_until_recovery_m, 3);
   EXPECT_EQ(m.mean_compromised_safety_until_recovery_m, 6.0 / 6);  // steps 2 to 7
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 1.0 / 3);
@@ -139,7 +139,7 @@ TEST(MeasureTest, WithoutAFollowingCarItsMeasuresHaveNoValue) {
   auto run = FoggyRun({0, 0});
   for (metrics::Sample& sample : run)
     sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_follower_gap_m, std::nullopt);
   EXPECT_EQ(m.max_compromised_safety_m, std::nullopt);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, std::nullopt);
@@ -174,7 +174,7 @@ TEST(MeasureTest, RedundantEngagementIsTheHumansShareOfClearAir) {
 TEST(MeasureTest, CountsHandOversInBothDirectionsAndTheHumansTime) {
   auto run = QuietRun(10);
   for (std::size_t k : {2, 3, 4, 8, 9}) run[k].lambda_human = 1;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.transfers, 3);
   EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // no car carries out the command of the last step
 }
@@ -193,7 +193,7 @@ TEST(MeasureTest, CountsHandOversPerMinuteAndTheLeastTimeBetweenTwo) {
   auto run = QuietRun(13);  // 6 s
   EXPECT_EQ(metrics::Measure(run).transfers_pmin, 0);
   for (std::size_t k : {2, 3, 4, 5, 10, 11, 12}) run[k].lambda_human = 1;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.transfers_pmin, 30);        // 3 in 6 s
   EXPECT_EQ(m.min_dwell_s, 4 * kStep_s);  // steps 2 to 6
   for (std::size_t k = 0; k < 10; ++k) run[k].lambda_human = 0;
@@ -226,7 +226,7 @@ TEST(MeasureTest, MeasuresBothPairsOfCars) {
   }
   run[1].host_speed_mps = 15;  // 5 m/s slower than the car 32 m behind it
   run[2].preceding_speed_mps = 10;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
   EXPECT_EQ(m.host.min_ttc_s, 3);
   EXPECT_EQ(m.host.min_time_gap_s, 1.5);
@@ -238,7 +238,7 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   auto run = QuietRun(5);
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 do not follow an applied
   // acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
@@ -263,7 +263,7 @@ std::vector<metrics::Sample> RunWithAJump(double step_s) {
 
 TEST(MeasureTest, JerkOverASecondDoesNotDependOnTheStepButTheJerkOfAJumpDoes) {
   for (const double step_s : {0.1, 0.05, 0.02}) {
-    const metrics::RunMeasures m = metrics::Measure(RunWithAJump(step_s));
+    const metrics::RunMetrics m = metrics::Measure(RunWithAJump(step_s));
     EXPECT_NEAR(*m.max_handover_jerk_1s_mps3, 0.6, 1e-9) << step_s;
     EXPECT_NEAR(*m.max_abs_jerk_1s_mps3, 1.5, 1e-9) << step_s;
     EXPECT_NEAR(*m.max_handover_jerk_mps3, 0.6 / step_s, 1e-6) << step_s;
@@ -293,7 +293,7 @@ TEST(MeasureTest, ConflictInClearAirLeavesTheFogOut) {
     run[k].doc = conflict[k] / 2;
   }
   run[1].fog_present = true;
-  const metrics::RunMeasures m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.min_conflict_clear_m, 0.9);
   EXPECT_EQ(m.max_conflict_clear_m, 0.95);
   EXPECT_EQ(m.max_doc, 0.7);
@@ -309,17 +309,17 @@ TEST(MeasureTest, FusionErrorCountsTheStepsWithATrack) {
 
 TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
   auto run = FoggyRun({1, 2, 3});
-  metrics::MeasureAccumulator accumulator;
+  metrics::MetricsAccumulator accumulator;
   for (std::size_t k = 0; k < run.size(); ++k) {
     accumulator.Add(run[k]);
-    const metrics::RunMeasures so_far = accumulator.Result();
-    const metrics::RunMeasures whole = metrics::Measure(std::span(run).first(k + 1));
+    const metrics::RunMetrics so_far = accumulator.Result();
+    const metrics::RunMetrics whole = metrics::Measure(std::span(run).first(k + 1));
     EXPECT_EQ(so_far.steps, whole.steps);
     EXPECT_EQ(so_far.mean_compromised_safety_fog_m, whole.mean_compromised_safety_fog_m);
   }
 }
 
-TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
+TEST(VisitMetricsTest, NamesEveryMeasureOnceWithItsUnit) {
   const std::map<std::string_view, std::string_view> suffixes{
       {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"}, {"m/s", "_mps"},
       {"m/s2", "_mps2"}, {"m/s3", "_mps3"}, {"1/min", "_pmin"}, {"1/h", "_ph"}};
@@ -335,11 +335,11 @@ TEST(VisitMeasuresTest, NamesEveryMeasureOnceWithItsUnit) {
       EXPECT_TRUE(name.ends_with(suffixes.at(unit))) << name << " in " << unit;
     }
   };
-  metrics::VisitMeasures(metrics::RunMeasures(), check);
+  metrics::VisitMetrics(metrics::RunMetrics(), check);
   EXPECT_EQ(names.size(), 49U);
 }
 
-TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
+TEST(VisitMetricsTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
   constexpr std::string_view kHost = "host: ";
   constexpr std::string_view kFollower = "following car: ";
   std::map<std::string, std::string, std::less<>> host;
@@ -348,16 +348,15 @@ TEST(VisitMeasuresTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
     const std::size_t at = name.find(car);
     return std::string(name.substr(0, at)) + std::string(name.substr(at + car.size()));
   };
-  metrics::VisitMeasures(
-      metrics::RunMeasures(),
-      [&](std::string_view name, const auto&, std::string_view, std::string_view description) {
-        if (description.starts_with(kHost)) {
-          host[without(name, "host")] = description.substr(kHost.size());
-        } else if (name.find("follower") != name.npos) {
-          ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
-          follower[without(name, "follower")] = description.substr(kFollower.size());
-        }
-      });
+  metrics::VisitMetrics(metrics::RunMetrics(), [&](std::string_view name, const auto&,
+                                                   std::string_view, std::string_view description) {
+    if (description.starts_with(kHost)) {
+      host[without(name, "host")] = description.substr(kHost.size());
+    } else if (name.find("follower") != name.npos) {
+      ASSERT_TRUE(description.starts_with(kFollower)) << name << ": " << description;
+      follower[without(name, "follower")] = description.substr(kFollower.size());
+    }
+  });
   EXPECT_EQ(host.size(), 10U);
   EXPECT_EQ(host, follower);
 }

@@ -104,7 +104,7 @@ TEST(PairedMeasuresTest, HaveTheFloorOfTheScenario) {
             std::nullopt);
 }
 
-// Place of a choice in PairedMeasures::other_si_pct.
+// Place of a choice in PairedMetrics::other_si_pct.
 std::size_t PlaceOf(std::string_view name) {
   for (std::size_t i = 0; i < metrics::kSafetyChoices.size(); ++i) {
     if (metrics::kSafetyChoices[i].name == name) return i;
@@ -115,7 +115,7 @@ std::size_t PlaceOf(std::string_view name) {
 TEST(PairedMeasuresTest, HaveSafetyWithOtherFloors) {
   const auto baseline = FoggyRun({0.5, 0.015, 0.007, 0.002, 0.0005});
   const auto traded = FoggyRun({0, 0.015, 0.007, 0.002, 0.0005});
-  const metrics::PairedMeasures m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
+  const metrics::PairedMetrics m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
   EXPECT_EQ(m.si_pct, 100);
   EXPECT_EQ(m.other_si_pct[PlaceOf("floor_20mm")], 100);
   EXPECT_NEAR(*m.other_si_pct[PlaceOf("floor_10mm")], 100.0 / 2, 1e-9);
@@ -137,7 +137,7 @@ TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
   traded[2].follower_safe_distance_m = 29.75;
   // THEN the readings differ: 1 m below the safe distance against 0; 4 m against 2; 1 m against
   // 0.25
-  const metrics::PairedMeasures m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
+  const metrics::PairedMetrics m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
   EXPECT_EQ(m.si_pct, 100);
   EXPECT_EQ(m.other_si_pct[PlaceOf("gap_lost")], 50);
   EXPECT_EQ(m.other_si_pct[PlaceOf("safe_distance_lost")], 75);
@@ -145,8 +145,8 @@ TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
 
 TEST(PairedMeasuresTest, AreVisitedOnceEachWithTheirUnit) {
   std::set<std::string_view> names;
-  metrics::VisitPairedMeasures({}, [&](std::string_view name, const std::optional<double>& value,
-                                       std::string_view unit, std::string_view description) {
+  metrics::VisitPairedMetrics({}, [&](std::string_view name, const std::optional<double>& value,
+                                      std::string_view unit, std::string_view description) {
     EXPECT_TRUE(names.insert(name).second) << name;
     EXPECT_EQ(value, std::nullopt);
     EXPECT_EQ(unit, "%");

@@ -16,8 +16,8 @@ constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 constexpr metrics::CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
 constexpr metrics::CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
 
-metrics::PairMeasures Collect(std::initializer_list<metrics::CarPair> pairs,
-                              const MeasuresSection& section = {}) {
+metrics::PairMetrics Collect(std::initializer_list<metrics::CarPair> pairs,
+                             const MeasuresSection& section = {}) {
   metrics::PairAccumulator accumulator(section);
   double since_s = 0;
   for (const metrics::CarPair& pair : pairs) {
@@ -74,7 +74,7 @@ TEST(SurrogateTest, CrashProbabilityHoldsWhereTheLimitsLeaveNothingOfTheDistribu
 }
 
 TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
-  const metrics::PairMeasures m = Collect({kFollowing, kClosing, {40, 20, 20}});
+  const metrics::PairMetrics m = Collect({kFollowing, kClosing, {40, 20, 20}});
   EXPECT_EQ(m.min_ttc_s, 6);
   EXPECT_EQ(m.min_time_gap_s, 30.0 / 25);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
@@ -91,14 +91,14 @@ TEST(PairAccumulatorTest, RssMarginWithTheParametersOfAdRssLibDoesNotDependOnThe
   EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
   MeasuresSection section;
   section.rss_response_s = 0;
-  const metrics::PairMeasures m = Collect({kFollowing, {40, 20, 20}}, section);
+  const metrics::PairMetrics m = Collect({kFollowing, {40, 20, 20}}, section);
   EXPECT_NEAR(*m.min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
   EXPECT_GT(*m.min_rss_margin_m, 8);
 }
 
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
   // TTC* is 2 s. The last step has no duration.
-  const metrics::PairMeasures m =
+  const metrics::PairMetrics m =
       Collect({CollidingWithin(3), CollidingWithin(2), CollidingWithin(1), CollidingWithin(1.5),
                kFollowing, CollidingWithin(1)});
   EXPECT_EQ(m.tet_s, 3 * kStep_s);
@@ -119,7 +119,7 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
 }
 
 TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
-  const metrics::PairMeasures m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
+  const metrics::PairMetrics m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
   EXPECT_EQ(m.min_ttc_s, 0);
   EXPECT_EQ(m.min_time_gap_s, 0);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
@@ -128,7 +128,7 @@ TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
 }
 
 TEST(PairAccumulatorTest, HasNoValuesWithoutACarAhead) {
-  const metrics::PairMeasures m = Collect({{kNone, 20, 20}, {30, kNone, 20}});
+  const metrics::PairMetrics m = Collect({{kNone, 20, 20}, {30, kNone, 20}});
   EXPECT_EQ(m.min_ttc_s, std::nullopt);
   EXPECT_EQ(m.tet_s, std::nullopt);
   EXPECT_EQ(m.max_drac_mps2, std::nullopt);

@@ -247,17 +247,17 @@ runner::ExperimentResult Measured() {
 }
 
 TEST(MeasuresTest, AreAllInTheJsonWithAllTheirDigits) {
-  const auto json = nlohmann::json::parse(cli::MeasuresJson(Measured()));
+  const auto json = nlohmann::json::parse(cli::MetricsJson(Measured()));
   EXPECT_EQ(json["steps"], 500);
   EXPECT_EQ(json["min_host_gap_m"], 12.34567);
   EXPECT_TRUE(json["rhe_pct"].is_null());
   std::size_t measures = 0;
-  metrics::VisitMeasures(metrics::RunMeasures(), [&](auto&&...) { ++measures; });
+  metrics::VisitMetrics(metrics::RunMetrics(), [&](auto&&...) { ++measures; });
   EXPECT_EQ(json.size(), measures) << "no list of one following car";
 }
 
 TEST(MeasuresTest, AreALineEachForAPerson) {
-  const std::string text = cli::MeasuresText(Measured());
+  const std::string text = cli::MetricsText(Measured());
   EXPECT_THAT(text, HasSubstr("  min_host_gap_m                         12.35 m\n"));
   EXPECT_THAT(text, HasSubstr("  rhe_pct                                    - %\n"));
   EXPECT_EQ(text.find("follower  "), std::string::npos);
@@ -267,11 +267,11 @@ TEST(MeasuresTest, AreThoseOfEachCarOfAColumn) {
   runner::ExperimentResult result = Measured();
   result.followers.resize(2);
   result.followers[1].min_gap_m = 3.25;
-  const auto json = nlohmann::json::parse(cli::MeasuresJson(result));
+  const auto json = nlohmann::json::parse(cli::MetricsJson(result));
   ASSERT_EQ(json["followers"].size(), 2U);
   EXPECT_TRUE(json["followers"][0]["min_gap_m"].is_null());
   EXPECT_EQ(json["followers"][1]["min_gap_m"], 3.25);
-  const std::string text = cli::MeasuresText(result);
+  const std::string text = cli::MetricsText(result);
   EXPECT_THAT(text, HasSubstr("\n  follower    min_gap_m  min_ttc_s  "));
   EXPECT_THAT(text, HasSubstr("\n  2               3.250          -  "));
 }

@@ -41,12 +41,12 @@ TEST(DataElementTest, CarriesTheExactNumberBesideTheRoundedOne) {
   EXPECT_EQ(report::DataElement(0.1 + 0.2, 2), "<data value=\"0.30000000000000004\">0.30</data>");
 }
 
-TEST(MeasureElementTest, CarriesTheExactNumberBesideTheTextOfTheMeasure) {
-  EXPECT_EQ(report::MeasureElement("min_host_ttc_s", 2949.25, "s"),
+TEST(MetricElementTest, CarriesTheExactNumberBesideTheTextOfTheMeasure) {
+  EXPECT_EQ(report::MetricElement("min_host_ttc_s", 2949.25, "s"),
             "<data value=\"2949.25\">&gt; 1000</data>");
-  EXPECT_EQ(report::MeasureElement("min_host_rss_margin_m", -1e-5, "m"),
+  EXPECT_EQ(report::MetricElement("min_host_rss_margin_m", -1e-5, "m"),
             "<data value=\"-1e-05\">&gt; \u22120.001</data>");
-  EXPECT_EQ(report::MeasureElement("steps", std::numeric_limits<double>::quiet_NaN(), ""), "–");
+  EXPECT_EQ(report::MetricElement("steps", std::numeric_limits<double>::quiet_NaN(), ""), "–");
 }
 
 }  // namespace

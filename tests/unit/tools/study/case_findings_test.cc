@@ -24,7 +24,7 @@ class Runs {
  public:
   Runs(std::vector<study::StudyCase> cases, std::vector<study::StudyVariant> variants)
       : cases_(std::move(cases)), variants_(std::move(variants)) {
-    values_.assign(cases_.size() * variants_.size() * study::ComparedMeasures().size() * kSeeds,
+    values_.assign(cases_.size() * variants_.size() * study::ComparedMetrics().size() * kSeeds,
                    0.0);
     for (std::size_t c = 0; c < cases_.size(); ++c) {
       for (std::size_t v = 0; v < variants_.size(); ++v) {
@@ -36,8 +36,7 @@ class Runs {
   template <class ValueOf>
   void Set(study::Cell cell, std::string_view measure, ValueOf value_of) {
     const std::size_t place = cell.test_case * variants_.size() + cell.variant;
-    const std::size_t row =
-        place * study::ComparedMeasures().size() + study::PlaceOfMeasure(measure);
+    const std::size_t row = place * study::ComparedMetrics().size() + study::PlaceOfMetric(measure);
     for (std::int64_t i = 0; i < kSeeds; ++i) {
       values_[row * kSeeds + static_cast<std::size_t>(i)] = value_of(i);
     }

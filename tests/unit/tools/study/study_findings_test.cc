@@ -33,12 +33,12 @@ TEST(ListTextTest, JoinsNames) {
   EXPECT_EQ(study::ListText({"a", "b", "c"}), "a, b and c");
 }
 
-TEST(ComparedMeasuresTest, HasSafetyImprovementCollisionsAndEveryMeasureOfARun) {
-  EXPECT_EQ(study::PlaceOfMeasure("si_pct"), 0U);
-  EXPECT_EQ(study::PlaceOfMeasure("si_until_recovery_pct"), 1U);
-  EXPECT_EQ(study::PlaceOfMeasure("collided"), 2U);
-  EXPECT_GT(study::PlaceOfMeasure("max_handover_jerk_mps3"), 2U);
-  EXPECT_THROW(study::PlaceOfMeasure("levity"), std::out_of_range);
+TEST(ComparedMetricsTest, HasSafetyImprovementCollisionsAndEveryMeasureOfARun) {
+  EXPECT_EQ(study::PlaceOfMetric("si_pct"), 0U);
+  EXPECT_EQ(study::PlaceOfMetric("si_until_recovery_pct"), 1U);
+  EXPECT_EQ(study::PlaceOfMetric("collided"), 2U);
+  EXPECT_GT(study::PlaceOfMetric("max_handover_jerk_mps3"), 2U);
+  EXPECT_THROW(study::PlaceOfMetric("levity"), std::out_of_range);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ bool CheckModels() {
 // The number of allocations from the end of step 0 to the end of the last step.
 long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   metrics::ClosedLoop loop(scenario);
-  metrics::MeasureAccumulator measures;
+  metrics::MetricsAccumulator measures;
   metrics::FollowerAccumulator followers;
   metrics::PairedAccumulator pair(scenario);
   long after_first = 0;

@@ -26,7 +26,7 @@ struct Counted {
 
 Counted CountTransfers(const Scenario& scenario) {
   Counted counted;
-  metrics::MeasureAccumulator measures(scenario);
+  metrics::MetricsAccumulator measures(scenario);
   take_over::TakeOverLog log;
   metrics::ClosedLoop(scenario).Run(0, [&](const metrics::StepView& step) {
     measures.Add(step.ToSample());

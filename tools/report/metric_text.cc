@@ -1,4 +1,4 @@
-#include "tools/report/measure_text.h"
+#include "tools/report/metric_text.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ int DecimalsOfUnit(std::string_view unit) {
 
 bool IsTimeToCollision(std::string_view name) { return name.ends_with("ttc_s"); }
 
-std::string MeasureText(std::string_view name, double value, std::string_view unit) {
+std::string MetricText(std::string_view name, double value, std::string_view unit) {
   if (value == 0) return "0";
   if (unit.empty() && value == std::round(value)) return fmt::format("{:.0f}", value);
   if (IsTimeToCollision(name) && value > kLongestTtc_s) return fmt::format("> {}", kLongestTtc_s);
@@ -46,7 +46,7 @@ std::string MeasureText(std::string_view name, double value, std::string_view un
   return fmt::format("{:.{}f}", value, decimals);
 }
 
-std::string CollisionText(const metrics::RunMeasures& measures) {
+std::string CollisionText(const metrics::RunMetrics& measures) {
   if (!measures.collision_time_s) return "";
   return fmt::format("{} at {} s",
                      measures.collision == truth_t::COLLISION_HOST

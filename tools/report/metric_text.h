@@ -22,10 +22,10 @@ bool IsTimeToCollision(std::string_view name);
 /// of a second), and, except for percentages, at most four significant digits. A whole number
 /// without unit has no decimals. 0 is "0". Another value that rounds to 0 is "< 0.001" or ">
 /// -0.001". A time to collision above kLongestTtc_s is "> 1000".
-/// @param name as in VisitMeasures()
-std::string MeasureText(std::string_view name, double value, std::string_view unit);
+/// @param name as in VisitMetrics()
+std::string MetricText(std::string_view name, double value, std::string_view unit);
 
 /// "the host hit the preceding car at 12.3 s"; "" without a collision.
-std::string CollisionText(const metrics::RunMeasures& measures);
+std::string CollisionText(const metrics::RunMetrics& measures);
 
 }  // namespace fogline::report
