@@ -13,7 +13,8 @@ namespace fogline {
 
 /// MPC-based ACC, of the host and of the following cars.
 struct AccSection {
-  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"}, "Headway T_hw in d_r = T_hw v + d_0.",
+  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"},
+                "Time gap T_hw, bumper to bumper, in d_r = T_hw v + d_0.",
                 "ISO 15622 offers 1.5 to 2.2 s");
   FOGLINE_FIELD(double, standstill_m, 3.0, {0, 50, "m"},
                 "Standstill gap d_0 in d_r = T_hw v + d_0.",
@@ -85,7 +86,7 @@ struct DriverSection {
                 "Comfortable deceleration b.", "Treiber et al. 2000: 1.67");
   FOGLINE_FIELD(double, desired_speed_mps, 33.33, {1, 70, "m/s"}, "Desired speed v_0.",
                 "Treiber et al. 2000: 120 km/h");
-  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"}, "Desired headway T_hw.",
+  FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"}, "Desired time gap T_hw, bumper to bumper.",
                 "our choice, because the equilibrium gap then comes near the ACC's; Treiber et al. "
                 "2000: 1.6");
   FOGLINE_FIELD(double, standstill_m, 2.0, {0, 50, "m"}, "Standstill gap s_0.",

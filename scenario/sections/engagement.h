@@ -38,9 +38,11 @@ struct TransferSection {
                 "For linear and sigmoid: length of a transfer.",
                 "our choice, because it costs less than 3 points of SI in paper.json; 1 to 2 s, "
                 "usual in shared control, cost 9 to 23");
-  FOGLINE_FIELD(double, jerk_mps3, 2.0, {0.05, 100, "m/s3"},
-                "For jerk_limited: fastest change of the command after a transfer.",
-                "our choice, because it is below 2.5, the limit of ISO 15622 above 20 m/s");
+  FOGLINE_FIELD(
+      double, jerk_mps3, 2.0, {0.05, 100, "m/s3"},
+      "For jerk_limited: fastest change of the command after a transfer.",
+      "our choice, because it is below 2.5, the limit of ISO 15622 above 20 m/s, averaged "
+      "over 1 s");
   FOGLINE_FIELD(double, yield_mps2, 3.5, {0, 20, "m/s2"},
                 "For jerk_limited and gate: if a command of the driving side brakes harder than "
                 "this, it takes effect at once, even if the change is not smooth.",

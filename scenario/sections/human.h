@@ -13,7 +13,7 @@ enum class FollowingModel { kIdm, kIidm, kAccIdm };
 constexpr auto ChoicesOf(FollowingModel) {
   return std::to_array<Choice>(
       {{"idm", "the paper's (Treiber, Hennecke & Helbing 2000)"},
-       {"iidm", "Improved IDM: keeps exactly its headway (Treiber & Kesting 2013)"},
+       {"iidm", "Improved IDM: keeps exactly its time gap (Treiber & Kesting 2013)"},
        {"acc_idm", "IIDM that does not panic at a cut-in (Kesting, Treiber & Helbing 2010)"}});
 }
 

@@ -79,7 +79,8 @@ struct TakeOverSection {
   FOGLINE_FIELD(double, emergency_deceleration_mps2, 4.0, {0.5, 4, "m/s2"},
                 "Deceleration of the emergency manoeuvre.", "UN R157: demand at most 4.0");
   FOGLINE_FIELD(double, jerk_mps3, 2.5, {0.1, 20, "m/s3"},
-                "How fast the manoeuvre's deceleration grows.", "ISO 15622: 2.5 above 20 m/s");
+                "How fast the manoeuvre's deceleration grows.",
+                "ISO 15622: 2.5 above 20 m/s, averaged over 1 s");
 };
 
 }  // namespace fogline

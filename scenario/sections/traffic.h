@@ -21,9 +21,9 @@ constexpr auto ChoicesOf(FollowerDriver) {
 
 enum class FollowerStyle { kAggressive, kNormal, kCautious, kDrawn };
 constexpr auto ChoicesOf(FollowerStyle) {
-  return std::to_array<Choice>({{"aggressive", "headway 1.25 s"},
-                                {"normal", "headway 1.45 s"},
-                                {"cautious", "headway 1.75 s"},
+  return std::to_array<Choice>({{"aggressive", "time gap 1.25 s"},
+                                {"normal", "time gap 1.45 s"},
+                                {"cautious", "time gap 1.75 s"},
                                 {"drawn", "one of the three, drawn by seed"}});
 }
 

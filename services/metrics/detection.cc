@@ -17,7 +17,7 @@ double LidarError(const Sample& sample, const LidarSection& lidar) {
 }
 
 DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)
-    : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar) {}
+    : tolerance_m_(scenario.measures.lidar_tolerance_m), lidar_(scenario.lidar), track_(scenario) {}
 
 // A missing value (NaN) does not count as deceived.
 bool DetectionAccumulator::IsDeceived(const Sample& sample) const {
@@ -33,11 +33,10 @@ void DetectionAccumulator::Pass(double duration_s) {
 void DetectionAccumulator::Add(const Sample& sample) {
   if (begun_) Pass(sample.time_s - time_s_);
   const bool deceived = IsDeceived(sample);
-  const bool misled = std::abs(sample.fused_distance_m - sample.host_gap_m) > tolerance_m_;
   const bool alarm = sample.doc >= sample.threshold;
   quiet_ = !deceived && !sample.fog_present;
   wrong_human_ = deceived ? 0 : sample.lambda_human;
-  wrong_automation_ = deceived && misled ? sample.lambda_automation : 0;
+  wrong_automation_ = track_.IsWrong(sample) ? sample.lambda_automation : 0;
   if (deceived && !onset_s_) onset_s_ = sample.time_s;
   if (alarm && onset_s_ && !metrics_.deception_to_alarm_s) {
     metrics_.deception_to_alarm_s = sample.time_s - *onset_s_;

@@ -6,6 +6,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/metrics/sample.h"
+#include "services/metrics/track_judge.h"
 
 namespace fogline::metrics {
 
@@ -16,9 +17,9 @@ struct DetectionMetrics {
   /// Time under the wrong controller, s: time of the human while the LiDAR is right, weighted by
   /// his authority.
   double wrong_human_s = 0;
-  /// Time of the automation, s, weighted by its authority, while the LiDAR is deceived and the
-  /// error of the fused distance is more than the tolerance, too. So a policy that does not use the
-  /// deceived LiDAR is not blamed for it.
+  /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
+  /// So a policy that does not use the deceived LiDAR is not blamed for it, and one that returns
+  /// the car to a filter that has not settled is.
   double wrong_automation_s = 0;
   /// Time from the first step in which the LiDAR is deceived to the first step with an alarm from
   /// then on, s. 0 if the alarm is already there, for example if fog raises the Degree of Conflict
@@ -50,6 +51,7 @@ class DetectionAccumulator {
 
   double tolerance_m_;
   LidarSection lidar_;
+  TrackJudge track_;
 
   bool begun_ = false;
   // Of the step before.

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <stdexcept>
-#include <string>
 
 #include "services/host_modes.h"
 
@@ -14,15 +11,17 @@ namespace {
 constexpr double kPercent = 100.0;
 constexpr double kSecondsPerMinute = 60.0;
 
-// Times are whole microseconds: two times that differ by less count as equal.
-constexpr double kSameTime_s = 0.5e-6;
-
 std::optional<double> Root(std::optional<double> mean_square) {
   if (!mean_square) return std::nullopt;
   return std::sqrt(*mean_square);
 }
 
 }  // namespace
+
+FogEffect FogEffectOf(const RunMetrics& measures) {
+  return {.mean_compromised_safety_m = measures.mean_compromised_safety_fog_m,
+          .slow_down_mps = measures.max_slow_down_fog_mps};
+}
 
 double CompromisedSafety(const Sample& sample) {
   return CompromisedSafety(sample.follower_safe_distance_m, sample.follower_gap_m);
@@ -32,7 +31,8 @@ MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
     : handover_s_(scenario.measures.handover_s),
       host_(scenario.measures),
       follower_(scenario.measures),
-      detection_(scenario) {}
+      detection_(scenario),
+      track_(scenario) {}
 
 // AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
 // the command of a step is applied only in the next one.
@@ -54,7 +54,12 @@ void MetricsAccumulator::AddSafety(const Sample& sample) {
   Lower(metrics_.min_host_gap_m, sample.host_gap_m);
   Lower(metrics_.min_follower_gap_m, sample.follower_gap_m);
   Raise(metrics_.max_compromised_safety_m, compromised);
-  if (sample.fog_present) compromised_safety_fog_m_.Add(compromised);
+  fog_effect_.Add(sample);
+  compromised_safety_until_recovery_m_.Step(sample.fog_present, track_.IsWrong(sample),
+                                            [&](CompromisedSafetySums& sums) {
+                                              Raise(sums.max_m, compromised);
+                                              sums.mean_m.Add(compromised);
+                                            });
   if (sample.collision != truth_t::COLLISION_NONE && !metrics_.collision_time_s) {
     metrics_.collision = sample.collision;
     metrics_.collision_time_s = sample.collision_time_s;
@@ -68,7 +73,8 @@ void MetricsAccumulator::AddPairs(const Sample& sample) {
 }
 
 void MetricsAccumulator::AddAuthority(const Sample& sample) {
-  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
+  if (!sample.fog_present)
+    human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
   if (previous_->lambda_automation == 0 && previous_->lambda_human == 0) {
     metrics_.minimal_risk_s += sample.time_s - previous_->time_s;
@@ -92,14 +98,18 @@ void MetricsAccumulator::AddTransfer(const Sample& sample) {
 void MetricsAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
   Raise(metrics_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));
+  const bool in_handover =
+      authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s;
+  if (const auto mean_mps3 = averaged_jerk_.Add(sample.time_s, sample.host_acceleration_mps2)) {
+    Raise(metrics_.max_abs_jerk_1s_mps3, *mean_mps3);
+    if (in_handover) Raise(metrics_.max_handover_jerk_1s_mps3, *mean_mps3);
+  }
   if (!previous_ || previous_->step == 0) return;
   const double jerk_mps3 = (sample.host_acceleration_mps2 - previous_->host_acceleration_mps2) /
                            (sample.time_s - previous_->time_s);
   Raise(metrics_.max_abs_jerk_mps3, std::abs(jerk_mps3));
   squared_jerk_m2ps6_.Add(jerk_mps3 * jerk_mps3);
-  if (authority_changed_s_ && sample.time_s - *authority_changed_s_ < handover_s_ + kSameTime_s) {
-    Raise(metrics_.max_handover_jerk_mps3, std::abs(jerk_mps3));
-  }
+  if (in_handover) Raise(metrics_.max_handover_jerk_mps3, std::abs(jerk_mps3));
 }
 
 void MetricsAccumulator::AddSensing(const Sample& sample) {
@@ -114,7 +124,12 @@ void MetricsAccumulator::AddSensing(const Sample& sample) {
 
 RunMetrics MetricsAccumulator::Result() const {
   RunMetrics result = metrics_;
-  result.mean_compromised_safety_fog_m = compromised_safety_fog_m_.Value();
+  const FogEffect fog_effect = fog_effect_.Result();
+  result.mean_compromised_safety_fog_m = fog_effect.mean_compromised_safety_m;
+  result.max_slow_down_fog_mps = fog_effect.slow_down_mps;
+  const CompromisedSafetySums& until_recovery = compromised_safety_until_recovery_m_.sums();
+  result.max_compromised_safety_until_recovery_m = until_recovery.max_m;
+  result.mean_compromised_safety_until_recovery_m = until_recovery.mean_m.Value();
   if (const auto share = human_in_clear_air_.Value()) result.rhe_pct = kPercent * *share;
   result.rms_jerk_mps3 = Root(squared_jerk_m2ps6_.Value());
   result.rms_fusion_error_m = Root(squared_fusion_error_m2_.Value());
@@ -132,31 +147,6 @@ RunMetrics Measure(std::span<const Sample> samples, const Scenario& scenario) {
   MetricsAccumulator accumulator(scenario);
   for (const Sample& sample : samples) accumulator.Add(sample);
   return accumulator.Result();
-}
-
-void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
-  if (baseline.step != traded.step) {
-    throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
-                                " of the baseline does not pair with step " +
-                                std::to_string(traded.step));
-  }
-  const double without = CompromisedSafety(baseline);
-  if (!baseline.fog_present || !(without > floor_m_)) return;
-  sum_ += (without - CompromisedSafety(traded)) / without;
-  ++relevant_steps_;
-}
-
-std::optional<double> SafetyImprovement::Pct() const {
-  if (relevant_steps_ == 0) return std::nullopt;
-  return kPercent * sum_ / static_cast<double>(relevant_steps_);
-}
-
-std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
-                                           std::span<const Sample> traded, double floor_m) {
-  SafetyImprovement improvement(floor_m);
-  const std::size_t steps = std::min(baseline.size(), traded.size());
-  for (std::size_t i = 0; i < steps; ++i) improvement.Add(baseline[i], traded[i]);
-  return improvement.Pct();
 }
 
 }  // namespace fogline::metrics

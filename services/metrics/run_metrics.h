@@ -10,10 +10,14 @@
 #include <string_view>
 
 #include "scenario/sections/scenario.h"
+#include "services/metrics/averaged_jerk.h"
 #include "services/metrics/detection.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/running.h"
 #include "services/metrics/sample.h"
 #include "services/metrics/surrogate.h"
+#include "services/metrics/track_judge.h"
+#include "services/metrics/until_recovery.h"
 
 namespace fogline::metrics {
 
@@ -38,15 +42,22 @@ struct RunMetrics {
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
   std::optional<double> mean_compromised_safety_fog_m;
+  /// The largest CS and its mean, m, from the first step in fog until the track is right again for
+  /// good, or the run ends (UntilRecovery). nullopt without fog.
+  std::optional<double> max_compromised_safety_until_recovery_m;
+  std::optional<double> mean_compromised_safety_until_recovery_m;
+  /// Largest drop of the host's speed in fog below its speed when the fog began, m/s.
+  std::optional<double> max_slow_down_fog_mps;
   /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
   std::int8_t collision = truth_t::COLLISION_NONE;
   /// Its simulated time, s.
   std::optional<double> collision_time_s;
 
-  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %
-  /// (Sourav & Cheng 2024). Engaged means lambda_H > 0, as HumanIsEngaged() in
-  /// services/host_modes.h. In traded control he then drives; in shared control he
-  /// may have a small part.
+  /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
+  /// This reinterprets Sourav & Cheng 2024: their words taken literally cannot give the 0 % that
+  /// they print beside an SI of 80.79 %.
+  /// Engaged means lambda_H > 0, as HumanIsEngaged() in services/host_modes.h. In
+  /// traded control he then drives; in shared control he may have a small part.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. It ends with the last step, because the command of
   /// that step is never carried out.
@@ -66,14 +77,21 @@ struct RunMetrics {
   /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
   /// step until `handover_s` after its last step.
   std::optional<double> max_handover_jerk_mps3;
+  /// The same of the jerk averaged over 1 s (AveragedJerk). Its second may begin before the change.
+  std::optional<double> max_handover_jerk_1s_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
   DetectionMetrics detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
   /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
-  /// next, divided by the time between them.
+  /// next, divided by the time between them. So a jump of the acceleration has a jerk that grows as
+  /// the step shrinks.
   std::optional<double> max_abs_jerk_mps3;
+  /// Largest |jerk| of the host, averaged over 1 s as in ISO 15622, m/s3 (AveragedJerk): the
+  /// largest change of the applied acceleration within 1 s. It does not depend on the length of a
+  /// step.
+  std::optional<double> max_abs_jerk_1s_mps3;
   /// Root of the mean square of that jerk, m/s3.
   std::optional<double> rms_jerk_mps3;
 
@@ -95,6 +113,9 @@ struct RunMetrics {
 template <class Visitor>
 void VisitMetrics(const RunMetrics& m, Visitor&& visit);
 
+/// The effect of the fog on a run, which its measures have, too.
+FogEffect FogEffectOf(const RunMetrics& measures);
+
 /// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
 /// without a following car.
 double CompromisedSafety(const Sample& sample);
@@ -102,8 +123,8 @@ double CompromisedSafety(const Sample& sample);
 /// Collects the measures of a run, sample by sample, in order of steps.
 class MetricsAccumulator {
  public:
-  /// For a run of this scenario: uses its section `measures`, and bias and lateral offset of its
-  /// LiDAR.
+  /// For a run of this scenario: uses its section `measures`, the offsets of its sensors, and the
+  /// noise that its filter assumes.
   explicit MetricsAccumulator(const Scenario& scenario);
   /// For a run of a scenario with the defaults.
   MetricsAccumulator() : MetricsAccumulator(Scenario{}) {}
@@ -114,6 +135,11 @@ class MetricsAccumulator {
   RunMetrics Result() const;
 
  private:
+  struct CompromisedSafetySums {
+    std::optional<double> max_m;
+    Mean mean_m;
+  };
+
   void AddSafety(const Sample& sample);
   void AddPairs(const Sample& sample);
   void AddAuthority(const Sample& sample);
@@ -126,7 +152,10 @@ class MetricsAccumulator {
   PairAccumulator follower_;
   DetectionAccumulator detection_;
   RunMetrics metrics_;  // measures without a final division
-  Mean compromised_safety_fog_m_;
+  TrackJudge track_;
+  FogEffectAccumulator fog_effect_;
+  UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;
+  AveragedJerk averaged_jerk_;
   Mean squared_jerk_m2ps6_;
   Mean squared_fusion_error_m2_;
   Mean human_in_clear_air_;  // 1 or 0 in each step
@@ -138,37 +167,6 @@ class MetricsAccumulator {
 
 /// Measures of a whole run of a scenario.
 RunMetrics Measure(std::span<const Sample> samples, const Scenario& scenario = {});
-
-/// Safety improvement SI of a run with traded control over its baseline, a run without traded
-/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
-///
-///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
-///
-/// over the n relevant steps, those in fog with CS_baseline > floor. The ratio of one step can be
-/// far below 0, never above 1.
-class SafetyImprovement {
- public:
-  /// @param floor_m at least 0; avoids the ratio 0/0
-  explicit SafetyImprovement(double floor_m) : floor_m_(floor_m) {}
-
-  /// Adds a step of both runs.
-  /// @throws std::invalid_argument if the samples are not of the same step.
-  void Add(const Sample& baseline, const Sample& traded);
-
-  /// SI so far in %; nullopt without a relevant step.
-  std::optional<double> Pct() const;
-
- private:
-  double floor_m_;
-  double sum_ = 0;
-  std::int64_t relevant_steps_ = 0;
-};
-
-/// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
-/// both runs have.
-/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
-std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
-                                           std::span<const Sample> traded, double floor_m);
 
 template <class Visitor>
 void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
@@ -185,31 +183,39 @@ void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
          "largest shortfall of the following car's safe distance");
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
-  const auto pair = [&](const std::string& car, const std::array<std::string_view, 8>& names,
+  number("max_compromised_safety_until_recovery_m", m.max_compromised_safety_until_recovery_m, "m",
+         "largest shortfall from the fog's begin until the track is right again");
+  number("mean_compromised_safety_until_recovery_m", m.mean_compromised_safety_until_recovery_m,
+         "m", "mean shortfall from the fog's begin until the track is right again");
+  number("max_slow_down_fog_mps", m.max_slow_down_fog_mps, "m/s",
+         "largest drop of the host's speed in fog below its speed when the fog began");
+  const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,
                         const PairMetrics& of) {
     number(names[0], of.min_ttc_s, "s", car + ": smallest time to collision (Hayward 1972)");
     number(names[1], of.tet_s, "s",
            car + ": time with a time to collision of at most TTC* (Minderhoud & Bovy 2001)");
     number(names[2], of.tit_s2, "s2",
            car + ": integral of TTC* - TTC over that time (Minderhoud & Bovy 2001)");
-    number(names[3], of.min_headway_s, "s", car + ": smallest time headway, bumper to bumper");
+    number(names[3], of.min_time_gap_s, "s", car + ": smallest time gap, bumper to bumper");
     number(names[4], of.max_drac_mps2, "m/s2",
            car + ": largest deceleration rate to avoid a crash (Cooper & Ferguson 1976)");
     number(names[5], of.min_picud_m, "m",
            car + ": smallest gap left if both cars braked urgently, PICUD (Uno et al. 2002)");
     number(names[6], of.min_rss_margin_m, "m",
            car + ": smallest gap minus RSS safe distance (Shalev-Shwartz et al. 2017)");
-    number(names[7], of.cpi, "",
+    number(names[7], of.min_rss_margin_ad_rss_m, "m",
+           car + ": the same margin with the parameters that ad-rss-lib suggests");
+    number(names[8], of.cpi, "",
            car + ": crash potential index, in [0, 1] (Cunto & Saccomanno 2008)");
   };
   pair("host",
-       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_headway_s", "max_host_drac_mps2",
-        "min_host_picud_m", "min_host_rss_margin_m", "host_cpi"},
+       {"min_host_ttc_s", "host_tet_s", "host_tit_s2", "min_host_time_gap_s", "max_host_drac_mps2",
+        "min_host_picud_m", "min_host_rss_margin_m", "min_host_rss_margin_ad_rss_m", "host_cpi"},
        m.host);
   pair("following car",
-       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_headway_s",
+       {"min_follower_ttc_s", "follower_tet_s", "follower_tit_s2", "min_follower_time_gap_s",
         "max_follower_drac_mps2", "min_follower_picud_m", "min_follower_rss_margin_m",
-        "follower_cpi"},
+        "min_follower_rss_margin_ad_rss_m", "follower_cpi"},
        m.follower);
   count("collision", m.collision, "", "first collision: 0 none, 1 of the host, 2 of a follower");
   number("collision_time_s", m.collision_time_s, "s", "time of the first collision");
@@ -223,11 +229,12 @@ void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
          "largest jump of the commanded acceleration at a hand-over");
   number("max_handover_jerk_mps3", m.max_handover_jerk_mps3, "m/s3",
          "largest jerk of the host within measures.handover_s after a change of the authorities");
+  number("max_handover_jerk_1s_mps3", m.max_handover_jerk_1s_mps3, "m/s3",
+         "the same, averaged over 1 s (ISO 15622)");
   number("wrong_human_s", m.detection.wrong_human_s, "s",
          "time, weighted by authority, in which the human drives although the LiDAR is right");
   number("wrong_automation_s", m.detection.wrong_automation_s, "s",
-         "time, weighted by authority, in which the automation drives although LiDAR and fusion "
-         "are deceived");
+         "time, weighted by authority, in which the automation drives on a wrong track");
   number("deception_to_alarm_s", m.detection.deception_to_alarm_s, "s",
          "time from the first step with a LiDAR error above measures.lidar_tolerance_m until DoC "
          ">= threshold; 0 if DoC had reached it before");
@@ -236,6 +243,8 @@ void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
   number("max_abs_acceleration_mps2", m.max_abs_acceleration_mps2, "m/s2",
          "largest acceleration or braking of the host");
   number("max_abs_jerk_mps3", m.max_abs_jerk_mps3, "m/s3", "largest jerk of the host");
+  number("max_abs_jerk_1s_mps3", m.max_abs_jerk_1s_mps3, "m/s3",
+         "largest jerk of the host, averaged over 1 s (ISO 15622)");
   number("rms_jerk_mps3", m.rms_jerk_mps3, "m/s3", "root mean square of the host's jerk");
   number("max_doc", m.max_doc, "", "largest Degree of Conflict");
   number("min_conflict_clear_m", m.min_conflict_clear_m, "m", "smallest conflict z in clear air");

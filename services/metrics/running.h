@@ -1,4 +1,4 @@
-// Running extremes and means.
+// Running extremes and means, and when two times are equal.
 #pragma once
 
 #include <cmath>
@@ -6,6 +6,9 @@
 #include <optional>
 
 namespace fogline::metrics {
+
+/// Times are whole microseconds: two times that differ by less count as equal.
+inline constexpr double kSameTime_s = 0.5e-6;
 
 /// Sets `least` to `value` if that is smaller or the first one. A missing value (NaN) changes
 /// nothing.

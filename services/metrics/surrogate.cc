@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A slower car counts as standing and has no headway. A wheel speed sensor detects only ten times
+// A slower car counts as standing and has no time gap. A wheel speed sensor detects only ten times
 // this speed.
 constexpr double kStanding_mps = 0.01;
 
@@ -66,10 +66,11 @@ PairAccumulator::PairAccumulator(const MeasuresSection& section)
            .least_braking_mps2 = section.rss_least_braking_mps2,
            .most_braking_mps2 = section.rss_most_braking_mps2},
       min_ttc_s_(kInfinite),
-      min_headway_s_(kInfinite),
+      min_time_gap_s_(kInfinite),
       max_drac_mps2_(-kInfinite),
       min_picud_m_(kInfinite),
-      min_rss_margin_m_(kInfinite) {}
+      min_rss_margin_m_(kInfinite),
+      min_rss_margin_ad_rss_m_(kInfinite) {}
 
 void PairAccumulator::Pass(double duration_s) {
   if (!ttc_s_) return;
@@ -93,20 +94,23 @@ void PairAccumulator::Add(const CarPair& pair, double since_s) {
   min_ttc_s_ = std::min(min_ttc_s_, *ttc_s_);
   if (pair.gap_m > 0) max_drac_mps2_ = std::max(max_drac_mps2_, drac_mps2);
   if (pair.speed_mps > kStanding_mps) {
-    min_headway_s_ = std::min(min_headway_s_, std::max(0.0, pair.gap_m) / pair.speed_mps);
+    min_time_gap_s_ = std::min(min_time_gap_s_, std::max(0.0, pair.gap_m) / pair.speed_mps);
   }
   min_picud_m_ = std::min(min_picud_m_, UrgentDecelerationGap(section_, pair));
-  min_rss_margin_m_ =
-      std::min(min_rss_margin_m_,
-               pair.gap_m - models::RssSafeDistance(rss_, pair.speed_mps, pair.lead_speed_mps));
+  const auto margin_m = [&](const models::RssParameters& rss) {
+    return pair.gap_m - models::RssSafeDistance(rss, pair.speed_mps, pair.lead_speed_mps);
+  };
+  min_rss_margin_m_ = std::min(min_rss_margin_m_, margin_m(rss_));
+  min_rss_margin_ad_rss_m_ = std::min(min_rss_margin_ad_rss_m_, margin_m(models::RssParameters{}));
 }
 
 PairMetrics PairAccumulator::Result() const {
   PairMetrics result{.min_ttc_s = IfFinite(min_ttc_s_),
-                     .min_headway_s = IfFinite(min_headway_s_),
+                     .min_time_gap_s = IfFinite(min_time_gap_s_),
                      .max_drac_mps2 = IfFinite(max_drac_mps2_),
                      .min_picud_m = IfFinite(min_picud_m_),
-                     .min_rss_margin_m = IfFinite(min_rss_margin_m_)};
+                     .min_rss_margin_m = IfFinite(min_rss_margin_m_),
+                     .min_rss_margin_ad_rss_m = IfFinite(min_rss_margin_ad_rss_m_)};
   if (met_) {
     result.tet_s = tet_s_;
     result.tit_s2 = tit_s2_;

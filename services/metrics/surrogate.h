@@ -50,15 +50,18 @@ struct PairMetrics {
   std::optional<double> tet_s;
   /// Time integrated: the integral of TTC* - TTC over that time, s2 (Minderhoud & Bovy 2001).
   std::optional<double> tit_s2;
-  /// Least time headway d/v, s, while the car moves. d is from bumper to bumper; the headway of
-  /// traffic engineers also contains a car length.
-  std::optional<double> min_headway_s;
+  /// Least time gap d/v, s, while the car moves: from the rear bumper of the car ahead to the front
+  /// bumper. A headway is from front to front and also contains a car length (SAE J2944).
+  std::optional<double> min_time_gap_s;
   /// Largest deceleration rate to avoid a crash, m/s2; steps in contact do not count.
   std::optional<double> max_drac_mps2;
   /// Least PICUD, m.
   std::optional<double> min_picud_m;
-  /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017).
+  /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017), with the
+  /// parameters of the scenario.
   std::optional<double> min_rss_margin_m;
+  /// The same with the parameters that ad-rss-lib suggests: the defaults of models::RssParameters.
+  std::optional<double> min_rss_margin_ad_rss_m;
   /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
   /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).
   std::optional<double> cpi;
@@ -87,10 +90,11 @@ class PairAccumulator {
 
   // Extremes so far; infinite while there is no value.
   double min_ttc_s_;
-  double min_headway_s_;
+  double min_time_gap_s_;
   double max_drac_mps2_;
   double min_picud_m_;
   double min_rss_margin_m_;
+  double min_rss_margin_ad_rss_m_;
   // Integrals so far.
   double time_s_ = 0;
   double tet_s_ = 0;

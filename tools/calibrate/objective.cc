@@ -64,7 +64,8 @@ std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                     [&](std::int64_t, const std::vector<sweep::SweepRow>& results) {
                       for (std::size_t i = 0; i < results.size(); ++i) {
                         TableRow& row = evaluation.rows[i];
-                        if (results[i].si_pct) row.si_pct.Add(*results[i].si_pct);
+                        const std::optional<double>& si_pct = results[i].paired.si_pct;
+                        if (si_pct) row.si_pct.Add(*si_pct);
                         if (results[i].measures.rhe_pct)
                           row.rhe_pct.Add(*results[i].measures.rhe_pct);
                       }

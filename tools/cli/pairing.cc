@@ -18,20 +18,21 @@ Scenario WithoutTradedControl(Scenario scenario) {
   return scenario;
 }
 
-std::vector<std::optional<double>> SafetyImprovements(std::span<const runner::LoggedRun> runs) {
+std::vector<Pairing> MeasurePairs(std::span<const runner::LoggedRun> runs) {
   std::vector<std::string> common;
   for (const runner::LoggedRun& run : runs) common.push_back(CommonPart(run.scenario));
-  std::vector<std::optional<double>> improvements(runs.size());
+  std::vector<Pairing> pairs(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
       if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j]) continue;
-      improvements[i] = metrics::SafetyImprovementPct(
-          runs[j].result.samples, runs[i].result.samples, runs[i].scenario.measures.safety_floor_m);
+      pairs[i] = {
+          metrics::MeasurePair(runs[j].result.samples, runs[i].result.samples, runs[i].scenario),
+          metrics::FogEffectOf(runs[j].result.measures)};
       break;
     }
   }
-  return improvements;
+  return pairs;
 }
 
 }  // namespace fogline::cli

@@ -165,7 +165,7 @@ class Differences {
   double mean() const { return ours_ / Count(); }
   double recorded_mean() const { return recorded_ / Count(); }
   double rmse() const { return std::sqrt(squares_ / Count()); }
-  /// Root mean square without the mean difference. The choice of a headway causes the mean
+  /// Root mean square without the mean difference. The choice of a time gap causes the mean
   /// difference.
   double spread() const {
     const double bias = mean() - recorded_mean();
@@ -297,7 +297,7 @@ void AddCompare(CLI::App& app, cli::Action& action) {
   cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete"});
   verb->footer(
       "RMSE: root mean square of the difference, run minus recording. spread: the same without\n"
-      "the mean difference, which depends on the headway. largest: the largest difference.\n\n"
+      "the mean difference, which depends on the time gap. largest: the largest difference.\n\n"
       "Examples:\n"
       "  fogline run scenario/recorded_lead.json\n"
       "  fogline compare logs/recorded_lead-1.lcm scenario/data/acc_platoon_a.csv");

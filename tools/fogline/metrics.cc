@@ -1,6 +1,10 @@
 // fogline metrics: prints the measures of runs, from their logs alone.
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -27,7 +31,7 @@ int RunMetrics(const MetricsArguments& arguments) {
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     runs.push_back(runner::ReadLoggedRun(log));
   });
-  const std::vector<std::optional<double>> improvements = cli::SafetyImprovements(runs);
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const runner::LoggedRun& run = runs[i];
@@ -36,7 +40,11 @@ int RunMetrics(const MetricsArguments& arguments) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
-      row["si_pct"] = OrNull(improvements[i]);
+      metrics::VisitPairedMetrics(
+          pairs[i].measures, [&row](std::string_view name, const std::optional<double>& value,
+                                    std::string_view, std::string_view) {
+            row[std::string(name)] = OrNull(value);
+          });
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
       row["metrics"] = nlohmann::ordered_json::parse(cli::MetricsJson(run.result));
       rows.push_back(std::move(row));
@@ -47,10 +55,13 @@ int RunMetrics(const MetricsArguments& arguments) {
                EscapeControls(run.scenario.title), run.result.seed, collision.empty() ? "" : ": ",
                collision);
     if (run.result.realtime) fmt::print("{}", cli::RealtimeText(*run.result.realtime));
-    if (improvements[i]) {
-      fmt::print("  {:<32}{:>12} %\n", "si_pct",
-                 report::MetricText("si_pct", *improvements[i], "%"));
-    }
+    metrics::VisitPairedMetrics(
+        pairs[i].measures, [](std::string_view name, const std::optional<double>& value,
+                              std::string_view unit, std::string_view) {
+          if (value) {
+            fmt::print("  {:<32}{:>12} {}\n", name, report::MetricText(name, *value, unit), unit);
+          }
+        });
     fmt::print("{}", cli::MetricsText(run.result));
   }
   if (arguments.json) cli::PrintJson(rows);

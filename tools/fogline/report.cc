@@ -137,17 +137,19 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures)
 
 /// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
-                                           std::span<const std::optional<double>> improvements) {
+                                           std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);
   report::ReportTable table;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!improvements[i]) continue;
+    if (!pairs[i].measures.si_pct) continue;
     const Scenario& scenario = runs[i].scenario;
     report::ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
                                  .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
-                                 .si_pct = *improvements[i],
+                                 .si_pct = *pairs[i].measures.si_pct,
                                  .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
-                                     std::numeric_limits<double>::quiet_NaN())};
+                                     std::numeric_limits<double>::quiet_NaN()),
+                                 .effect = metrics::FogEffectOf(runs[i].result.measures),
+                                 .without = pairs[i].without};
     for (const PublishedRow& published : scenario.published) {
       if (published.threshold != row.threshold) continue;
       row.published_si_pct = published.si_pct;
@@ -178,7 +180,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
 
 /// Moves the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
-                         const std::optional<double>& si_pct) {
+                         const metrics::PairedMetrics& paired) {
   return {.name = name,
           .log = LogNameOf(run),
           .shortage = run.complete ? "" : run.note,
@@ -189,7 +191,8 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .digest = run.result.digest,
           .samples = std::move(run.result.samples),
           .measures = MetricsOf(run.result.measures),
-          .si_pct = si_pct};
+          .si_pct = paired.si_pct,
+          .si_until_recovery_pct = paired.si_until_recovery_pct};
 }
 
 report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
@@ -241,12 +244,12 @@ int RunReport(const ReportArguments& arguments) {
   }
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs);
-  const std::vector<std::optional<double>> improvements = cli::SafetyImprovements(runs);
-  const std::optional<report::ReportTable> table = TableOf(runs, improvements);
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
+  const std::optional<report::ReportTable> table = TableOf(runs, pairs);
   std::vector<report::ReportRun> pages;
   const std::vector<std::string> names = NamesOf(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    pages.push_back(PageOf(runs[i], names[i], improvements[i]));
+    pages.push_back(PageOf(runs[i], names[i], pairs[i].measures));
   }
   std::optional<report::ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);

@@ -100,19 +100,19 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
                        external.Command(role)));
   }
   std::vector<sweep::ThresholdRow> rows;
-  for (const double threshold : thresholds) rows.push_back({threshold, {}, {}, 0});
+  for (const double threshold : thresholds) rows.emplace_back().threshold = threshold;
   Progress progress("seed", seeds.count());
   for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     scenario.seed = seed;
     const runner::ExperimentResult baseline =
         RunOne(arguments, options, cli::WithoutTradedControl(scenario), "none");
+    const metrics::FogEffect without = metrics::FogEffectOf(baseline.measures);
     for (sweep::ThresholdRow& row : rows) {
       scenario.arbitrator.threshold = row.threshold;
       const runner::ExperimentResult result =
           RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
-      row.Add(metrics::SafetyImprovementPct(baseline.samples, result.samples,
-                                            scenario.measures.safety_floor_m),
-              result.measures);
+      row.Add(result.measures, metrics::MeasurePair(baseline.samples, result.samples, scenario),
+              without);
     }
     progress.Show(seed - seeds.first + 1);
   }
@@ -155,44 +155,98 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::stri
       out["published_si_pct"] = published->si_pct;
       out["published_rhe_pct"] = published->rhe_pct;
     }
+    const auto put = [&out](const std::string& name, const std::string& unit,
+                            const stats::Statistics& of) {
+      out[name + unit] = OrNull(of.mean());
+      out[name + "_std" + unit] = OrNull(of.deviation());
+    };
+    put("si_until_recovery", "_pct", row.si_until_recovery_pct);
+    put("mean_compromised_safety_fog", "_m", row.cs_m);
+    put("mean_compromised_safety_fog_without", "_m", row.cs_without_m);
+    put("max_slow_down_fog_without", "_mps", row.slow_down_without_mps);
+    for (std::size_t i = 0; i < metrics::kSafetyChoices.size(); ++i) {
+      out["other_si_pct"][std::string(metrics::kSafetyChoices[i].name)] =
+          OrNull(row.other_si_pct[i].Value());
+    }
     json["rows"].push_back(std::move(out));
   }
   return json;
 }
 
+/// "80.80"; "-" without a value.
+std::string Cell(std::optional<double> value, int decimals = 2) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string("-");
+}
+
+/// "80.80", or "80.81 +- 2.64" over seeds.
+std::string Spread(const stats::Statistics& of, int decimals = 2) {
+  const auto deviation = of.deviation();
+  return deviation ? fmt::format("{} +- {}", Cell(of.mean(), decimals), Cell(deviation, decimals))
+                   : Cell(of.mean(), decimals);
+}
+
+/// The columns at the end of the table: SI until recovery, and the effect behind the percentages.
+std::string EffectHead(int width) {
+  return fmt::format("  {:>{w}}  {:>{w}}  {:>{w}}  {:>{w}}", "SI recov. (%)", "CS (m)",
+                     "CS none (m)", "slower (m/s)", fmt::arg("w", width));
+}
+std::string EffectCells(const sweep::ThresholdRow& row, int width) {
+  constexpr int kDecimals = 4;  // a tenth of a millimetre
+  constexpr int kSpeedDecimals = 3;
+  return fmt::format("  {:>{w}}  {:>{w}}  {:>{w}}  {:>{w}}", Spread(row.si_until_recovery_pct),
+                     Spread(row.cs_m, kDecimals), Spread(row.cs_without_m, kDecimals),
+                     Spread(row.slow_down_without_mps, kSpeedDecimals), fmt::arg("w", width));
+}
+
+/// Says that SI depends on choices that the paper leaves open, and on which values they lead to.
+void PrintOtherChoices(const Scenario& scenario, const std::vector<sweep::ThresholdRow>& rows) {
+  fmt::print(
+      "\nCS: mean compromised safety in fog, with traded control and with none. slower: how\n"
+      "far the host slows down in fog with none. SI recov.: SI until the tracks are right.\n"
+      "\nSI counts steps in fog with a compromised safety CS above a floor. The floor is a\n"
+      "free parameter (/measures/safety_floor_m, {:g} m), and so is the reading of CS.\n"
+      "SI (%) with other floors, and with CS as what the gap of the following car or its\n"
+      "safe distance d_r,f has lost since the fog began:\n\n  {:>6}",
+      scenario.measures.safety_floor_m, "DoC_th");
+  for (const metrics::SafetyChoice& choice : metrics::kSafetyChoices) {
+    fmt::print("  {:>10}", choice.text);
+  }
+  for (const sweep::ThresholdRow& row : rows) {
+    fmt::print("\n  {:>6g}", row.threshold);
+    for (const metrics::Mean& si_pct : row.other_si_pct)
+      fmt::print("  {:>10}", Cell(si_pct.Value()));
+  }
+  fmt::print("\n");
+}
+
 void PrintText(const Scenario& scenario, const sweep::SeedRange& seeds,
                const std::vector<sweep::ThresholdRow>& rows) {
-  const auto cell = [](std::optional<double> value) {
-    return value ? fmt::format("{:.2f}", *value) : std::string("-");
-  };
-  const auto spread = [&](const stats::Summary& of) {
-    return of.deviation ? fmt::format("{} +- {}", cell(of.mean), cell(of.deviation))
-                        : cell(of.mean);
-  };
   fmt::print("{}\n", EscapeControls(scenario.title));
   if (seeds.count() == 1) {
     fmt::print("seed {}\n\n", seeds.first);
   } else {
     fmt::print("seeds {} to {}: mean +- standard deviation\n\n", seeds.first, seeds.last);
   }
-  fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", "DoC_th", "SI (%)", "RHE (%)",
-             "published SI", "published RHE", "collisions");
+  const int width = seeds.count() == 1 ? 13 : 18;
+  fmt::print("  {:>6}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}{}\n", "DoC_th", "SI (%)", "RHE (%)",
+             "published SI", "published RHE", "collisions", EffectHead(width));
   for (const sweep::ThresholdRow& row : rows) {
-    const stats::Summary si = row.si_pct.Result();
     const PublishedRow* published = PublishedOf(scenario, row.threshold);
-    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}\n", row.threshold, spread(si),
-               spread(row.rhe_pct.Result()), published ? cell(published->si_pct) : "-",
-               published ? cell(published->rhe_pct) : "-", row.collisions);
-    if (si.count > 0 && si.count < seeds.count()) {
+    fmt::print("  {:>6g}  {:>16}  {:>14}  {:>14}  {:>14}  {:>10}{}\n", row.threshold,
+               Spread(row.si_pct), Spread(row.rhe_pct), published ? Cell(published->si_pct) : "-",
+               published ? Cell(published->rhe_pct) : "-", row.collisions, EffectCells(row, width));
+    if (row.si_pct.count() > 0 && row.si_pct.count() < seeds.count()) {
       fmt::print("          SI of {} seeds: the others have no compromised safety to improve\n",
-                 si.count);
+                 row.si_pct.count());
     }
   }
-  const auto has_si = [](const sweep::ThresholdRow& row) { return row.si_pct.Result().count > 0; };
+  const auto has_si = [](const sweep::ThresholdRow& row) { return row.si_pct.count() > 0; };
   if (std::ranges::none_of(rows, has_si)) {
     fmt::print(
         "\nno SI: without traded control the following car never comes too close (no fog?)\n");
+    return;
   }
+  PrintOtherChoices(scenario, rows);
 }
 
 Scenario ScenarioOf(const TableArguments& arguments) {

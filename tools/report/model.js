@@ -19,6 +19,7 @@ const state = {
   time: 0,            // of the cursor, in s
   span: [0, 1],       // range of the time axes, in s
   zoomed: false,      // whether the range is less than the whole
+  fromZero: new Set(),  // ids of the figures whose value axes begin at zero
   theme: null,
 };
 
@@ -126,8 +127,8 @@ function isShared(runs, column) {
                                    columns.time_s === first.columns.time_s);
 }
 
-/** Range of a figure's value axis while its time axes show [from, to]. */
-function valueSpan(figure, from, to) {
+/** Least and greatest value that a figure shows while its time axes show [from, to]. */
+function valueRange(figure, from, to) {
   let low = Infinity;
   let high = -Infinity;
   for (const {columns} of state.runs) {
@@ -143,10 +144,32 @@ function valueSpan(figure, from, to) {
       }
     }
   }
-  if (low > high) [low, high] = [0, 1];
+  return low > high ? [0, 1] : [low, high];
+}
+
+/** Range of a value axis that fits [low, high]. */
+function fittedSpan(figure, [low, high]) {
   const half = Math.max(high - low, figure.leastSpan) * 0.56;
   const middle = (low + high) / 2;
   return [middle - half, middle + half];
+}
+
+/** Range of a figure's value axis while its time axes show [from, to]. */
+function valueSpan(figure, from, to) {
+  const range = valueRange(figure, from, to);
+  if (!state.fromZero.has(figure.id)) return fittedSpan(figure, range);
+  return [1.06 * Math.min(0, range[0]), 1.06 * Math.max(0, range[1])];
+}
+
+/**
+ * Says how little an axis shows: "axis spans 0.3 % of the value", where a fitted axis spans less than 1 % of the
+ * figure's largest value. Otherwise "".
+ */
+function axisNote(figure, from, to) {
+  const range = valueRange(figure, from, to);
+  const [bottom, top] = fittedSpan(figure, range);
+  const share = (top - bottom) / Math.max(...range.map(Math.abs));
+  return share < 0.01 ? `axis spans ${Number((100 * share).toPrecision(2))} % of the value` : "";
 }
 
 /** A number as the tables print it. */

@@ -4,6 +4,7 @@ const page = {
   charts: [],   // of all figures
   legends: [],  // functions that show the values at a time
   panels: new Map(),  // chart, its figure and its runs, by its element
+  notes: [],    // functions that show what the value axes span
   toolbar: document.getElementById("toolbar"),
   slider: document.getElementById("time"),
   sliderText: document.getElementById("time-text"),
@@ -47,7 +48,36 @@ function setSpan([from, to]) {
       chart.setScale("x", {min: state.span[0], max: state.span[1]});
     });
   }
+  for (const showNote of page.notes) showNote();
   showTime();
+}
+
+/** Begins a figure's value axes at zero, or fits them to its values again. Its panels have equal axes. */
+function switchAxis(figure) {
+  if (!state.fromZero.delete(figure.id)) state.fromZero.add(figure.id);
+  for (const {chart, figure: other} of page.panels.values()) {
+    if (other === figure) chart.setScale("x", {min: state.span[0], max: state.span[1]});
+  }
+  for (const showNote of page.notes) showNote();
+}
+
+/**
+ * A line above a panel that says if its value axis shows next to nothing of the values, and a box that makes the
+ * axis begin at zero.
+ */
+function axisLine(figure, number, id) {
+  const text = make("span");
+  const box = make("input", {type: "checkbox",
+                             "aria-label": `Value axes of figure ${number} from zero`});
+  box.addEventListener("change", () => switchAxis(figure));
+  const line = make("p", {class: "span-note", id}, text, make("label", {}, box, "from zero"));
+  page.notes.push(() => {
+    box.checked = state.fromZero.has(figure.id);
+    const note = axisNote(figure, ...state.span);
+    text.textContent = box.checked ? "axis from zero" : note;
+    line.hidden = !box.checked && note === "";
+  });
+  return line;
 }
 
 const fitCharts = oncePerFrame(() => {
@@ -81,19 +111,21 @@ function buildFigure(figure, number) {
   place.classList.toggle("strips", isStrip(figure));
   place.classList.toggle("overlaid", isOverlaid(figure));
   place.replaceChildren();
-  for (const runs of panels) {
+  panels.forEach((runs, index) => {
     const names = runs.map((run) => run.name).join(", ");
+    const noteId = `${figure.id}-span-${index}`;
     const chartElement = make("div", {
-      class: "chart", role: "img", "aria-label": `Figure ${number}, ${figure.title}: ${names}`});
+      class: "chart", role: "img", "aria-label": `Figure ${number}, ${figure.title}: ${names}`,
+      "aria-describedby": noteId});
     const panel = make("div", {class: "panel"});
     if (!isOverlaid(figure)) panel.append(panelTitle(runs[0]));
-    panel.append(chartElement);
+    panel.append(axisLine(figure, number, noteId), chartElement);
     place.append(panel);
     const chart = makeChart(chartElement, figure, runs, {onTime: setTime, onSpan: setSpan});
     page.charts.push(chart);
     page.panels.set(chartElement, {chart, figure, runs});
     sizes.observe(chartElement);
-  }
+  });
   page.legends.push(makeLegend(element.querySelector(".legend"), figure, (curve) => {
     const hidden = state.hidden.get(figure.id);
     if (!hidden.delete(curve.column)) hidden.add(curve.column);
@@ -110,10 +142,12 @@ function build() {
   for (const chart of page.charts) chart.destroy();
   page.charts = [];
   page.legends = [];
+  page.notes = [];
   page.panels.clear();
   document.querySelector("#figures .figures").classList.toggle("apart", !sharesAxes());
   readTheme();
   report.figures.forEach((figure, index) => buildFigure(figure, index + 1));
+  for (const showNote of page.notes) showNote();
   showTime();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/sample.h"
 #include "tools/stats/statistics.h"
 
@@ -36,8 +37,10 @@ struct ReportRun {
   std::string digest;
   std::vector<metrics::Sample> samples;  // in order of time
   std::vector<ReportMetric> measures;
-  std::optional<double> si_pct =
-      {};  // safety improvement over the paired run without traded control
+  // Safety improvement over the paired run without traded control, in fog, and until the track has
+  // recovered (metrics::PairedMetrics).
+  std::optional<double> si_pct = {};
+  std::optional<double> si_until_recovery_pct = {};
 };
 
 /// The paper's table. Standard deviations are over seeds; published values come from the scenario.
@@ -51,6 +54,9 @@ struct ReportTable {
     std::optional<double> rhe_std_pct = {};
     std::optional<double> published_si_pct = {};
     std::optional<double> published_rhe_pct = {};
+    // The effect of the fog in metres and m/s, which stands beside the percentages.
+    metrics::FogEffect effect = {};
+    metrics::FogEffect without = {};  // without traded control
   };
   std::vector<Row> rows;
   std::string note;  // such as "mean and standard deviation over seeds 1 to 200"; "" if none

@@ -139,6 +139,32 @@ std::string FogSentence(const Group& group) {
   return fmt::format("{} the LiDAR {}", fog, ListText(effects));
 }
 
+/// "0.047 m/s".
+std::string SpeedText(double speed_mps) {
+  return fmt::format("{:.{}f} m/s", speed_mps, speed_mps < 0.1 ? 3 : speed_mps < 10 ? 2 : 0);
+}
+
+/// " (1.5 cm on average in the fog) and the host slowed down by 0.047 m/s": the effect of the fog
+/// in metres and m/s; "" if there is none.
+std::string EffectText(const metrics::RunMetrics& measures) {
+  constexpr double kLeastSlowDown_mps = 0.0005;
+  std::string text;
+  if (measures.mean_compromised_safety_fog_m.value_or(0) > 0) {
+    text += fmt::format(" ({} on average in the fog)",
+                        LengthText(*measures.mean_compromised_safety_fog_m));
+  }
+  if (measures.max_slow_down_fog_mps.value_or(0) >= kLeastSlowDown_mps) {
+    text +=
+        fmt::format(" and the host slowed down by {}", SpeedText(*measures.max_slow_down_fog_mps));
+  }
+  return text;
+}
+
+/// "3 mm on average"; "nothing".
+std::string LeftText(double compromised_m) {
+  return compromised_m > 0 ? LengthText(compromised_m) + " on average" : "nothing";
+}
+
 /// Safety of a run by itself.
 std::string SafetyText(const metrics::RunMetrics& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
@@ -165,8 +191,12 @@ std::string OutcomeText(const Told& told, const Told* baseline) {
     return saved ? "no car collided" : SafetyText(told.measures);
   }
   const double si_pct = std::round(*told.run->si_pct) + 0.0;  // + 0.0: no negative zero
-  return si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", si_pct)
-                     : fmt::format("that got {:.0f} % worse", -si_pct);
+  std::string text = si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", si_pct)
+                                 : fmt::format("that got {:.0f} % worse", -si_pct);
+  if (const auto left_m = told.measures.mean_compromised_safety_fog_m) {
+    text += fmt::format(", which leaves {}", LeftText(*left_m));
+  }
+  return text;
 }
 
 /// "the human drove for 9.4 s".
@@ -212,7 +242,13 @@ std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline)
   if (all_comparable) {
     const auto share = [](const Told& told) { return *told.run->si_pct; };
     const auto percent = [](double value) { return fmt::format("{:.0f}", value); };
+    const auto left_m = [](const Told& told) {
+      return told.measures.mean_compromised_safety_fog_m.value_or(0);
+    };
     text += fmt::format(" and {} % of that was avoided", RangeText(runs, share, percent));
+    if (runs.front()->measures.mean_compromised_safety_fog_m) {
+      text += fmt::format(", which leaves {}", RangeText(runs, left_m, LeftText));
+    }
   }
   const auto collisions = std::ranges::count_if(
       runs, [](const Told* told) { return told->measures.collision_time_s.has_value(); });
@@ -232,7 +268,9 @@ std::string SentenceOf(const Group& group) {
   }
   std::vector<std::string> parts{FogSentence(group)};
   if (baseline != nullptr) {
-    parts.push_back(fmt::format("without traded control {}", SafetyText(baseline->measures)));
+    const bool collided = baseline->measures.collision_time_s.has_value();
+    parts.push_back(fmt::format("without traded control {}{}", SafetyText(baseline->measures),
+                                collided ? "" : EffectText(baseline->measures)));
   }
   if (traded.size() > kMostRuns) {
     parts.push_back(ManyText(traded, baseline));

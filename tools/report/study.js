@@ -73,8 +73,8 @@ function columnsOf(figure) {
           low: every(1).map(placed), high: every(2).map(placed)};
 }
 
-/** Range of the shown values and intervals, with a margin. */
-function valueSpan(chart, figure, {data, values, low, high}) {
+/** Least and greatest of the shown values and intervals. */
+function valueRange(chart, figure, {data, values, low, high}) {
   let least = Infinity;
   let most = -Infinity;
   data.slice(1).forEach((places, i) => {
@@ -88,9 +88,50 @@ function valueSpan(chart, figure, {data, values, low, high}) {
       }
     }
   });
-  if (least > most) return [0, 1];
+  return least > most ? [0, 1] : [least, most];
+}
+
+/** A value axis that fits the range, with a margin. */
+function fittedSpan([least, most]) {
   const margin = 0.05 * (most - least) || Math.abs(most) * 0.05 || 1;
   return [least - margin, most + margin];
+}
+
+function valueSpan(figure, range) {
+  if (!figure.fromZero) return fittedSpan(range);
+  return [1.05 * Math.min(0, range[0]), 1.05 * Math.max(0, range[1])];
+}
+
+/**
+ * "axis spans 0.3 % of the value", if a fitted axis spans less than 1 % of the largest value; otherwise "". A
+ * logarithmic axis has no zero.
+ */
+function axisNote(figure, range) {
+  if (figure.logY) return "";
+  const [bottom, top] = fittedSpan(range);
+  const share = (top - bottom) / Math.max(...range.map(Math.abs));
+  return share < 0.01 ? `axis spans ${Number((100 * share).toPrecision(2))} % of the value` : "";
+}
+
+/**
+ * A line above a chart that says if its value axis shows next to nothing of the values, and a box that makes the
+ * axis begin at zero. Returns the line, and a function that shows it for a range.
+ */
+function makeAxisLine(figure, onSwitch) {
+  const text = make("span");
+  const box = make("input", {type: "checkbox", "aria-label": "Value axis from zero"});
+  box.checked = figure.fromZero ?? false;
+  box.addEventListener("change", () => {
+    figure.fromZero = box.checked;
+    onSwitch();
+  });
+  const line = make("p", {class: "span-note", id: `${figure.id}-span`, hidden: ""}, text,
+                    make("label", {}, box, "from zero"));
+  return [line, (range) => {
+    const note = axisNote(figure, range);
+    text.textContent = figure.fromZero ? "axis from zero" : note;
+    line.hidden = !figure.fromZero && note === "";
+  }];
 }
 
 /** The whole x axis. */
@@ -320,8 +361,13 @@ function yAxis(figure) {
 
 function makeChart(figure) {
   const element = document.getElementById(figure.id);
-  const panel = make("div", {class: "chart", role: "img", "aria-labelledby": `${figure.id}-title`});
-  element.querySelector(".panels").replaceChildren(make("div", {class: "panel"}, panel));
+  const panel = make("div", {class: "chart", role: "img", "aria-labelledby": `${figure.id}-title`,
+                             "aria-describedby": `${figure.id}-span`});
+  const [line, showNote] = makeAxisLine(figure, () => {
+    const {min, max} = chart.scales.x;
+    chart.setScale("x", {min, max});
+  });
+  element.querySelector(".panels").replaceChildren(make("div", {class: "panel"}, line, panel));
   const columns = columnsOf(figure);
   const points = figure.categories.length > 0;
   const whole = placeSpan(figure, columns.data[0]);
@@ -344,7 +390,11 @@ function makeChart(figure) {
     scales: {
       x: {time: false, range: (_, min, max) => min == null || max == null ? whole : [min, max],
           min: whole[0], max: whole[1], ...(points ? {ori: 1, dir: -1} : {})},
-      y: {range: (chart) => valueSpan(chart, figure, columns), ...(points ? {ori: 0} : {})},
+      y: {range: (chart) => {
+            const range = valueRange(chart, figure, columns);
+            showNote(range);
+            return valueSpan(figure, range);
+          }, ...(points ? {ori: 0} : {})},
     },
     axes: [xAxis(figure), yAxis(figure)],
     cursor: {drag: {x: !points, y: false}, points: {size: 6}},

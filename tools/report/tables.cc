@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "services/metrics/safety_improvement.h"
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
 #include "tools/stats/statistics.h"
@@ -42,6 +43,11 @@ std::string PercentCell(double value) {
   return fmt::format("<td>{}</td>", DataElement(value, kPercentDecimals));
 }
 
+std::string EffectCell(const std::optional<double>& value) {
+  constexpr int kDecimals = 4;  // a tenth of a millimetre, or of a millimetre per second
+  return fmt::format("<td>{}</td>", DataElement(value.value_or(stats::kMissing), kDecimals));
+}
+
 /// Cells for our own value and its standard deviation, if it has one.
 std::string OwnCells(double value, const std::optional<double>& deviation) {
   const std::string spread =
@@ -58,11 +64,13 @@ std::string RowOf(const ReportTable::Row& row, bool with_seed) {
   std::string seed;
   if (with_seed) seed = fmt::format("<td>{}</td>", row.seed ? std::to_string(*row.seed) : "–");
   return fmt::format(
-      "<tr><th scope=\"row\"><data value=\"{0}\">{0}</data></th>{1}{2}{3}{4}{5}</tr>\n",
+      "<tr><th scope=\"row\"><data value=\"{0}\">{0}</data></th>{1}{2}{3}{4}{5}{6}{7}{8}</tr>\n",
       row.threshold, seed, OwnCells(row.si_pct, row.si_std_pct),
       PercentCell(row.published_si_pct.value_or(stats::kMissing)),
       OwnCells(row.rhe_pct, row.rhe_std_pct),
-      PercentCell(row.published_rhe_pct.value_or(stats::kMissing)));
+      PercentCell(row.published_rhe_pct.value_or(stats::kMissing)),
+      EffectCell(row.effect.mean_compromised_safety_m),
+      EffectCell(row.without.mean_compromised_safety_m), EffectCell(row.without.slow_down_mps));
 }
 
 /// Mean, standard deviation, half of the confidence interval, and percentiles.
@@ -97,12 +105,14 @@ void Put(std::vector<MetricRow>& rows, const ReportMetric& measure, std::size_t 
 std::vector<MetricRow> MetricRows(std::span<const ReportRun> runs) {
   std::vector<MetricRow> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].si_pct) {
-      Put(rows,
-          {"si_pct", *runs[i].si_pct, "%",
-           "safety improvement over the paired run without traded control"},
-          i, runs.size());
-    }
+    metrics::VisitPairedMetrics(
+        {.si_pct = runs[i].si_pct, .si_until_recovery_pct = runs[i].si_until_recovery_pct},
+        [&](std::string_view name, const std::optional<double>& value, std::string_view unit,
+            std::string_view description) {
+          if (!value) return;
+          Put(rows, {std::string(name), *value, std::string(unit), std::string(description)}, i,
+              runs.size());
+        });
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const ReportMetric& measure : runs[i].measures) Put(rows, measure, i, runs.size());
@@ -164,13 +174,16 @@ std::string ThresholdTable(const ReportTable& table) {
   for (const ReportTable::Row& row : table.rows) rows += RowOf(row, with_seed);
   return Scrolling(
       "Safety improvement and redundant human engagement by threshold",
-      fmt::format(
-          "<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>{}"
-          "<th scope=\"colgroup\" colspan=\"3\">Safety improvement (%)</th>"
-          "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th></tr>\n"
-          "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
-          "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th></tr>\n",
-          with_seed ? "<th scope=\"col\" rowspan=\"2\">Seed</th>" : ""),
+      fmt::format("<tr><th scope=\"col\" rowspan=\"2\">DoC threshold</th>{}"
+                  "<th scope=\"colgroup\" colspan=\"3\">Safety improvement (%)</th>"
+                  "<th scope=\"colgroup\" colspan=\"3\">Redundant human engagement (%)</th>"
+                  "<th scope=\"colgroup\" colspan=\"2\">Mean compromised safety in fog (m)</th>"
+                  "<th scope=\"col\">Slow-down in fog (m/s)</th></tr>\n"
+                  "<tr><th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
+                  "<th scope=\"col\" colspan=\"2\">Fogline</th><th scope=\"col\">published</th>"
+                  "<th scope=\"col\">Fogline</th><th scope=\"col\">without traded control</th>"
+                  "<th scope=\"col\">without traded control</th></tr>\n",
+                  with_seed ? "<th scope=\"col\" rowspan=\"2\">Seed</th>" : ""),
       rows);
 }
 

@@ -9,6 +9,7 @@
 
 #include "services/closed_loop/closed_loop.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/report/metric_text.h"
 #include "tools/stats/holm.h"
 #include "tools/stats/in_order.h"
@@ -19,14 +20,14 @@ namespace fogline::study {
 namespace {
 
 std::vector<ComparedMetric> AllMetrics() {
-  std::vector<ComparedMetric> all{
-      {"si_pct", "%", "safety improvement over the paired run without traded control"},
-      {"collided", "", "probability of a collision"}};
-  metrics::VisitMetrics(
-      metrics::RunMetrics{},
-      [&](std::string_view name, const auto&, std::string_view unit, std::string_view description) {
-        all.push_back({std::string(name), std::string(unit), std::string(description)});
-      });
+  std::vector<ComparedMetric> all;
+  const auto put = [&](std::string_view name, const auto&, std::string_view unit,
+                       std::string_view description) {
+    all.push_back({std::string(name), std::string(unit), std::string(description)});
+  };
+  metrics::VisitPairedMetrics({}, put);
+  put("collided", 0, "", "probability of a collision");
+  metrics::VisitMetrics(metrics::RunMetrics{}, put);
   return all;
 }
 
@@ -320,13 +321,20 @@ void AddPoint(report::StudySeries& series, double x, const Estimate& estimate) {
 std::string NameForReaders(std::string_view measure) {
   constexpr std::pair<std::string_view, std::string_view> kNames[] = {
       {"si_pct", "safety improvement (SI)"},
+      {"si_until_recovery_pct", "safety improvement until the tracks have recovered"},
       {"rhe_pct", "redundant human engagement (RHE)"},
       {"collided", "collision probability"},
       {"mean_compromised_safety_fog_m", "mean compromised safety in fog"},
+      {"mean_compromised_safety_until_recovery_m",
+       "mean compromised safety until the track has recovered"},
       {"max_compromised_safety_m", "worst compromised safety"},
+      {"max_compromised_safety_until_recovery_m",
+       "worst compromised safety until the track has recovered"},
       {"max_handover_jerk_mps3", "largest jerk at a hand-over"},
+      {"max_handover_jerk_1s_mps3", "largest jerk at a hand-over, averaged over 1 s"},
       {"max_handover_jump_mps2", "largest jump of the command at a hand-over"},
       {"max_abs_jerk_mps3", "largest jerk"},
+      {"max_abs_jerk_1s_mps3", "largest jerk, averaged over 1 s"},
       {"rms_jerk_mps3", "RMS jerk"},
       {"min_follower_ttc_s", "follower's smallest time to collision"},
       {"max_follower_drac_mps2", "follower's largest DRAC"},
@@ -336,7 +344,7 @@ std::string NameForReaders(std::string_view measure) {
       {"min_follower_gap_m", "follower's smallest gap"},
       {"human_time_s", "driving time of the human"},
       {"wrong_human_s", "driving time of the human while the LiDAR is right"},
-      {"wrong_automation_s", "driving time of a deceived automation"},
+      {"wrong_automation_s", "driving time of the automation on a wrong track"},
       {"rms_fusion_error_m", "RMS error of the fused distance"},
   };
   for (const auto& [name, text] : kNames) {

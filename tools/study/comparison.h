@@ -38,7 +38,8 @@ inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=no
 /// The measure of safety in most findings.
 inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 
-/// A measure of a run: one of VisitMetrics(), the safety improvement, or "collided" (1 or 0).
+/// A measure of a run: one of VisitPairedMetrics(), "collided" (1 or 0), or one of
+/// VisitMetrics().
 struct ComparedMetric {
   std::string name;
   std::string unit;

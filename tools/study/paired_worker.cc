@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 #include "tools/sweep/engine.h"
 
@@ -20,11 +21,14 @@ void KeepInfinite(metrics::PairMetrics& pair) {
 }
 
 // The values are in the order of ComparedMetrics().
-RunValues ValuesOf(metrics::RunMetrics measures, const std::optional<double>& si_pct) {
+RunValues ValuesOf(metrics::RunMetrics measures, const metrics::PairedMetrics& paired) {
   KeepInfinite(measures.host);
   KeepInfinite(measures.follower);
-  RunValues values{si_pct.value_or(stats::kMissing),
-                   measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0};
+  RunValues values;
+  metrics::VisitPairedMetrics(
+      paired, [&](std::string_view, const std::optional<double>& value, std::string_view,
+                  std::string_view) { values.push_back(value.value_or(stats::kMissing)); });
+  values.push_back(measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0);
   metrics::VisitMetrics(
       measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
         if constexpr (std::is_same_v<V, std::optional<double>>) {
@@ -48,7 +52,7 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
     scenario_ = scenario;
     scenario_.seed = seed;
     const sweep::SweepRow row = sweep::RunPaired(loop_, scenario_, baseline_);
-    runs.push_back(ValuesOf(row.measures, row.si_pct));
+    runs.push_back(ValuesOf(row.measures, row.paired));
   }
   return runs;
 }

@@ -58,18 +58,21 @@ std::vector<StudyCase> PolicyFogs() {
   return cases;
 }
 
-constexpr std::array<std::string_view, 12> kPolicyTable{"si_pct",
-                                                          "rhe_pct",
-                                                          "collided",
-                                                          "mean_compromised_safety_fog_m",
-                                                          "min_host_gap_m",
-                                                          "min_host_ttc_s",
-                                                          "min_follower_ttc_s",
-                                                          "max_follower_drac_mps2",
-                                                          "max_abs_jerk_mps3",
-                                                          "transfers_pmin",
-                                                          "wrong_human_s",
-                                                          "wrong_automation_s"};
+constexpr std::array<std::string_view, 14> kPolicyTable{
+    "si_pct",
+    "si_until_recovery_pct",
+    "rhe_pct",
+    "collided",
+    "mean_compromised_safety_fog_m",
+    "mean_compromised_safety_until_recovery_m",
+    "min_host_gap_m",
+    "min_host_ttc_s",
+    "min_follower_ttc_s",
+    "max_follower_drac_mps2",
+    "max_abs_jerk_1s_mps3",
+    "transfers_pmin",
+    "wrong_human_s",
+    "wrong_automation_s"};
 
 /// The rules of the first table.
 constexpr std::array<std::string_view, 8> kMain{
@@ -158,7 +161,7 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
       comparison.FigureOf("rhe_pct", "policy-rhe", "Redundant human engagement by policy"),
       comparison.FigureOf("max_abs_jerk_mps3", "policy-jerk", "Comfort by policy: largest jerk"),
       comparison.FigureOf("wrong_automation_s", "policy-wrong",
-                          "Driving time of a deceived automation, by policy")};
+                          "Driving time of the automation on a wrong track, by policy")};
   section.method = fmt::format(
       "{} seeds of {}, each with every policy at its defaults and with rivals: a filter that "
       "refuses outliers, with and without a gate that reopens after five refusals; and a driver "

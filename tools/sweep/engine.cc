@@ -15,14 +15,14 @@ namespace fogline::sweep {
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline) {
   metrics::MetricsAccumulator measures(scenario);
-  metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  metrics::PairedAccumulator pair(scenario);
   std::size_t i = 0;
   loop.Run(scenario, [&](const closed_loop::StepView& step) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
-    if (i < baseline.size()) improvement.Add(baseline[i++], sample);
+    if (i < baseline.size()) pair.Add(baseline[i++], sample);
   });
-  return {.measures = measures.Result(), .si_pct = improvement.Pct()};
+  return {.measures = measures.Result(), .paired = pair.Result(), .without = {}};
 }
 
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
@@ -46,12 +46,18 @@ SweepRow SweepWorker::ComputeRow() {
   const Policy policy = scenario_.arbitrator.policy;
   if (baseline_.empty() && policy != Policy::kNone) {
     scenario_.arbitrator.policy = Policy::kNone;
-    loop_.Run(scenario_,
-              [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
+    metrics::FogEffectAccumulator effect;
+    loop_.Run(scenario_, [&](const closed_loop::StepView& step) {
+      baseline_.push_back(step.ToSample());
+      effect.Add(baseline_.back());
+    });
+    effect_ = effect.Result();
     scenario_.arbitrator.policy = policy;
   }
   if (policy == Policy::kNone) return RunPaired(loop_, scenario_, {});
-  return RunPaired(loop_, scenario_, baseline_);
+  SweepRow row = RunPaired(loop_, scenario_, baseline_);
+  row.without = effect_;
+  return row;
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "services/closed_loop/closed_loop.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline::sweep {
@@ -16,13 +18,16 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Safety improvement over the paired run in %. It is empty for a run that is its own pair, and
-  /// for a paired run without compromised safety.
-  std::optional<double> si_pct;
+  /// Measures of the pair with the run without traded control. They are empty for a run that is its
+  /// own pair, and for a paired run without compromised safety.
+  metrics::PairedMetrics paired;
+  /// The effect of the fog in the paired run without traded control; empty for a run that is its
+  /// own pair.
+  metrics::FogEffect without;
 };
 
 /// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
-/// empty for a run that is its own pair. If one run of the pair ends early, SI covers only the
+/// empty for a run that is its own pair. If one run of the pair ends early, the pair has only the
 /// steps that both have. @throws as ReusedLoop::Run()
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline);
@@ -44,6 +49,7 @@ class SweepWorker {
   Scenario scenario_;
   closed_loop::ReusedLoop loop_;
   std::vector<metrics::Sample> baseline_;
+  metrics::FogEffect effect_;  // of the baseline
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.

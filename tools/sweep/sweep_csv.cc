@@ -37,7 +37,7 @@ std::string HeaderLine(const SweepPlan& plan) {
   metrics::VisitMetrics(metrics::RunMetrics{},
                         [&line](std::string_view name, const auto&, std::string_view,
                                 std::string_view) { line += fmt::format(",{}", name); });
-  return line + "\n";
+  return line + ",si_until_recovery_pct\n";
 }
 
 /// Appends the beginning of a row: the values of its axes and its seed.
@@ -55,7 +55,7 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
     if (value) text += fmt::format("{}", *value);
   };
   AppendKey(plan, unit, index, text);
-  number(row.si_pct);
+  number(row.paired.si_pct);
   metrics::VisitMetrics(row.measures, [&]<class V>(std::string_view, const V& value,
                                                    std::string_view, std::string_view) {
     text += ',';
@@ -65,6 +65,8 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
       text += fmt::format("{}", value);
     }
   });
+  text += ',';
+  number(row.paired.si_until_recovery_pct);
   text += '\n';
 }
 

@@ -30,14 +30,14 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
   std::vector<ThresholdRow> rows;
   for (const double threshold : thresholds) {
     axis.values.push_back(fmt::format("{}", threshold));
-    rows.push_back({.threshold = threshold, .si_pct = {}, .rhe_pct = {}, .collisions = 0});
+    rows.emplace_back().threshold = threshold;
   }
   // A unit of this plan is a seed. Its rows are the thresholds, which share their paired run.
   const SweepPlan plan(scenario, {axis}, seeds);
   RunSweep(plan, 0, plan.units(), jobs,
            [&](std::int64_t unit, const std::vector<SweepRow>& results) {
              for (std::size_t i = 0; i < rows.size(); ++i) {
-               rows[i].Add(results[i].si_pct, results[i].measures);
+               rows[i].Add(results[i].measures, results[i].paired, results[i].without);
              }
              return done(unit + 1);
            });

@@ -2,6 +2,8 @@
 // and `fogline report` draws them.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,7 +12,10 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
+#include "services/metrics/fog_effect.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/running.h"
+#include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 #include "tools/sweep/plan.h"
 
@@ -18,16 +23,35 @@ namespace fogline::sweep {
 
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
-  /// Adds a run. SI and RHE may be missing: SI needs compromised safety in the paired run.
-  void Add(const std::optional<double>& si, const metrics::RunMetrics& measures) {
-    if (si) si_pct.Add(*si);
-    if (measures.rhe_pct) rhe_pct.Add(*measures.rhe_pct);
+  /// Adds a run, its measures as a pair, and the effect of the fog without traded control. SI and
+  /// RHE may be missing: SI needs compromised safety in the paired run.
+  void Add(const metrics::RunMetrics& measures, const metrics::PairedMetrics& paired,
+           const metrics::FogEffect& without) {
+    const auto add = [](const std::optional<double>& value, stats::Statistics& to) {
+      if (value) to.Add(*value);
+    };
+    add(paired.si_pct, si_pct);
+    add(paired.si_until_recovery_pct, si_until_recovery_pct);
+    add(measures.rhe_pct, rhe_pct);
+    add(measures.mean_compromised_safety_fog_m, cs_m);
+    add(without.mean_compromised_safety_m, cs_without_m);
+    add(without.slow_down_mps, slow_down_without_mps);
+    for (std::size_t i = 0; i < other_si_pct.size(); ++i) {
+      if (paired.other_si_pct[i]) other_si_pct[i].Add(*paired.other_si_pct[i]);
+    }
     if (measures.collision != truth_t::COLLISION_NONE) ++collisions;
   }
 
   double threshold = 0;
   stats::Statistics si_pct;
   stats::Statistics rhe_pct;
+  stats::Statistics si_until_recovery_pct;
+  std::array<metrics::Mean, metrics::kSafetyChoices.size()> other_si_pct;
+  // The effect behind the percentages: mean compromised safety in fog, with and without traded
+  // control, and how far the host slows down in fog without it.
+  stats::Statistics cs_m;
+  stats::Statistics cs_without_m;
+  stats::Statistics slow_down_without_mps;
   std::int64_t collisions = 0;  // runs with a collision
 };
 

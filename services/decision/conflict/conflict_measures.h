@@ -12,7 +12,7 @@ namespace fogline::conflict {
 
 /// One measure. `Measure` is ConflictMeasure or BlameMeasure.
 template <class Measure>
-struct MeasureRow {
+struct MetricRow {
   std::string_view name;  // in the scenario (scenario/sections/decision.h)
   std::string_view source;
   std::string_view range;    // with unit, if it has one
@@ -21,8 +21,8 @@ struct MeasureRow {
   bool posterior = false;  // the score is the posterior probability of conflict by all evidence
 };
 
-using ConflictMeasureRow = MeasureRow<ConflictMeasure>;
-using BlameMeasureRow = MeasureRow<BlameMeasure>;
+using ConflictMeasureRow = MetricRow<ConflictMeasure>;
+using BlameMeasureRow = MetricRow<BlameMeasure>;
 
 /// All measures of conflict, in the order of services/decision/conflict/README.md.
 std::span<const ConflictMeasureRow> ConflictMeasures();

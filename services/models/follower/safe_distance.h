@@ -6,7 +6,8 @@
 namespace fogline::models {
 
 /// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
-/// Defaults: the parameter discussion of ad-rss-lib, for the vehicle behind.
+/// Defaults: the values from which ad-rss-lib starts (its appendix "Parameter Discussion"), with
+/// the response time of its ego vehicle. They are for the vehicle behind.
 struct RssParameters {
   double response_s = 1.0;          // rho, at least 0
   double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0

@@ -19,7 +19,7 @@ struct ResponseParameters {
   double jerk_mps3 = 12.65;         // of the brake, above 0: 0.774 g in 0.6 s
   double full_braking_mps2 = 7.59;  // 0.774 g, above 0
   double critical_ttc_s = 2.0;      // he sees danger below this time to collision, at least 0,
-  double critical_headway_s = 2.0;  // or below this headway ...
+  double critical_headway_s = 2.0;  // or below this time gap ...
   double lead_braking_mps2 = 5.0;   // ... behind a car that brakes harder than this
 };
 

@@ -16,7 +16,7 @@ struct StyleParameters {
   HumanParameters human;
 };
 
-/// Headways: openpilot's aggressive, standard and relaxed following, 1.25, 1.45 and 1.75 s.
+/// Time gaps: openpilot's aggressive, standard and relaxed following, 1.25, 1.45 and 1.75 s.
 /// Desired speeds, accelerations, decelerations and standstill gaps: after the driver classes of
 /// Kesting, Treiber & Helbing, Agents for Traffic Simulation, 2009 (120 km/h, 1.4 and 2.0 m/s2, 2 m
 /// for the normal one; the table was not available). Reaction times: our estimate, in the range of

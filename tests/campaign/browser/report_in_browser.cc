@@ -55,6 +55,68 @@ TEST_F(ReportInBrowserTest, GivesEachRunAPanelSideBySideAtFirst) {
   EXPECT_EQ(found["spans"], 1) << "panels of a figure are compared, so they share their axis";
 }
 
+/// Runs in which all cars keep 20 m/s. The axis of speeds is then as short as it may be.
+std::vector<report::ReportRun> SteadyRuns() {
+  std::vector<report::ReportRun> runs = ExampleRuns();
+  for (report::ReportRun& run : runs) {
+    for (metrics::Sample& sample : run.samples) {
+      sample.preceding_speed_mps = sample.host_speed_mps = sample.follower_speed_mps = 20;
+    }
+  }
+  return runs;
+}
+
+TEST_F(ReportInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffersTheWholeAxis) {
+  const json found = Show(SteadyRuns(), kDesktop, R"(
+    const notes = (figure) => [...document.querySelectorAll(`#${figure} .span-note`)]
+        .filter((note) => !note.hidden).map((note) => note.querySelector("span").textContent);
+    const axes = () => page.charts.slice(0, 4).map(({scales: {y: {min, max}}}) => [min, max]);
+    found.notes = notes("speeds");
+    found.others = notes("accelerations");
+    found.fitted = axes()[0];
+    const boxes = () => document.querySelectorAll("#speeds .span-note input");
+    found.named = boxes()[1].ariaLabel;
+    found.described = boxes()[1].closest("p").id ===
+        document.querySelectorAll("#speeds .chart")[1].getAttribute("aria-describedby");
+    // A reader reaches the box with the keyboard, and presses the space bar.
+    boxes()[1].focus();
+    found.focused = document.activeElement === boxes()[1];
+    boxes()[1].click();
+    await settled();
+    found.stays = document.activeElement === boxes()[1];
+    found.checked = [...boxes()].map((box) => box.checked);
+    found.whole = axes();
+    found.says = notes("speeds");
+    // The choice stays while runs, views and the time span change.
+    click("[value=overlaid]");
+    await settled();
+    click("[value=apart]");
+    setSpan([10, 20]);
+    await settled();
+    found.kept = [...boxes()].map((box) => box.checked);
+    found.zoomed = axes()[2];
+    boxes()[0].click();
+    await settled();
+    found.back = axes()[3];
+    found.again = notes("speeds");)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  const std::string note = "axis spans 0.56 % of the value";
+  EXPECT_EQ(found["notes"], json::array({note, note, note, note}));
+  EXPECT_THAT(found["others"], SizeIs(0));
+  EXPECT_EQ(found["named"], "Value axes of figure 1 from zero");
+  EXPECT_EQ(found["described"], true);
+  EXPECT_EQ(found["focused"], true);
+  EXPECT_EQ(found["stays"], true);
+  EXPECT_NEAR(found["fitted"][1].get<double>() - found["fitted"][0].get<double>(), 0.112, 1e-9);
+  EXPECT_THAT(found["checked"], Each(true));
+  EXPECT_THAT(found["whole"], Each(json::array({0, 1.06 * 20})));
+  EXPECT_THAT(found["says"], Each("axis from zero"));
+  EXPECT_THAT(found["kept"], Each(true));
+  EXPECT_EQ(found["zoomed"], json::array({0, 1.06 * 20}));
+  EXPECT_EQ(found["back"], found["fitted"]);
+  EXPECT_EQ(found["again"], found["notes"]);
+}
+
 TEST_F(ReportInBrowserTest, ShowsEverySensorAtFirst) {
   const json found = Show(ExampleRuns(), kDesktop, R"(
     const buttons = [...document.querySelectorAll(".legend button")];

@@ -90,6 +90,39 @@ TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
   EXPECT_THAT(found["rows"], Each(Ge(1)));
 }
 
+TEST_F(StudyInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffersTheWholeAxis) {
+  // GIVEN values of 100 and 100.5: with the margin the axis spans 0.55
+  report::StudySection section{.name = "narrow", .title = "Narrow", .question = "How narrow?"};
+  for (const bool logarithmic : {false, true}) {
+    report::StudyFigure& figure = section.figures.emplace_back(report::StudyFigure{
+        .id = logarithmic ? "logarithmic" : "linear", .title = "Values", .log_y = logarithmic});
+    figure.categories = {"one", "other"};
+    figure.series = {{.name = "series", .x = {0, 1}, .y = {100, 100.5}}};
+  }
+  const json found =
+      BrowserTest::Show(report::MakeStudyPage("fogline study narrow", {&section, 1}), kDesktop, R"(
+    const line = (id) => document.querySelector(`#${id} .span-note`);
+    const {chart} = charts[0];
+    const axis = () => [chart.scales.y.min, chart.scales.y.max];
+    await settled();
+    found.note = line("linear").textContent;
+    found.hidden = [line("linear").hidden, line("logarithmic").hidden];
+    found.fitted = axis();
+    line("linear").querySelector("input").click();
+    await settled();
+    found.whole = axis();
+    line("linear").querySelector("input").click();
+    await settled();
+    found.back = axis();)",
+                        Scheme::kLight);
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_EQ(found["note"], "axis spans 0.55 % of the valuefrom zero");
+  EXPECT_EQ(found["hidden"], json::parse("[false, true]"));
+  EXPECT_EQ(found["whole"], json::array({0, 1.05 * 100.5}));
+  EXPECT_NE(found["fitted"], found["whole"]);
+  EXPECT_EQ(found["back"], found["fitted"]);
+}
+
 TEST_F(StudyInBrowserTest, HidesASeriesAndShowsItAgain) {
   const json found = Show(kDesktop, R"(
     const figure = document.querySelector("#policy-si");

@@ -25,12 +25,12 @@ using namespace fogline;
 
 // Intelligent Driver Model (Treiber, Hennecke & Helbing, Physical Review E 62:1805, 2000), SI
 // units.
-double Idm(double v, double preceding_v, double gap, double headway) {
+double Idm(double v, double preceding_v, double gap, double time_gap) {
   constexpr double kMaxAcceleration = 0.73, kComfortable = 1.67, kMaxDeceleration = 9;
   constexpr double kStandstill = 2, kDesiredSpeed = 33.33, kExponent = 4;
   if (gap <= 0) return -kMaxDeceleration;
   const double dynamic_gap =
-      v * headway + v * (v - preceding_v) / (2 * std::sqrt(kMaxAcceleration * kComfortable));
+      v * time_gap + v * (v - preceding_v) / (2 * std::sqrt(kMaxAcceleration * kComfortable));
   const double gap_ratio = (kStandstill + std::max(0.0, dynamic_gap)) / gap;
   const double speed_term = std::pow(v / kDesiredSpeed, kExponent);
   return std::max(kMaxAcceleration * (1 - speed_term - gap_ratio * gap_ratio), -kMaxDeceleration);
@@ -38,7 +38,7 @@ double Idm(double v, double preceding_v, double gap, double headway) {
 
 class BareDriver {
  public:
-  BareDriver(lcm::LCM& lcm, double headway) : lcm_(lcm), headway_(headway) {
+  BareDriver(lcm::LCM& lcm, double time_gap) : lcm_(lcm), time_gap_(time_gap) {
     // 0 is no limit. LCM's default is 30 waiting messages, and it drops the newest beyond that.
     lcm_.subscribe("RUN", &BareDriver::OnRun, this)->setQueueCapacity(0);
     lcm_.subscribe("TRUTH", &BareDriver::OnTruth, this)->setQueueCapacity(0);
@@ -81,7 +81,7 @@ class BareDriver {
     driver_command_t& answer = answers_[step];
     answer.header = truth->header;
     answer.acceleration_mps2 = Idm(std::max(truth->host_speed_mps, 0.0), truth->preceding_speed_mps,
-                                   truth->host_gap_m, headway_);
+                                   truth->host_gap_m, time_gap_);
     answer.readiness = 1;
     lcm_.publish("DRIVER_COMMAND", &answer);
     answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // no role lags that much
@@ -109,7 +109,7 @@ class BareDriver {
   }
 
   lcm::LCM& lcm_;
-  const double headway_;
+  const double time_gap_;
   status_t status_{};
   std::map<int64_t, driver_command_t> answers_;
   bool stopped_ = false;
@@ -117,7 +117,7 @@ class BareDriver {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: bare_driver LCM_URL [HEADWAY_S]\n";
+    std::cerr << "usage: bare_driver LCM_URL [TIME_GAP_S]\n";
     return 2;
   }
   lcm::LCM lcm(argv[1]);

@@ -68,8 +68,8 @@ TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
   EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
 }
 
-TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsHeadway) {
-  // GIVEN an ACC with the headway and standstill distance of a straight line fitted to the real
+TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsTimeGap) {
+  // GIVEN an ACC with the time gap and standstill distance of a straight line fitted to the real
   // car's gaps
   const ScratchFolder folder;
   Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",

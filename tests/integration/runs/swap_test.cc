@@ -179,7 +179,7 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
   const std::string bare = elsewhere.BareDriver();
   const std::string fogline = Program("fogline");
   const std::string url = runtime::FreshMulticastUrl();
-  // GIVEN a run with our own driver and a headway of 1.6 s
+  // GIVEN a run with our own driver and a time gap of 1.6 s
   const Outcome outcome =
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -189,7 +189,7 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
   // THEN the digest is the same
   EXPECT_EQ(same["steps"], 500);
   EXPECT_EQ(same["digest"], ours["digest"]);
-  // AND a driver with another headway gives another digest
+  // AND a driver with another time gap gives another digest
   const auto other = RunWith(fogline, {bare, url, "1.2"}, url, elsewhere.File("other.lcm"));
   EXPECT_EQ(other["steps"], 500);
   EXPECT_NE(other["digest"], ours["digest"]);

@@ -37,6 +37,26 @@ TEST(TableTextTest, SaysInItsHelpForWhatItObeysTheEnvironment) {
               testing::Not(testing::ContainsRegex("processes for[ \n]+--external")));
 }
 
+TEST(TableTextTest, EndsWithSafetyByOtherFloorsAndReadings) {
+  const Outcome table =
+      RunCommand({Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5"});
+  ASSERT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("(/measures/safety_floor_m, 0.01 m)"));
+  // The scenario's own floor gives SI itself.
+  const nlohmann::json row = TableRows({"--thresholds", "0.5"})[0];
+  EXPECT_EQ(row["other_si_pct"]["floor_10mm"], row["si_pct"]);
+  EXPECT_EQ(row["other_si_pct"].size(), 7U);
+  // A lower floor takes in steps in which little is compromised, and less of it is avoided.
+  double above = 100;
+  for (const char* floor : {"floor_20mm", "floor_10mm", "floor_5mm", "floor_1mm", "floor_0mm"}) {
+    EXPECT_LT(row["other_si_pct"][floor], above) << floor;
+    above = row["other_si_pct"][floor];
+  }
+  const std::string last_line = table.out.substr(table.out.rfind("\n", table.out.size() - 2) + 1);
+  EXPECT_THAT(last_line, testing::StartsWith("     0.5  "));
+  EXPECT_THAT(last_line, HasSubstr("80.80"));
+}
+
 class TableTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(TableTest, MeetsThePublishedOneToAPointWithTheScenariosOwnSeed) {

@@ -35,10 +35,11 @@ struct Span {
 /// them.
 class Layout {
  public:
-  explicit Layout(std::size_t panels)
+  /// @param named whether a line of text stands above each panel
+  Layout(std::size_t panels, bool named)
       : columns_(panels <= 3 ? 1 : 2),
         rows_((panels + columns_ - 1) / columns_),
-        above_(panels == 1 ? kRoomOfKey : kRoomOfKey + kName),
+        above_(named ? kRoomOfKey + kName : kRoomOfKey),
         height_(std::max(kLeastHeight, kLeastHeight * static_cast<double>(rows_) / 3)) {}
 
   double height() const { return height_; }
@@ -97,6 +98,16 @@ Span Widened(Span span, double least) {
   const double middle = (span.low + span.high) / 2;
   const double half = kHalfWithMargin * std::max(span.high - span.low, least);
   return {middle - half, middle + half};
+}
+
+/// "axis spans 0.3 % of the value" if the axis spans less than 1 % of the largest value; otherwise
+/// "".
+std::string AxisNote(Span values, Span axis) {
+  constexpr double kNarrow = 0.01;
+  constexpr double kPercent = 100;
+  const double largest = std::max(std::abs(values.low), std::abs(values.high));
+  const double share = (axis.high - axis.low) / largest;
+  return share < kNarrow ? fmt::format("axis spans {:.2g} % of the value", kPercent * share) : "";
 }
 
 Span TimeSpanOf(std::span<const ReportRun> runs) {
@@ -222,10 +233,9 @@ std::string NameOfValues(const Figure& figure) {
                              : fmt::format("{} ({})", figure.quantity, figure.unit);
 }
 
-std::string Heading(const Figure& figure, FigureFormat format, std::span<const ReportRun> runs,
-                    const Layout& layout) {
+std::string Heading(FigureFormat format, std::span<const ReportRun> runs, const Layout& layout,
+                    Span values) {
   const Span time = TimeSpanOf(runs);
-  const Span values = Widened(SpanOf(runs, figure.curves), figure.least_span);
   return Terminal(format, layout.height()) + fmt::format(
                                                  "set style fill solid noborder\n"
                                                  "set xrange [{}:{}]\nset yrange [{}:{}]\n"
@@ -236,8 +246,13 @@ std::string Heading(const Figure& figure, FigureFormat format, std::span<const R
 std::string Unset(int label) { return fmt::format("unset label {}\n", label); }
 
 std::string Panel(const Figure& figure, std::span<const ReportRun> runs, std::size_t index,
-                  const Layout& layout) {
+                  const Layout& layout, const std::string& note) {
   std::string commands = Margins(layout.PlaceOf(index)) + Shades(runs[index]);
+  if (!note.empty()) {
+    commands += fmt::format(
+        "set label 2 {} at graph 1, graph 1 offset 0, 0.7 right font ',15' textcolor rgb '{}'\n",
+        GnuplotString(note), kPalette[1]);
+  }
   if (runs.size() > 1) {
     commands += fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.7 left\n",
                             GnuplotString(RunName(runs, index)));
@@ -252,11 +267,14 @@ std::string Panel(const Figure& figure, std::span<const ReportRun> runs, std::si
 }
 
 std::string Script(const Figure& figure, FigureFormat format, std::span<const ReportRun> runs) {
-  const Layout layout(runs.size());
+  const Span values = SpanOf(runs, figure.curves);
+  const Span axis = Widened(values, figure.least_span);
+  const std::string note = AxisNote(values, axis);
+  const Layout layout(runs.size(), runs.size() > 1 || !note.empty());
   std::string script;
   for (std::size_t i = 0; i < runs.size(); ++i) script += DataBlock(i, runs[i], figure.curves);
-  script += Heading(figure, format, runs, layout) + Key(figure, layout);
-  for (std::size_t i = 0; i < runs.size(); ++i) script += Panel(figure, runs, i, layout);
+  script += Heading(format, runs, layout, axis) + Key(figure, layout);
+  for (std::size_t i = 0; i < runs.size(); ++i) script += Panel(figure, runs, i, layout, note);
   return script + "unset multiplot\n";
 }
 

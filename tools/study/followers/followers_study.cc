@@ -57,11 +57,11 @@ constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
                                                          "collided",
                                                          "min_follower_gap_m",
                                                          "min_follower_ttc_s",
-                                                         "min_follower_headway_s",
+                                                         "min_follower_time_gap_s",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Overrides with which a string settles before the fog, whatever the headways are. The fog is as
+// Overrides with which a string settles before the fog, whatever the time gaps are. The fog is as
 // long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
@@ -182,16 +182,16 @@ report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_
 }
 
 /// A measure that the study reports for each place.
-struct StringMeasure {
+struct StringMetric {
   std::string_view name;
   std::vector<double> CarInString::*values;
   int decimals;
 };
-constexpr std::array kStringMeasures{
-    StringMeasure{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
-    StringMeasure{"amplification", &CarInString::amplification, 2},
-    StringMeasure{"min_ttc_s", &CarInString::min_ttc_s, 1},
-    StringMeasure{"min_gap_m", &CarInString::min_gap_m, 2}};
+constexpr std::array kStringMetrics{
+    StringMetric{"max_deceleration_mps2", &CarInString::max_deceleration_mps2, 2},
+    StringMetric{"amplification", &CarInString::amplification, 2},
+    StringMetric{"min_ttc_s", &CarInString::min_ttc_s, 1},
+    StringMetric{"min_gap_m", &CarInString::min_gap_m, 2}};
 
 report::StudyTable TableOfString(const StringOutcome& string, std::int64_t seeds) {
   report::StudyTable table{
@@ -199,11 +199,11 @@ report::StudyTable TableOfString(const StringOutcome& string, std::int64_t seeds
           fmt::format("String of {}, {}: by place; collisions in {}", string.kind, string.variant,
                       Text(metrics::ClopperPearson(string.collisions, seeds))),
       .columns = {"place"}};
-  for (const StringMeasure& measure : kStringMeasures) table.columns.emplace_back(measure.name);
+  for (const StringMetric& measure : kStringMetrics) table.columns.emplace_back(measure.name);
   for (std::size_t place = 0; place <= kStringCars; ++place) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(place == 0 ? "host" : fmt::format("follower {}", place));
-    for (const StringMeasure& measure : kStringMeasures) {
+    for (const StringMetric& measure : kStringMetrics) {
       row.push_back(Text(EstimateOf(string.cars[place].*measure.values), measure.decimals));
     }
   }
@@ -216,7 +216,7 @@ std::string StringCsv(std::span<const StringOutcome> strings) {
       "minus_first_ci95_low,minus_first_ci95_high\n";
   for (const StringOutcome& string : strings) {
     for (std::size_t place = 0; place <= kStringCars; ++place) {
-      for (const StringMeasure& measure : kStringMeasures) {
+      for (const StringMetric& measure : kStringMetrics) {
         const std::vector<double>& values = string.cars[place].*measure.values;
         if (values.empty()) continue;
         const Estimate mean = EstimateOf(values);

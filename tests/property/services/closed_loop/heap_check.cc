@@ -11,6 +11,7 @@
 #include "services/decision/policies/policies.h"
 #include "services/metrics/follower_metrics.h"
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "services/models/driver/fog_sight.h"
 #include "services/models/driver/human_driver.h"
 #include "services/models/follower/safety_response.h"
@@ -107,7 +108,7 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   closed_loop::ClosedLoop loop(scenario);
   metrics::MetricsAccumulator measures;
   metrics::FollowerAccumulator followers;
-  metrics::SafetyImprovement improvement(scenario.measures.safety_floor_m);
+  metrics::PairedAccumulator pair(scenario);
   long after_first = 0;
   long after_last = 0;
   steps = 0;
@@ -115,7 +116,7 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
-    improvement.Add(sample, sample);
+    pair.Add(sample, sample);
     after_last = allocations;
     if (steps++ == 0) after_first = allocations;
   });

@@ -159,7 +159,7 @@ TEST(PrintTest, KeepsLongListsWithinTheLine) {
 TEST(ExplainTest, TellsMeaningRangeDefaultAndSource) {
   EXPECT_EQ(ExplainField("/acc/headway_s"),
             "/acc/headway_s\n"
-            "  Meaning: Headway T_hw in d_r = T_hw v + d_0.\n"
+            "  Meaning: Time gap T_hw, bumper to bumper, in d_r = T_hw v + d_0.\n"
             "  Allowed: a number in [0, 10] s\n"
             "  Default: 1.5 s\n"
             "  Source:  ISO 15622 offers 1.5 to 2.2 s\n");

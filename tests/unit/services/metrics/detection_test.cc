@@ -40,7 +40,7 @@ metrics::DetectionMetrics Collect(const std::vector<metrics::Sample>& run,
   return accumulator.Result();
 }
 
-TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileItIsDeceived) {
+TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileTheTrackIsWrong) {
   auto run = QuietRun(8);
   for (const std::size_t k : {2, 3, 4}) Deceive(run[k]);
   for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
@@ -68,6 +68,16 @@ TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
     sample.fused_distance_m = 30.05;
   }
   EXPECT_EQ(Collect(run).wrong_automation_s, 0);
+}
+
+TEST(DetectionTest, AnAutomationOnAWrongTrackIsWrongAlsoIfTheLidarIsRight) {
+  auto run = QuietRun(5);
+  run[1].fused_distance_m = 26.05;  // the filter has not settled after the fog
+  run[2].fused_distance_m = 29.5;
+  run[3].fused_distance_m = 29.95;
+  EXPECT_EQ(Collect(run).wrong_automation_s, 2 * kStep_s);
+  GiveToHuman(run[1]);
+  EXPECT_EQ(Collect(run).wrong_automation_s, kStep_s);
 }
 
 TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {

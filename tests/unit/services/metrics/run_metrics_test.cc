@@ -1,5 +1,6 @@
 #include "services/metrics/run_metrics.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -9,7 +10,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -17,33 +17,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/metrics/example_runs.h"
+
 namespace fogline {
 namespace {
 
-constexpr double kStep_s = 0.5;  // a power of two: all times and jerks below are exact
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// A run of `steps` steps without events. The following car is exactly at its safe distance.
-std::vector<metrics::Sample> QuietRun(std::size_t steps) {
-  std::vector<metrics::Sample> run(steps);
-  for (std::size_t k = 0; k < steps; ++k) {
-    run[k].step = static_cast<std::int64_t>(k);
-    run[k].time_s = kStep_s * static_cast<double>(k);
-    run[k].host_gap_m = run[k].fused_distance_m = 30;
-    run[k].follower_gap_m = run[k].follower_safe_distance_m = 32;
-  }
-  return run;
-}
-
-// The same run with fog in every step. The following car is too near by shortfalls_m[k].
-std::vector<metrics::Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
-  std::vector<metrics::Sample> run = QuietRun(shortfalls_m.size());
-  for (std::size_t k = 0; k < run.size(); ++k) {
-    run[k].fog_present = true;
-    run[k].follower_gap_m -= shortfalls_m[k];
-  }
-  return run;
-}
 
 TEST(CompromisedSafetyTest, IsTheShortfallOfTheSafeDistance) {
   metrics::Sample sample;
@@ -65,55 +44,6 @@ TEST(CompromisedSafetyTest, HasNoValueWithoutAFollowingCar) {
   metrics::Sample sample;
   sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
   EXPECT_TRUE(std::isnan(metrics::CompromisedSafety(sample)));
-}
-
-TEST(SafetyImprovementTest, IsFiftyPercentWhereEveryShortfallIsHalved) {
-  const auto baseline = FoggyRun({1, 2, 4});
-  const auto traded = FoggyRun({0.5, 1, 2});
-  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0), 50);
-}
-
-TEST(SafetyImprovementTest, IsTheMeanOfTheStepsRatios) {
-  // 1 - 0/1 = 1, 1 - 3/2 = -1/2, 1 - 1/4 = 3/4: the mean is 5/12.
-  const auto baseline = FoggyRun({1, 2, 4});
-  const auto traded = FoggyRun({0, 3, 1});
-  EXPECT_NEAR(*metrics::SafetyImprovementPct(baseline, traded, 0), 100 * 5.0 / 12, 1e-12);
-}
-
-TEST(SafetyImprovementTest, LooksOnlyAtFogAndAboveTheFloor) {
-  auto baseline = FoggyRun({1, 0.25, 1, 0});
-  const auto traded = FoggyRun({0.25, 9, 9, 9});
-  baseline[2].fog_present = false;
-  // Step 1 is at the floor, step 2 is in clear air, step 3 has nothing to improve.
-  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0.25), 75);
-}
-
-TEST(SafetyImprovementTest, HasNoValueWithoutARelevantStep) {
-  const auto clear = QuietRun(3);
-  const auto safe = FoggyRun({0, 0, 0});
-  EXPECT_EQ(metrics::SafetyImprovementPct(clear, clear, 0), std::nullopt);
-  EXPECT_EQ(metrics::SafetyImprovementPct(safe, FoggyRun({1, 1, 1}), 0), std::nullopt);
-  EXPECT_EQ(metrics::SafetyImprovementPct({}, {}, 0), std::nullopt);
-}
-
-TEST(SafetyImprovementTest, ComparesTheStepsThatBothRunsReached) {
-  const auto baseline = FoggyRun({1, 1});
-  const auto traded = FoggyRun({0, 0.5, 1, 1});
-  EXPECT_EQ(metrics::SafetyImprovementPct(baseline, traded, 0), 75);
-  EXPECT_EQ(metrics::SafetyImprovementPct(traded, baseline, 0), -100);  // only step 1 is relevant
-}
-
-TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
-  const auto baseline = FoggyRun({1, 1, 1});
-  auto traded = baseline;
-  traded[1].step = 7;
-  try {
-    metrics::SafetyImprovementPct(baseline, traded, 0);
-    FAIL() << "paired step 1 with step 7";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "safety improvement: step 1 of the baseline does not pair with step 7");
-  }
 }
 
 TEST(MeasureTest, NothingIsMeasuredOfNoSamples) {
@@ -146,6 +76,63 @@ TEST(MeasureTest, MeasuresCompromisedSafetyEverywhereAndItsMeanInFog) {
   const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.max_compromised_safety_m, 8);
   EXPECT_EQ(m.mean_compromised_safety_fog_m, 4.0 / 3);
+}
+
+TEST(MeasureTest, SlowDownIsTheDropOfTheHostsSpeedSinceTheFogBegan) {
+  auto run = QuietRun(6);
+  const std::array<double, 6> speed{25, 20, 21, 17, 19, 10};
+  for (std::size_t k = 0; k < run.size(); ++k) run[k].host_speed_mps = speed[k];
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, std::nullopt);
+  for (const std::size_t k : {1, 2, 3, 4}) run[k].fog_present = true;
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 3);
+  run[3].host_speed_mps = run[4].host_speed_mps = 22;  // it only speeds up
+  EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 0);
+}
+
+// A run of 12 steps of 0.5 s with fog from step 2 to step 4. The track is wrong in `wrong`.
+std::vector<metrics::Sample> RunAroundFog(const std::vector<std::size_t>& wrong) {
+  std::vector<metrics::Sample> run = QuietRun(12);
+  for (const std::size_t k : {2, 3, 4}) run[k].fog_present = true;
+  for (const std::size_t k : wrong) run[k].fused_distance_m = 25;
+  return run;
+}
+
+void Shorten(std::vector<metrics::Sample>& run, std::size_t step, double shortfall_m) {
+  run[step].follower_gap_m -= shortfall_m;
+}
+
+TEST(MeasureTest, CompromisedSafetyUntilRecoveryEndsWhenTheTrackIsRightForGood) {
+  auto run = RunAroundFog({5, 7});  // right at step 6, but not for good
+  Shorten(run, 1, 9);               // before the fog
+  Shorten(run, 3, 1);
+  Shorten(run, 6, 2);
+  Shorten(run, 7, 3);
+  Shorten(run, 8, 9);  // the track is right again
+  const metrics::RunMetrics m = metrics::Measure(run);
+  EXPECT_EQ(m.max_compromised_safety_until_recovery_m, 3);
+  EXPECT_EQ(m.mean_compromised_safety_until_recovery_m, 6.0 / 6);  // steps 2 to 7
+  EXPECT_EQ(m.mean_compromised_safety_fog_m, 1.0 / 3);
+  EXPECT_EQ(m.max_compromised_safety_m, 9);
+}
+
+TEST(MeasureTest, CompromisedSafetyUntilRecoveryHasAtLeastTheFogAndAtMostTheRun) {
+  auto run = RunAroundFog({});
+  Shorten(run, 4, 2);
+  Shorten(run, 5, 9);
+  EXPECT_EQ(metrics::Measure(run).max_compromised_safety_until_recovery_m, 2);
+  EXPECT_EQ(metrics::Measure(run).mean_compromised_safety_until_recovery_m, 2.0 / 3);
+  // A track that is wrong at the end has not recovered.
+  run[11].fused_distance_m = 25;
+  EXPECT_EQ(metrics::Measure(run).max_compromised_safety_until_recovery_m, 9);
+  EXPECT_EQ(metrics::Measure(run).mean_compromised_safety_until_recovery_m, 11.0 / 10);
+}
+
+TEST(MeasureTest, WithoutFogThereIsNothingToRecoverFrom) {
+  auto run = QuietRun(4);
+  run[1].fused_distance_m = 25;
+  Shorten(run, 2, 1);
+  EXPECT_EQ(metrics::Measure(run).max_compromised_safety_until_recovery_m, std::nullopt);
+  EXPECT_EQ(metrics::Measure(run).mean_compromised_safety_until_recovery_m, std::nullopt);
 }
 
 TEST(MeasureTest, WithoutAFollowingCarItsMeasuresHaveNoValue) {
@@ -242,8 +229,8 @@ TEST(MeasureTest, MeasuresBothPairsOfCars) {
   const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.follower.min_ttc_s, 32.0 / 5);
   EXPECT_EQ(m.host.min_ttc_s, 3);
-  EXPECT_EQ(m.host.min_headway_s, 1.5);
-  EXPECT_EQ(m.follower.min_headway_s, 1.6);
+  EXPECT_EQ(m.host.min_time_gap_s, 1.5);
+  EXPECT_EQ(m.follower.min_time_gap_s, 1.6);
   EXPECT_EQ(m.follower.tet_s, 0);
 }
 
@@ -257,6 +244,37 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
   EXPECT_EQ(m.rms_jerk_mps3, std::sqrt((1.0 + 16.0 + 0.0) / 3));
   EXPECT_EQ(m.max_abs_acceleration_mps2, 2.5);
+}
+
+// A run of 10 s: a hand-over at 4 s makes the acceleration jump by 0.6 m/s2. At 8 s, when the
+// hand-over is over, it rises by 1.5 m/s3 for 1 s.
+std::vector<metrics::Sample> RunWithAJump(double step_s) {
+  std::vector<metrics::Sample> run(static_cast<std::size_t>(std::lround(10 / step_s)) + 1);
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    run[k].step = static_cast<std::int64_t>(k);
+    run[k].time_s = static_cast<double>(std::llround(1e6 * step_s * static_cast<double>(k))) * 1e-6;
+    const double time_s = run[k].time_s;
+    run[k].lambda_human = time_s > 4 - 1e-9 ? 1 : 0;
+    run[k].host_acceleration_mps2 =
+        (time_s > 4 + 1e-9 ? 0.4 : -0.2) + 1.5 * std::clamp(time_s - 8, 0.0, 1.0);
+  }
+  return run;
+}
+
+TEST(MeasureTest, JerkOverASecondDoesNotDependOnTheStepButTheJerkOfAJumpDoes) {
+  for (const double step_s : {0.1, 0.05, 0.02}) {
+    const metrics::RunMetrics m = metrics::Measure(RunWithAJump(step_s));
+    EXPECT_NEAR(*m.max_handover_jerk_1s_mps3, 0.6, 1e-9) << step_s;
+    EXPECT_NEAR(*m.max_abs_jerk_1s_mps3, 1.5, 1e-9) << step_s;
+    EXPECT_NEAR(*m.max_handover_jerk_mps3, 0.6 / step_s, 1e-6) << step_s;
+    EXPECT_NEAR(*m.max_abs_jerk_mps3, 0.6 / step_s, 1e-6) << step_s;
+  }
+}
+
+TEST(MeasureTest, JerkOverASecondNeedsASecondAndAHandOver) {
+  EXPECT_EQ(metrics::Measure(QuietRun(3)).max_abs_jerk_1s_mps3, std::nullopt);  // 0.5 s to 1 s
+  EXPECT_EQ(metrics::Measure(QuietRun(4)).max_abs_jerk_1s_mps3, 0);
+  EXPECT_EQ(metrics::Measure(QuietRun(4)).max_handover_jerk_1s_mps3, std::nullopt);
 }
 
 TEST(MeasureTest, BrakingCountsAsAcceleration) {
@@ -303,7 +321,7 @@ TEST(MeasureTest, ResultMayBeAskedForAtAnyTime) {
 
 TEST(VisitMetricsTest, NamesEveryMeasureOnceWithItsUnit) {
   const std::map<std::string_view, std::string_view> suffixes{
-      {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"},
+      {"m", "_m"},       {"s", "_s"},       {"s2", "_s2"},      {"%", "_pct"}, {"m/s", "_mps"},
       {"m/s2", "_mps2"}, {"m/s3", "_mps3"}, {"1/min", "_pmin"}, {"1/h", "_ph"}};
   std::set<std::string_view> names;
   const auto check = [&](std::string_view name, auto value, std::string_view unit,
@@ -318,7 +336,7 @@ TEST(VisitMetricsTest, NamesEveryMeasureOnceWithItsUnit) {
     }
   };
   metrics::VisitMetrics(metrics::RunMetrics(), check);
-  EXPECT_EQ(names.size(), 42U);
+  EXPECT_EQ(names.size(), 50U);
 }
 
 TEST(VisitMetricsTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
@@ -339,7 +357,7 @@ TEST(VisitMetricsTest, SaysTheSameOfTheHostAndOfTheFollowingCar) {
       follower[without(name, "follower")] = description.substr(kFollower.size());
     }
   });
-  EXPECT_EQ(host.size(), 9U);
+  EXPECT_EQ(host.size(), 10U);
   EXPECT_EQ(host, follower);
 }
 

@@ -76,7 +76,7 @@ TEST(SurrogateTest, CrashProbabilityHoldsWhereTheLimitsLeaveNothingOfTheDistribu
 TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
   const metrics::PairMetrics m = Collect({kFollowing, kClosing, {40, 20, 20}});
   EXPECT_EQ(m.min_ttc_s, 6);
-  EXPECT_EQ(m.min_headway_s, 30.0 / 25);
+  EXPECT_EQ(m.min_time_gap_s, 30.0 / 25);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
   EXPECT_EQ(m.min_picud_m, metrics::UrgentDecelerationGap({}, kClosing));
 }
@@ -84,6 +84,16 @@ TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
 TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
   // 20 * 0.5 + 2 * 0.25/2 + 21^2/12 - 20^2/16 = 10 + 0.25 + 36.75 - 25 = 22 m.
   EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_m, 8, 1e-12);
+}
+
+TEST(PairAccumulatorTest, RssMarginWithTheParametersOfAdRssLibDoesNotDependOnTheScenario) {
+  // 20 * 1 + 3.5 * 1/2 + 23.5^2/8 - 20^2/16 = 20 + 1.75 + 69.03125 - 25 = 65.78125 m.
+  EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
+  MeasuresSection section;
+  section.rss_response_s = 0;
+  const metrics::PairMetrics m = Collect({kFollowing, {40, 20, 20}}, section);
+  EXPECT_NEAR(*m.min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
+  EXPECT_GT(*m.min_rss_margin_m, 8);
 }
 
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
@@ -111,7 +121,7 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
 TEST(PairAccumulatorTest, ContactIsNoTimeAndNoFiniteDeceleration) {
   const metrics::PairMetrics m = Collect({kClosing, {-0.1, 25, 20}, {-0.1, 25, 20}});
   EXPECT_EQ(m.min_ttc_s, 0);
-  EXPECT_EQ(m.min_headway_s, 0);
+  EXPECT_EQ(m.min_time_gap_s, 0);
   EXPECT_DOUBLE_EQ(*m.max_drac_mps2, 25.0 / 60);
   EXPECT_EQ(m.tet_s, kStep_s);
   EXPECT_EQ(m.cpi, 0.5);
@@ -123,11 +133,12 @@ TEST(PairAccumulatorTest, HasNoValuesWithoutACarAhead) {
   EXPECT_EQ(m.tet_s, std::nullopt);
   EXPECT_EQ(m.max_drac_mps2, std::nullopt);
   EXPECT_EQ(m.min_rss_margin_m, std::nullopt);
+  EXPECT_EQ(m.min_rss_margin_ad_rss_m, std::nullopt);
   EXPECT_EQ(m.cpi, std::nullopt);
 }
 
-TEST(PairAccumulatorTest, ACarThatStandsHasNoHeadway) {
-  EXPECT_EQ(Collect({{5, 0, 0}}).min_headway_s, std::nullopt);
+TEST(PairAccumulatorTest, ACarThatStandsHasNoTimeGap) {
+  EXPECT_EQ(Collect({{5, 0, 0}}).min_time_gap_s, std::nullopt);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/metrics/run_metrics.h"
+#include "services/metrics/safety_improvement.h"
 #include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
@@ -33,22 +33,27 @@ TEST_F(PairingTest, OfARunIsTheSameScenarioWithoutTradedControl) {
   EXPECT_EQ(PrintScenario(paired), PrintScenario(traded));
 }
 
-TEST_F(PairingTest, GivesASafetyImprovementToEachRunThatHasItsPair) {
+TEST_F(PairingTest, MeasuresEachRunThatHasItsPair) {
   const std::string none = "/arbitrator/policy=none";
   const std::vector<runner::LoggedRun> runs{
       Run({"/arbitrator/threshold=0.3"}),
       Run({none}),
       Run({"/arbitrator/threshold=0.3", "/seed=2"}),
   };
-  const auto improvements = cli::SafetyImprovements(runs);
-  ASSERT_EQ(improvements.size(), 3U);
-  ASSERT_TRUE(improvements[0]);
-  EXPECT_EQ(improvements[0],
+  const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
+  ASSERT_EQ(pairs.size(), 3U);
+  ASSERT_TRUE(pairs[0].measures.si_pct);
+  EXPECT_EQ(pairs[0].measures.si_pct,
             metrics::SafetyImprovementPct(runs[1].result.samples, runs[0].result.samples,
                                           runs[0].scenario.measures.safety_floor_m));
-  EXPECT_EQ(improvements[1], std::nullopt) << "it is the pair";
-  EXPECT_EQ(improvements[2], std::nullopt) << "its pair has another seed";
-  EXPECT_TRUE(cli::SafetyImprovements({}).empty());
+  EXPECT_TRUE(pairs[0].measures.si_until_recovery_pct);
+  EXPECT_EQ(pairs[0].without.mean_compromised_safety_m,
+            runs[1].result.measures.mean_compromised_safety_fog_m);
+  EXPECT_EQ(pairs[0].without.slow_down_mps, runs[1].result.measures.max_slow_down_fog_mps);
+  EXPECT_EQ(pairs[1].measures.si_pct, std::nullopt) << "it is the pair";
+  EXPECT_EQ(pairs[2].measures.si_pct, std::nullopt) << "its pair has another seed";
+  EXPECT_EQ(pairs[2].measures.si_until_recovery_pct, std::nullopt);
+  EXPECT_TRUE(cli::MeasurePairs({}).empty());
 }
 
 }  // namespace

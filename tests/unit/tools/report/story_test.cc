@@ -60,10 +60,11 @@ TEST(StoryTest, TellsOfFogOfItsConsequenceAndOfEveryThreshold) {
       MatchesRegex(
           "In fog from 19 s to 30 s the LiDAR read up to 0\\.[0-9]+ m short and had no echo "
           "for 0\\.2 s; without traded control the following car came [0-9.]+ c?m too "
-          "close; at threshold 0\\.2 the human drove all the time and 100 % of that was "
-          "avoided; at threshold 0\\.5 the human drove for [0-9.]+ s and 81 % of that was "
-          "avoided; at threshold 0\\.8 the human drove for [0-9.]+ s and 10 % of that was "
-          "avoided\\."));
+          "close \\([0-9.]+ c?m on average in the fog\\) and the host slowed down by [0-9.]+ m/s; "
+          "at threshold 0\\.2 the human drove all the time and 100 % of that was avoided, which "
+          "leaves [0-9a-z. ]+; at threshold 0\\.5 the human drove for [0-9.]+ s and 81 % of that "
+          "was avoided, which leaves [0-9.]+ c?m on average; at threshold 0\\.8 the human drove "
+          "for [0-9.]+ s and 10 % of that was avoided, which leaves [0-9.]+ c?m on average\\."));
 }
 
 TEST(StoryTest, HasTheNumbersOfTheSamples) {
@@ -72,12 +73,20 @@ TEST(StoryTest, HasTheNumbersOfTheSamples) {
   runs[0].samples[40].follower_gap_m = 25 - 0.0388;
   for (std::size_t i = 22; i < 40; ++i) runs[1].samples[i].lambda_human = 1;
   runs[1].si_pct = 80.8;
-  EXPECT_EQ(report::StoryOf(runs),
-            "In fog from 2 s to 5 s the LiDAR read up to 0.22 m short; without traded control the "
-            "following car came 3.9 cm too close; at threshold 0.5 the human drove for 1.8 s and "
-            "81 % of that was avoided.");
+  EXPECT_EQ(
+      report::StoryOf(runs),
+      "In fog from 2 s to 5 s the LiDAR read up to 0.22 m short; without traded control the "
+      "following car came 3.9 cm too close (1 mm on average in the fog); at threshold 0.5 the "
+      "human drove for 1.8 s and 81 % of that was avoided, which leaves nothing.");
   runs[1].si_pct = -12.4;
-  EXPECT_THAT(report::StoryOf(runs), HasSubstr("1.8 s and that got 12 % worse."));
+  runs[1].samples[41].follower_gap_m = 25 - 1.5;
+  runs[0].samples[19].host_speed_mps = 20;  // before the fog
+  for (std::size_t i = 20; i < 50; ++i) runs[0].samples[i].host_speed_mps = 19;
+  runs[0].samples[30].host_speed_mps = 18.9534;
+  const std::string story = report::StoryOf(runs);
+  EXPECT_THAT(story,
+              HasSubstr("(1 mm on average in the fog) and the host slowed down by 0.047 m/s;"));
+  EXPECT_THAT(story, HasSubstr("1.8 s and that got 12 % worse, which leaves 5.0 cm on average."));
 }
 
 TEST(StoryTest, TellsOfARunWithoutAPairByItself) {

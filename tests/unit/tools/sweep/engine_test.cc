@@ -25,7 +25,8 @@ TEST(SweepEngineTest, HandsUnitsOnInOrderWithWhatAWorkerAloneComputes) {
     EXPECT_EQ(rows.size(), 2U);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_EQ(rows[i].measures.min_follower_gap_m, expected[i].measures.min_follower_gap_m);
-      EXPECT_EQ(rows[i].si_pct, expected[i].si_pct);
+      EXPECT_EQ(rows[i].paired.si_pct, expected[i].paired.si_pct);
+      EXPECT_EQ(rows[i].paired.si_until_recovery_pct, expected[i].paired.si_until_recovery_pct);
     }
     return true;
   });

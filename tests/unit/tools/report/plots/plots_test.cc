@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,31 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
     EXPECT_THAT(pdf, StartsWith("%PDF-")) << name;
     EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 576 360 ]")) << name << ": 8 by 5 inches";
   }
+}
+
+TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue) {
+  // GIVEN cars that keep 20 m/s, so that the axis of speeds is as short as it may be: 0.112 m/s
+  std::vector<report::ReportRun> runs = ExampleRuns(60);
+  for (report::ReportRun& run : runs) {
+    for (metrics::Sample& sample : run.samples) {
+      sample.preceding_speed_mps = sample.host_speed_mps = sample.follower_speed_mps = 20;
+    }
+  }
+  const std::string note = ">axis spans 0.56 % of the value<";
+  const auto notes = [&](const fs::path& picture) {
+    const std::string svg = Read(picture);
+    std::size_t count = 0;
+    for (std::size_t at = svg.find(note); at != svg.npos; at = svg.find(note, at + 1)) ++count;
+    return count;
+  };
+  report::WriteFigures(dir_ / "four", report::FigureFormat::kSvg, runs);
+  EXPECT_EQ(notes(dir_ / "four/figure-1-speeds.svg"), 4U);
+  EXPECT_THAT(Read(dir_ / "four/figure-1-speeds.svg"), HasSubstr(">threshold 0.5<"));
+  // AND accelerations, which pass 0
+  EXPECT_THAT(Read(dir_ / "four/figure-5-accelerations.svg"),
+              ::testing::Not(HasSubstr("axis spans")));
+  report::WriteFigures(dir_ / "one", report::FigureFormat::kSvg, std::span(runs).first(1));
+  EXPECT_EQ(notes(dir_ / "one/figure-1-speeds.svg"), 1U);
 }
 
 /// Makes gnuplot use another font everywhere, with letters 1.25 times as large.

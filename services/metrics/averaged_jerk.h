@@ -1,0 +1,42 @@
+// Jerk as a standard measures it: averaged over 1 s.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace fogline::metrics {
+
+/// ISO 15622 limits the jerk of an ACC as an average over 1 s. The magnitude of that average at
+/// time t is the change of the acceleration over the last second:
+///
+///     |a(t) - a(t - 1 s)| / 1 s
+///
+/// A change within one step, such as a hand-over, has the same value for every length of the step.
+/// (The change divided by the step has not: it grows as the step shrinks.)
+class AveragedJerk {
+ public:
+  /// Adds the acceleration that was applied from the sample before to this one. Times ascend.
+  /// @return |jerk| in m/s3, averaged over the second that ends now; nullopt before the
+  ///     accelerations of a whole second are known
+  std::optional<double> Add(double time_s, double acceleration_mps2);
+
+ private:
+  struct Point {
+    double time_s;
+    double acceleration_mps2;
+  };
+  /// A second has at most 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s).
+  /// Only the points since the last second's begin are kept, in a ring.
+  static constexpr std::size_t kMostPoints = 1002;
+
+  const Point& Oldest() const { return points_[begin_]; }
+  void DropOldest();
+
+  std::array<Point, kMostPoints> points_;
+  std::size_t begin_ = 0;
+  std::size_t count_ = 0;
+  bool dropped_ = false;  // so the points before the oldest one were known, too
+};
+
+}  // namespace fogline::metrics

@@ -1,0 +1,31 @@
+// What the fog does to the traffic, in metres and m/s. Percentages such as SI are shown beside it.
+#pragma once
+
+#include <optional>
+
+#include "services/metrics/running.h"
+#include "services/metrics/sample.h"
+
+namespace fogline::metrics {
+
+/// nullopt: the run has no step in fog, or no following car.
+struct FogEffect {
+  /// Mean of CS over the steps in fog, m.
+  std::optional<double> mean_compromised_safety_m;
+  /// Largest drop of the host's speed in fog below its speed in the first step in fog, m/s.
+  std::optional<double> slow_down_mps;
+};
+
+/// Collects the effect, step by step.
+class FogEffectAccumulator {
+ public:
+  void Add(const Sample& sample);
+  FogEffect Result() const;
+
+ private:
+  Mean compromised_safety_m_;
+  std::optional<double> speed_at_begin_mps_;
+  std::optional<double> slow_down_mps_;
+};
+
+}  // namespace fogline::metrics

@@ -1,0 +1,154 @@
+// Measures of a run with traded control that need the paired run without it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "scenario/sections/scenario.h"
+#include "services/metrics/sample.h"
+#include "services/metrics/track_judge.h"
+#include "services/metrics/until_recovery.h"
+
+namespace fogline::metrics {
+
+/// The mean of (without - with)/without over steps, in %. The ratio of one step can be far below 0,
+/// never above 1.
+class MeanImprovement {
+ public:
+  void Add(double without, double with) {
+    sum_ += (without - with) / without;
+    ++steps_;
+  }
+  /// nullopt without a step.
+  std::optional<double> Pct() const;
+
+ private:
+  double sum_ = 0;
+  std::int64_t steps_ = 0;
+};
+
+/// A reading of "compromised safety". d_f is the gap of the first following car, d_r,f its dynamic
+/// safe distance, and t_0 the first step in fog. Fogline measures kBelowSafeDistance, and computes
+/// the two others only to show how far SI depends on the reading.
+enum class SafetyReading {
+  kBelowSafeDistance,  // max(0, d_r,f - d_f)
+  kGapLost,            // max(0, d_f(t_0) - d_f)
+  kSafeDistanceLost,   // max(0, d_r,f(t_0) - d_r,f)
+};
+
+/// Compromised safety of one run by a reading, m. Takes the steps of the run in their order.
+class CompromisedSafetyOfRun {
+ public:
+  explicit CompromisedSafetyOfRun(SafetyReading reading) : reading_(reading) {}
+
+  /// For kGapLost and kSafeDistanceLost: 0 before the fog.
+  double Next(const Sample& sample);
+
+ private:
+  SafetyReading reading_;
+  std::optional<double> at_begin_m_;  // of the fog
+};
+
+/// Safety improvement SI of a run with traded control over its baseline, a run without traded
+/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
+///
+///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
+///
+/// over the n relevant steps, those in fog with CS_baseline > floor. The floor is a free parameter:
+/// the paper has none, and SI depends on it.
+class SafetyImprovement {
+ public:
+  /// @param floor_m at least 0; avoids the ratio 0/0
+  explicit SafetyImprovement(double floor_m,
+                             SafetyReading reading = SafetyReading::kBelowSafeDistance)
+      : floor_m_(floor_m), baseline_(reading), traded_(reading) {}
+
+  /// Adds a step of both runs.
+  /// @throws std::invalid_argument if the samples are not of the same step.
+  void Add(const Sample& baseline, const Sample& traded);
+
+  /// SI so far in %; nullopt without a relevant step.
+  std::optional<double> Pct() const { return mean_.Pct(); }
+
+ private:
+  double floor_m_;
+  CompromisedSafetyOfRun baseline_;
+  CompromisedSafetyOfRun traded_;
+  MeanImprovement mean_;
+};
+
+/// A choice with which SI has another value.
+struct SafetyChoice {
+  std::string_view name;  // in JSON
+  std::string_view text;  // for readers
+  SafetyReading reading;
+  std::optional<double> floor_m;  // nullopt: the scenario's
+};
+inline constexpr std::array<SafetyChoice, 7> kSafetyChoices{{
+    {"floor_20mm", "20 mm", SafetyReading::kBelowSafeDistance, 0.02},
+    {"floor_10mm", "10 mm", SafetyReading::kBelowSafeDistance, 0.01},
+    {"floor_5mm", "5 mm", SafetyReading::kBelowSafeDistance, 0.005},
+    {"floor_1mm", "1 mm", SafetyReading::kBelowSafeDistance, 0.001},
+    {"floor_0mm", "0 mm", SafetyReading::kBelowSafeDistance, 0.0},
+    {"gap_lost", "gap lost", SafetyReading::kGapLost, std::nullopt},
+    {"safe_distance_lost", "d_r,f lost", SafetyReading::kSafeDistanceLost, std::nullopt},
+}};
+
+/// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
+/// both runs have.
+/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
+std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
+                                           std::span<const Sample> traded, double floor_m);
+
+/// Measures of a pair of runs. nullopt: the pair has no step that is relevant for the measure.
+struct PairedMetrics {
+  /// SI, %.
+  std::optional<double> si_pct;
+  /// The same over more steps, %: from the first step in fog until the tracks of both runs are
+  /// right again for good (UntilRecovery), as far as CS_baseline > floor. SI looks only at the fog,
+  /// but the automation returns at its end, to a filter that may not have settled.
+  std::optional<double> si_until_recovery_pct;
+  /// SI with other choices, %, in the order of kSafetyChoices. `fogline table` shows them.
+  std::array<std::optional<double>, kSafetyChoices.size()> other_si_pct;
+};
+
+/// Calls `visit(name, value, unit, description)` for every measure except `other_si_pct`, as
+/// VisitMetrics().
+template <class Visitor>
+void VisitPairedMetrics(const PairedMetrics& m, Visitor&& visit) {
+  const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
+                          std::string_view description) { visit(name, value, unit, description); };
+  number("si_pct", m.si_pct, "%", "safety improvement over the paired run without traded control");
+  number("si_until_recovery_pct", m.si_until_recovery_pct, "%",
+         "the same, counted until the tracks of both runs are right again");
+}
+
+/// Collects the measures of a pair, step by step.
+class PairedAccumulator {
+ public:
+  explicit PairedAccumulator(const Scenario& scenario);
+
+  /// Adds a step of both runs.
+  /// @throws std::invalid_argument if the samples are not of the same step.
+  void Add(const Sample& baseline, const Sample& traded);
+
+  PairedMetrics Result() const;
+
+ private:
+  double floor_m_;
+  TrackJudge track_;
+  SafetyImprovement improvement_;
+  std::array<SafetyImprovement, kSafetyChoices.size()> others_;
+  UntilRecovery<MeanImprovement> until_recovery_;
+};
+
+/// Measures of two whole runs of a scenario, over the steps that both runs have.
+/// @throws std::invalid_argument as SafetyImprovementPct()
+PairedMetrics MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
+                          const Scenario& scenario);
+
+}  // namespace fogline::metrics

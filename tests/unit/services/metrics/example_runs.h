@@ -1,0 +1,36 @@
+// Runs for the tests of measures, made by hand.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "services/metrics/sample.h"
+
+namespace fogline {
+
+inline constexpr double kStep_s = 0.5;  // a power of two: all times and jerks of a run are exact
+
+// A run of `steps` steps without events. The following car is exactly at its safe distance.
+inline std::vector<metrics::Sample> QuietRun(std::size_t steps) {
+  std::vector<metrics::Sample> run(steps);
+  for (std::size_t k = 0; k < steps; ++k) {
+    run[k].step = static_cast<std::int64_t>(k);
+    run[k].time_s = kStep_s * static_cast<double>(k);
+    run[k].host_gap_m = run[k].fused_distance_m = 30;
+    run[k].follower_gap_m = run[k].follower_safe_distance_m = 32;
+  }
+  return run;
+}
+
+// The same run with fog in every step. The following car is too near by shortfalls_m[k].
+inline std::vector<metrics::Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
+  std::vector<metrics::Sample> run = QuietRun(shortfalls_m.size());
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    run[k].fog_present = true;
+    run[k].follower_gap_m -= shortfalls_m[k];
+  }
+  return run;
+}
+
+}  // namespace fogline
