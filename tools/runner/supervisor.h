@@ -51,7 +51,7 @@ class Supervisor {
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // measured in the middle of its silence
+    std::optional<std::int64_t> activity{};  // measured in the middle of the process's silence
     std::string killed_for{};                // the reason why the supervisor killed it
     bool deaf = false;                       // whether that reason was deafness
     std::string death{};                     // how its last process ended
