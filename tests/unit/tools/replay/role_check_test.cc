@@ -100,7 +100,9 @@ TEST_F(RoleCheckTest, RefusesAMessageThatARoleCannotRead) {
     Check(altered_);
     FAIL() << "it was computed";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "step 23: RADAR is no such message with finite values");
+    EXPECT_STREQ(error.what(),
+                 "step 23: the RADAR in the log is not a message of its type, or has a value that "
+                 "is not finite");
   }
 }
 
@@ -156,7 +158,9 @@ TEST_F(RoleCheckTest, AVerificationEndsAtAStepThatCannotBeComputed) {
   const Verification verification =
       Verify(altered_, {{.role = Role::kRadar, .pid = 1, .host = "", .build = 4, .ours = 5}});
   EXPECT_FALSE(verification.Holds());
-  EXPECT_EQ(verification.Trouble(), "step 23: RADAR is no such message with finite values");
+  EXPECT_EQ(verification.Trouble(),
+            "step 23: the RADAR in the log is not a message of its type, or has a value that is "
+            "not finite");
 }
 
 TEST_F(RoleCheckTest, AVerificationLeavesOutRolesOfOtherBuilds) {
