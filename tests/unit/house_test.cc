@@ -30,11 +30,11 @@ using ::testing::UnorderedElementsAre;
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
   std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all to use
-  std::string_view why;     // why it stands behind those before it
+  std::string_view why;     // why it stands after those before it
 };
 
 /// A file may include files of its own room and of rooms before it, and a library may link
-/// libraries of rooms before it. NAME_main.cc is a program, so it may include all.
+/// libraries of rooms before it. NAME_main.cc is a program, so it may include files of all rooms.
 constexpr std::array kRooms = std::to_array<Room>({
     {"common", "", "knows nothing of Fogline"},
     {"common/process", "", "this process: its console, what it waits for, what it takes"},
@@ -92,7 +92,8 @@ constexpr std::array kRooms = std::to_array<Room>({
 /// This room has no subfolders: a new folder in it needs a line of its own.
 constexpr std::string_view kAlone = "services";
 
-/// The table of all measures of conflict, which may include them. No measure includes its header.
+/// The table of all measures of conflict. It may include all measures; no measure includes its
+/// header.
 constexpr std::string_view kTableOfMeasures = "services/decision/conflict/conflict_measures.cc";
 
 /// The room of a file; nullopt if it is in none.
@@ -179,7 +180,7 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
 }
 
 /// The place of a library in the order: that of the first room in its folder. A library whose
-/// folder has no room stands behind all.
+/// folder has no room comes last.
 std::size_t PlaceOf(const std::string& folder) {
   const auto room = std::ranges::find_if(kRooms, [&folder](const Room& candidate) {
     return candidate.folder == folder || candidate.folder.starts_with(folder + "/");
@@ -187,7 +188,7 @@ std::size_t PlaceOf(const std::string& folder) {
   return static_cast<std::size_t>(room - kRooms.begin());
 }
 
-/// The libraries that each library links, and the places of all.
+/// The libraries that each library links, and the place of each library.
 struct Links {
   std::map<std::string, std::vector<std::string>> linked;
   std::map<std::string, std::size_t> places{{"fogline_lcmtypes", PlaceOf("fogline")}};
@@ -207,8 +208,8 @@ Links ReadLinks(const std::string& lines) {
   return links;
 }
 
-/// "LIBRARY links LIBRARY" for each link that the order of the rooms forbids. Links that all lead
-/// to earlier places make no circle.
+/// "LIBRARY links LIBRARY" for each link that the order of the rooms forbids. If every link leads
+/// to an earlier place, there is no circle.
 std::vector<std::string> ForbiddenLinks(const Links& links) {
   std::vector<std::string> forbidden;
   for (const auto& [library, all_linked] : links.linked) {
@@ -255,7 +256,7 @@ TEST(HouseTest, TestsOfAFolderLieInTheSameFolderAgain) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(tests / kind)) {
       if (!entry.is_directory()) continue;
       const auto folder = std::filesystem::relative(entry.path(), tests / kind);
-      if (folder == "fallback") continue;  // what all roles of a run do without one of them
+      if (folder == "fallback") continue;  // tests of whole runs in which a role falls silent
       EXPECT_TRUE(std::filesystem::is_directory(SourceDirectory() / folder)) << entry.path();
       ++folders;
     }

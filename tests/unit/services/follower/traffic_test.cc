@@ -49,7 +49,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
     follower::Follower undisturbed(WithFollowers(3, driver));
     truth_t truth = Platoon(3);
     truth.follower_speed_mps[1] = 17;
-    // WHEN the other cars have had time to see this
+    // WHEN the other cars have had time to react
     std::vector<double> now;
     std::vector<double> otherwise;
     for (int k = 0; k < 20; ++k) {
@@ -57,7 +57,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
       ++truth.header.step;
     }
-    // THEN the third car brakes for it, and the first does not notice it
+    // THEN the third car brakes for the slower car, and the first car does not notice it
     EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
@@ -118,7 +118,8 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
     }
     return least;
   };
-  // THEN the reference human brakes with 0.774 g, and every model at least as hard as no model
+  // THEN the reference human brakes with 0.774 g, and with every model the car brakes at least as
+  // hard as without a model
   EXPECT_LE(hardest(SafetyModelChoice::kReferenceHuman), -7.59);
   EXPECT_LE(hardest(SafetyModelChoice::kRss), hardest(SafetyModelChoice::kNone));
   EXPECT_LE(hardest(SafetyModelChoice::kFuzzy), hardest(SafetyModelChoice::kNone));
@@ -170,7 +171,7 @@ TEST(DriverAssignmentTest, DrawsInProportionToTheShares) {
       aggressive += assignment.style == models::Style::kAggressive ? 1 : 0;
     }
   }
-  // Of 6,400 cars a quarter and three fifths. Four standard deviations are 139 and 157.
+  // A quarter and three fifths of 6,400 cars. Four standard deviations are 139 and 157.
   EXPECT_NEAR(acc, 1600, 139);
   EXPECT_NEAR(aggressive, 3840, 157);
 }

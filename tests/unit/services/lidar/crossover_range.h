@@ -1,4 +1,4 @@
-// Where the fog hides a target from a LiDAR, as published parameter sets tell it.
+// The range beyond which fog hides a target from a LiDAR, for published sets of parameters.
 #pragma once
 
 #include <cmath>

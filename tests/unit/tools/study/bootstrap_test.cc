@@ -62,7 +62,7 @@ TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 
-// The purpose of the interval: it covers the mean of normal values as often as it says.
+// The purpose of the interval: it covers the mean of normal values as often as its level promises.
 TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
   constexpr std::size_t kRuns = 40;
   constexpr int kExperiments = 200;

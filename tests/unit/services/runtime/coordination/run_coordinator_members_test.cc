@@ -66,7 +66,7 @@ class ExternalDriverTest : public RunCoordinatorTest {
  protected:
   /// The instance that the run names as its driver.
   std::int64_t Holder() {
-    PassTime(milliseconds(300));  // it repeats itself in less
+    PassTime(milliseconds(300));  // the runner repeats RUN sooner than that
     script_.bus().Drain();
     EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
     return said_.back().holder.at(0);
@@ -127,11 +127,12 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
   EXPECT_EQ(Holder(), OtherDriver().instance);
 }
 
-/// The same with real time, because the coordinator takes the time of each message from the clock.
+/// The same fixture with the real clock, because the coordinator takes the time of each message
+/// from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
-  /// Publishes a STATUS of this process every 100 ms. It is the driver, or a process that has the
-  /// driver's place.
+  /// Publishes a STATUS of this process every 100 ms. The process is the driver, or another process
+  /// that takes the driver's place.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);

@@ -47,7 +47,8 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
-// The times that this test gives are in steps of 0.4 s: a longer one is a pause of the seeker.
+// The test passes times in steps of 0.4 s: the seeker would take a longer step for a pause of its
+// own.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
   // GIVEN a seeker that has tried a run in vain
   ASSERT_TRUE(Finds(begin_));
