@@ -1,4 +1,4 @@
-// Copies of logs that differ from the log.
+// Copies of logs with changes.
 #pragma once
 
 #include <cstdint>
