@@ -26,7 +26,7 @@ study::StudyResult Make(std::string_view name) {
                      .progress = {}});
 }
 
-/// How many lines have each value of a column.
+/// For each value of a column, the number of lines that have it.
 std::map<std::string, int> Column(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;
@@ -57,7 +57,8 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
   for (const std::string& finding : result.section.findings) {
     EXPECT_THAT(finding, HasSubstr("cautious "));
   }
-  // AND the study tells that it gives the same runs as `traded`: the track is never uncertain here
+  // AND the study says that `cautious` gives the same runs as `traded`: the track is never
+  // uncertain here
   EXPECT_THAT(result.section.findings[0],
               testing::ContainsRegex("[Cc]autious.* the same runs as traded"));
   EXPECT_THAT(result.section.figures[0].categories, Contains("cautious"));

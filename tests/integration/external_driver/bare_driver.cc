@@ -1,4 +1,4 @@
-// A human driver that uses only Fogline's message types. It shows what a role must do in any
+// A human driver that uses only Fogline's message types. It shows the duties of a role in any
 // language. (In C++ there is a shorter way: my_driver.cc.)
 //
 //   c++ -O2 -ffp-contract=off bare_driver.cc -I PREFIX/include -llcm -o bare_driver
@@ -39,7 +39,8 @@ double Idm(double v, double preceding_v, double gap, double headway) {
 class BareDriver {
  public:
   BareDriver(lcm::LCM& lcm, double headway) : lcm_(lcm), headway_(headway) {
-    // 0 is no limit. LCM's default is 30 waiting messages, and it drops the newest beyond that.
+    // 0 means no limit. LCM's default is 30 waiting messages; it drops a message that finds no
+    // room.
     lcm_.subscribe("RUN", &BareDriver::OnRun, this)->setQueueCapacity(0);
     lcm_.subscribe("TRUTH", &BareDriver::OnTruth, this)->setQueueCapacity(0);
     lcm_.subscribe("RESEND", &BareDriver::OnResend, this)->setQueueCapacity(0);

@@ -19,7 +19,7 @@ namespace fogline::test {
 
 // Far longer than anything here takes on a busy machine.
 inline constexpr Duration kRunPatience = std::chrono::seconds(30);
-// Steps of a run that is watched, and its pace: a millisecond a step.
+// Steps of a watched run, and its pace: a millisecond for each step.
 inline constexpr int kSteps = 300;
 inline constexpr int kPace = 100;
 

@@ -116,7 +116,7 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN the log of another run that carries this run's id replaces its log
+  // WHEN the log of another run replaces the log of this run, and has this run's id
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });
@@ -278,7 +278,8 @@ TEST_F(LogIntegrityTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
     runtime::Bus bus(relay.url());
     Background logger(
         {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), copy});
-    // Sends until lcm-logger has written a message of this channel, thus all earlier ones too.
+    // Sends until lcm-logger has written a message of this channel. Then it has written all earlier
+    // messages, too.
     const auto mark = [&](std::string_view channel) {
       const auto has = [&] {
         std::ifstream in(copy, std::ios::binary);
@@ -315,7 +316,8 @@ TEST_F(LogIntegrityTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARun
                 .code,
             0);
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["seal"], "holds");
-  constexpr std::size_t kTimeInEvent = 19;  // the last byte of it: sync word, number, time
+  // The last byte of the time: an event begins with sync word, number, time.
+  constexpr std::size_t kTimeInEvent = 19;
   for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
     FlipLowestBit(log, kTimeInEvent);
     FlipLowestBit(log, PlaceOf(log, log::kLogSealChannel).at + kTimeInEvent);

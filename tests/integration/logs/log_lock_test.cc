@@ -225,7 +225,7 @@ TEST_F(LogLockTest, AnOlderLogIsThereAgainWhenTheRunThatReplacesItNeverBegins) {
       With(WaitingForADriver(run_), {"--wait", "0.5", "--force"});
   EXPECT_EQ(RunCommand(replace).code, 3);
   EXPECT_EQ(Content(log_), older);
-  // AND it is gone when the run has begun, with nothing beside the new one
+  // AND the older log is gone when the run has begun, and no other file lies beside the new one
   EXPECT_EQ(RunCommand(With(run_, {"--force", "--seed", "2"})).code, 0);
   EXPECT_NE(Content(log_), older);
   const std::filesystem::directory_iterator files(std::filesystem::path(log_).parent_path());

@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// All features with which roles read inputs on demand, remember or draw.
+// All features with which roles read inputs on demand, have a memory, or draw random numbers.
 const Words kEverything{"--set", "/human/loses_awareness=true",
                         "--set", "/human/misjudges=true",
                         "--set", "/human/sight=fog",
@@ -95,7 +95,7 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;
-    // With one of these policies the cars collide later, so the runs end here.
+    // The runs end here, because with one of these policies the cars collide later.
     more.insert(more.end(), {"--transport", "direct", "--force", "--set", "/steps=500", "--set",
                              std::string("/arbitrator/policy=") + policy});
     ExpectSame(Log("scenario/dense_fog.json", more), 500);

@@ -1,4 +1,4 @@
-// A run under datagrams that are none of its messages.
+// A run among datagrams that are not its messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ inline constexpr double kScenarioS = 50;
 
 /// How much hostile traffic a run has, and for how long.
 struct Hostility {
-  double seconds;       // that the run takes
+  double seconds;       // duration of the run
   double rate_hz;       // datagrams per second
-  double least_sent;    // of them
-  int least_of_a_kind;  // that are sent, and refused
-  bool alone = false;   // on the machine, so that times can be judged
+  double least_sent;    // of these datagrams
+  int least_of_a_kind;  // datagrams that are sent, and that are refused
+  bool alone = false;   // whether the test is alone on the machine, so that times can be judged
 };
 
 class HostileTrafficTest : public NetworkTest {
@@ -60,7 +60,7 @@ class HostileTrafficTest : public NetworkTest {
     }
     // THEN the result is that of the undisturbed run
     EXPECT_EQ(result["digest"], Undisturbed());
-    // AND it took little longer than its pace asks
+    // AND it took not much longer than its pace demands
     if (hostility.alone) {
       EXPECT_LT(result["wall_s"], 2 * hostility.seconds);
     }

@@ -57,7 +57,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
-  do {  // until exec() has made it the program that it is to be
+  do {  // until exec() has replaced the child by the program
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
