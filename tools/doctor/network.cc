@@ -261,7 +261,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
-    // mpudpm follows the route, whatever the ttl is.
+    // mpudpm uses the route with any ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
       ExamineLoopback(*group, std::min(ttl, 1), findings);

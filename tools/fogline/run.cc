@@ -103,7 +103,7 @@ struct RunArguments {
   bool quiet = false;
 };
 
-/// @throws InputError if real time cannot go together with the other options
+/// @throws InputError if the other options do not allow real time
 void ApplyRealtime(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {

@@ -44,7 +44,7 @@ std::string Subscriptions::Add(std::string_view pattern) {
   if (bytes_ + pattern.size() > most)
     return fmt::format("more than {} bytes of subscriptions", most);
   try {
-    // A copy with a zero behind it, because Boost 1.81 reads one character beyond the end of "["
+    // A copy that ends with a zero, because Boost 1.81 reads one character beyond the end of "["
     // and the like.
     std::string text(pattern);
     boost::regex expression(text, boost::regex::perl);

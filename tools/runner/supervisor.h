@@ -56,7 +56,7 @@ class Supervisor {
     bool deaf = false;                       // whether that reason was deafness
     std::string death{};                     // how its last process ended
     std::optional<TimePoint> start_at{};
-    bool gone = false;  // ended for good, while the run continues
+    bool gone = false;  // ended and is not started again, while the run continues
   };
   void Start(Child& child, TimePoint now);
   /// Restarts the process; if that fails, a later call tries again.

@@ -103,8 +103,8 @@ TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
-  std::this_thread::sleep_for(milliseconds(3500));  // the pause is what is tested
-  // WHEN it goes on, THEN the run does, too
+  std::this_thread::sleep_for(milliseconds(3500));  // the test is about this pause
+  // WHEN the runner goes on, THEN the run goes on, too
   kill(watched.run().pid(), SIGCONT);
   const auto result = watched.ExpectSameResult();
   EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
@@ -167,7 +167,7 @@ TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   Background second(command);
   watched.WaitUntil([&] { return watched.StateOf("driver", second.pid()) == status_t::RUNNING; },
                     "the other driver");
-  // WHEN it goes on, THEN it leaves the run to the other
+  // WHEN the first driver goes on, THEN it leaves the run to the other driver
   first.Signal(SIGCONT);
   EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);

@@ -137,7 +137,7 @@ class ResumeCampaignTest : public ResumeTest {
       std::filesystem::remove(log_);
       const int step = std::uniform_int_distribution(0, kResumeSteps - 2)(random);
       SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(step);
-      // The world is at most 32 steps ahead of what is on disk.
+      // The world is at most 32 steps ahead of the log on disk.
       const auto result = ExpectSameEnd(whole);
       EXPECT_GE(result["resumed_steps"], step - 32);
       EXPECT_EQ(result["restarts"].size(), 0U);

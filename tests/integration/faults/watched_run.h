@@ -44,7 +44,7 @@ inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& 
   return digest;
 }
 
-/// A run over the network whose STATUS messages tell this test which process has which role.
+/// A run over the network. Its STATUS messages tell this test the process of each role.
 class WatchedRun {
  public:
   /// @param changes of the scenario, as "--set", "/steps=10"

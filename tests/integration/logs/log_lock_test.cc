@@ -170,7 +170,8 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
     EXPECT_EQ(second.err, logs + ": error: --logs: is being written by another table (pid " +
                               std::to_string(first.pid()) + ")\n");
   }
-  // Another run may not replace a log of the table either, but it may write a log of its own there.
+  // Another run may not replace a log of the table either, but it may write its own log in this
+  // folder.
   const std::vector<std::string> run{
       Program("fogline"), "run",  "scenario/paper.json", "--transport", "direct",
       "--force",          "--log"};

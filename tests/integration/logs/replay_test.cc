@@ -105,7 +105,7 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
 TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
   const std::string log =
       Altered(Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=250"}), 200);
-  // In this step the log differs from what the fusion computes. The next steps agree, because the
+  // In this step the log differs from the output of the fusion. The next steps agree, because the
   // replay takes its inputs from the log.
   const Outcome fusion = Replay({log, "--role", "fusion", "--json"});
   EXPECT_EQ(fusion.code, 1);

@@ -79,7 +79,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
     ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
     const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
     absence.begin(both);
-    std::this_thread::sleep_for(kAway);  // longer than a role waits: what is tested
+    std::this_thread::sleep_for(kAway);  // longer than a role waits; the test is about this pause
     absence.end(both);
     const auto result = ResultOf(run);
     EXPECT_EQ(result["digest"], Undisturbed());

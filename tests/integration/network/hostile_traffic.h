@@ -31,8 +31,8 @@ class HostileTrafficTest : public NetworkTest {
     nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run whose machine has a network full of hostile traffic from before the start. The run must
-  /// succeed.
+  /// A run on a machine whose network is full of hostile traffic, already before the start. The run
+  /// must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, const Hostility& hostility) {
     const Machine machine("target");

@@ -180,7 +180,8 @@ TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
   lab[1].Do(kFirewall);
   LastFor(milliseconds(1800));
   lab[1].Do("nft delete table inet reload");
-  // THEN the driver takes part to the end, and the run reports what the driver could not send
+  // THEN the driver takes part to the end, and the run reports the messages that the driver could
+  // not send
   run.Wait();
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);

@@ -1,5 +1,5 @@
 // Real time on networks that lose many messages for a while. When the network is clean again, every
-// role computes again, whatever was lost. A run that succeeds has a whole log.
+// role computes again, whichever messages were lost. A run that succeeds has a whole log.
 #pragma once
 
 #include <gtest/gtest.h>

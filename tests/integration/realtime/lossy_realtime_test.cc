@@ -77,8 +77,7 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
     return machine_->On(Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kRate_hz),
                              "--set", "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
-  /// Makes the network lose everything for this time. The length of the pause is what the tests
-  /// examine.
+  /// Makes the network lose everything for this time. The tests are about the length of this pause.
   void LoseEverythingFor(Duration time) const {
     machine_->LoseUdp(100);
     std::this_thread::sleep_for(time);

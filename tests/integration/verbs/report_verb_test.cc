@@ -120,7 +120,7 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   // THEN the page is written, and the exit code says that a check failed
   EXPECT_EQ(report.code, 1);
   EXPECT_EQ(report.out, page + "\n");
-  // AND stderr says what the log lacks
+  // AND stderr names the missing part of the log
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
   // AND the page says so for this run only

@@ -29,7 +29,7 @@ using testing::HasSubstr;
 
 // Programs start and messages arrive within this time, even when every processor is busy.
 constexpr seconds kPatience(30);
-// Longer than any test needs top.
+// Longer than the duration of any test with top.
 constexpr seconds kTopFor(240);
 
 /// `fogline top --json`, which prints a document for each interval until the test ends.

@@ -101,7 +101,7 @@ TEST_P(ConsoleTest, AComplaintWaitsForAReaderThatIsSlow) {
     text.append(buffer.data(), static_cast<std::size_t>(size));
   }
   waitpid(writer, nullptr, 0);
-  // THEN it gets every line completely
+  // THEN the reader gets every line completely
   EXPECT_EQ(text.size(), kLines * (line.size() + 1));
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }

@@ -14,7 +14,8 @@
 namespace fogline {
 namespace {
 
-// Cars behind a host of 20 m/s. All have its speed, and each is 33 m behind the one before.
+// Cars behind a host of 20 m/s. All cars have this speed, and each is 33 m behind the car ahead of
+// it.
 truth_t Platoon(std::size_t cars) {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -226,7 +227,7 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
                           Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN its driver reacts to what the sight shows him
+  // THEN its driver reacts to the situation that his sight shows
   for (std::int64_t k = 0; k < 30; ++k) {
     const models::Situation truth{
         .speed_mps = 20,

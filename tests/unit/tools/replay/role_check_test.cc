@@ -82,7 +82,7 @@ TEST_F(RoleCheckTest, ComputesEveryStepOfEveryRoleAgain) {
 TEST_F(RoleCheckTest, FindsTheStepInWhichARoleDiffersAndNoOther) {
   Alter<driver_command_t>([](driver_command_t& command) { command.acceleration_mps2 = 9; });
   for (const RoleCheck& one : Check(altered_)) {
-    if (one.role == Role::kArbitrator) continue;  // reads what was altered
+    if (one.role == Role::kArbitrator) continue;  // reads the altered message
     EXPECT_EQ(one.steps_that_differ, one.role == Role::kDriver ? 1 : 0) << NameOf(one.role);
     if (one.role != Role::kDriver) continue;
     ASSERT_TRUE(one.first);

@@ -172,7 +172,7 @@ class Sequence {
     EXPECT_EQ(take_over_.outcome().state, kMrmDone);
   }
 
-  // The offers of a side without authority must have no effect, whatever they are.
+  // An offer of a side without authority must have no effect.
   void ExpectNothingLingers(const header_t& header, take_over::TakeOverInputs inputs,
                             const take_over::TakeOverOutcome& out) {
     constexpr double kNonsense = 1e9;

@@ -138,7 +138,7 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
-      // Only this measure treats a missing value as evidence, whatever the rule.
+      // Only this measure treats a missing value as evidence, under every rule.
       const auto measure = row.make({});
       measure->Step(LidarShortBy(0));
       EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);

@@ -38,7 +38,7 @@ TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyF
   EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
   BeAtStep(-1);
   EXPECT_THAT(coordinator.Awaited(now), IsEmpty());
-  // WHEN none of them is heard for more than a second of the run
+  // WHEN no role is heard for more than a second of the run
   const TimePoint later = Clock::now() + milliseconds(1200);
   PollUntil(coordinator, later);
   EXPECT_THAT(coordinator.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
@@ -51,7 +51,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   SayStatus(Role::kAcc);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
       << "the first may be dead";
-  // WHEN the first speaks long after the second has come
+  // WHEN the first process speaks long after the second has come
   const TimePoint end = Clock::now() + milliseconds(120);
   while (Clock::now() < end) Poll(Clock::now());
   role(Role::kAcc) = first;

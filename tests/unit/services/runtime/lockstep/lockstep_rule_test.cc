@@ -1,4 +1,4 @@
-// When a role computes in lockstep, and what it asks for.
+// When a role computes in lockstep, and the requests that it sends.
 #include "services/runtime/lockstep/lockstep_rule.h"
 
 #include <gmock/gmock-more-matchers.h>

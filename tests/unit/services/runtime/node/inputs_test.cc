@@ -1,4 +1,4 @@
-// What a role's inputs refuse, and what they keep.
+// The messages that a role's inputs refuse, and those that they keep.
 #include "services/runtime/node/inputs.h"
 
 #include <gmock/gmock-more-matchers.h>

@@ -1,4 +1,4 @@
-// What a role publishes, keeps and answers.
+// The messages that a role publishes and keeps, and its answers to requests.
 #include "services/runtime/node/outputs.h"
 
 #include <gmock/gmock-more-matchers.h>

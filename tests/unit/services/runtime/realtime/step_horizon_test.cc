@@ -80,7 +80,7 @@ TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
 
 // ---- of a run ----------------------------------------------------------------------------------
 
-constexpr Duration kLong = 10 * kPeriod;  // a silence in which only the runner's word counts
+constexpr Duration kLong = 10 * kPeriod;  // a silence after which only the runner's report counts
 
 TEST(RunHorizonTest, IsLimitedByTheRunnerUntilAStepIsHeard) {
   runtime::RunHorizon horizon(kPeriod);
